@@ -1,0 +1,94 @@
+//! Firmware whose only user code is a frame, for `ci/proofs` to look into. Built three times:
+//! `--cfg 'proof="empty"'` draws nothing, the baseline; `proof="w4"` draws the flat torus without
+//! records; without either it draws every scene.
+//!
+//! It prints the frame's peak stack as eight hexadecimal digits, one by one: formatting would link
+//! the panics that the image must not contain.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[path = "firmware/stack.rs"]
+mod stack;
+
+#[cfg(target_os = "none")]
+#[cfg_attr(proof = "empty", allow(dead_code))]
+mod scenes;
+
+#[cfg(target_os = "none")]
+mod image {
+    use super::{scenes, stack};
+    use core::hint::black_box;
+    #[cfg(target_arch = "arm")]
+    use cortex_m_rt::entry;
+    #[cfg(target_arch = "riscv32")]
+    use riscv_rt::entry;
+    use semihosting::sys::arm_compat::sys_writec;
+
+    const WIDTH: usize = 320;
+    const HEIGHT: usize = 240;
+    const ROWS: usize = 8;
+    const RECORDS: usize = if cfg!(proof = "w4") { 0 } else { 4 * 1024 };
+
+    struct Buffers {
+        color: [u16; WIDTH * ROWS],
+        depth: [u16; WIDTH * ROWS],
+        records: [u32; RECORDS],
+    }
+
+    static mut BUFFERS: Buffers = Buffers {
+        color: [0; _],
+        depth: [0; _],
+        records: [0; _],
+    };
+
+    #[entry]
+    fn start() -> ! {
+        let buffers = &raw mut BUFFERS;
+        // SAFETY: `start` runs once; this is the only reference.
+        let buffers = unsafe { &mut *buffers };
+        let peak = stack::peak_of(|| frame(black_box(buffers)));
+        for i in (0..8).rev() {
+            let digit = (peak >> (4 * i) & 15) as u8;
+            sys_writec(if digit < 10 { b'0' + digit } else { b'a' - 10 + digit });
+        }
+        sys_writec(b'\n');
+        semihosting::process::exit(0)
+    }
+
+    #[inline(never)]
+    fn frame(buffers: &mut Buffers) {
+        let Buffers { color, depth, records } = buffers;
+        if cfg!(proof = "empty") {
+            return;
+        }
+        let scenes = if cfg!(proof = "w4") {
+            0..1
+        } else {
+            0..scenes::SCENES.len()
+        };
+        for index in scenes {
+            scenes::draw(index, 0, [WIDTH, HEIGHT], color, depth, records, |_, strip| {
+                black_box(strip);
+            });
+        }
+    }
+
+    #[panic_handler]
+    fn panic(_: &core::panic::PanicInfo) -> ! {
+        panic_is_reachable()
+    }
+
+    /// In the image exactly when something can panic: every panic ends here.
+    #[inline(never)]
+    #[unsafe(no_mangle)]
+    extern "C" fn panic_is_reachable() -> ! {
+        loop {
+            core::hint::spin_loop();
+        }
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("this example is firmware: ci/proofs builds it");
+}

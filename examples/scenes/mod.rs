@@ -1,0 +1,272 @@
+//! Scenes that the examples, the firmware and the tests share: the same geometry, and so the same picture, everywhere.
+//!
+//! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
+#![allow(dead_code)] // each program uses its part
+
+pub mod polygons;
+pub mod soup;
+pub mod torus;
+
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::fragment::{Flat, Gouraud, Shader};
+use zstrip::geometry::Light;
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::output::{Buffers, FrameError, Renderer, Stats, Strip, StripPixels};
+use zstrip::{Cull, Framebuffer, Scene, State};
+
+/// Something to draw.
+pub struct SceneInfo {
+    /// Its name on the command line and in reports.
+    pub name: &'static str,
+    /// Draws it, turned by an angle, on a screen of some size.
+    pub draw: fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle),
+}
+
+/// All scenes; the first two are a torus flat and Gouraud shaded.
+pub const SCENES: &[SceneInfo] = &[
+    SceneInfo {
+        name: "torus_flat",
+        draw: |scene, turn| torus_flat(scene, turn),
+    },
+    SceneInfo {
+        name: "torus_gouraud",
+        draw: |scene, turn| torus_gouraud(scene, turn),
+    },
+    SceneInfo {
+        name: "room",
+        draw: |scene, turn| room(scene, turn),
+    },
+    SceneInfo {
+        name: "intersections",
+        draw: |scene, turn| intersections(scene, turn),
+    },
+    SceneInfo {
+        name: "soup",
+        draw: |scene, turn| soup(scene, turn),
+    },
+    SceneInfo {
+        name: "far",
+        draw: |scene, turn| far(scene, turn),
+    },
+    SceneInfo {
+        name: "near",
+        draw: |scene, turn| near(scene, turn),
+    },
+    SceneInfo {
+        name: "tiny",
+        draw: |scene, turn| tiny(scene, turn),
+    },
+    SceneInfo {
+        name: "cycle",
+        draw: |scene, turn| cycle(scene, turn),
+    },
+    SceneInfo {
+        name: "slivers",
+        draw: |scene, turn| slivers(scene, turn),
+    },
+    SceneInfo {
+        name: "field",
+        draw: |scene, turn| field(scene, turn),
+    },
+];
+
+/// Dark blue-grey.
+pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
+
+/// A camera with a vertical field of view of 60 degrees.
+pub fn camera((width, height): (u16, u16), near: Scalar, far: Scalar) -> Projective {
+    Projective::perspective(Angle::from_degrees(60), (width, height), near, far).unwrap_or(Projective::IDENTITY)
+}
+
+fn standard_camera<F: Framebuffer>(scene: &Scene<'_, F>) -> Projective {
+    camera(scene.screen(), Scalar::ONE, Scalar::from_bits(12 << 16))
+}
+
+/// White light from the upper right, behind the viewer, beside a dim ambient one; in eye space.
+pub fn light() -> Light {
+    Light::new(
+        Vec3::from_milli(400, 700, 600),
+        Rgb888::new(217, 217, 217),
+        Rgb888::new(38, 38, 38),
+    )
+}
+
+/// Where the torus is, turned.
+pub fn torus_model(turn: Angle) -> Affine {
+    Affine::translation(Vec3::from_ints(0, 0, -3))
+        * Affine::rotation_x(Angle::from_degrees(40))
+        * Affine::rotation_y(turn)
+}
+
+/// Draws the torus with a shader made for its light, which is given in its object space.
+pub fn torus_with<F: Framebuffer, S: Shader<F::Format>>(
+    scene: &mut Scene<'_, F>,
+    turn: Angle,
+    shader: impl FnOnce(Light) -> S,
+) {
+    let model = torus_model(turn);
+    let mvp = standard_camera(scene) * model;
+    scene.draw(&torus::MESH, &mvp, &shader(light().to_object(&model)));
+}
+
+/// Orange.
+pub const TORUS_COLOR: Rgb888 = Rgb888::new(255, 160, 64);
+
+pub fn torus_flat<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    torus_with(scene, turn, |light| Flat::new(light, TORUS_COLOR));
+}
+
+pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    torus_with(scene, turn, |light| Gouraud::new(light, TORUS_COLOR));
+}
+
+/// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view.
+pub fn room_camera(screen: (u16, u16), turn: Angle) -> Projective {
+    let eye = Vec3::from_milli(-1500, 300, 1500);
+    let view = Affine::rotation_y(turn + Angle::from_degrees(40)) * Affine::translation(-eye);
+    camera(screen, Scalar::from_bits(1 << 13), Scalar::from_bits(16 << 16)) * view
+}
+
+/// A room seen from inside, with a pillar and a torus.
+pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = room_camera(scene.screen(), turn);
+    scene.draw(&polygons::ROOM, &mvp, &Gouraud::unlit());
+    let pillar = Affine::translation(Vec3::from_milli(800, 0, -600));
+    scene.draw(&polygons::PILLAR, &(mvp * pillar), &Flat::colors(light()));
+    let ring = Affine::translation(Vec3::from_milli(-800, -600, -1200)) * Affine::rotation_x(turn);
+    scene.draw(
+        &torus::MESH,
+        &(mvp * ring),
+        &Gouraud::new(light().to_object(&ring), Rgb888::new(90, 200, 120)),
+    );
+}
+
+const BOTH_SIDES: State = State {
+    cull: Cull::None,
+    ..DEFAULT
+};
+const DEFAULT: State = State {
+    cull: Cull::Back,
+    depth: zstrip::fragment::DepthState::LESS,
+    range: zstrip::geometry::DepthRange::Clip,
+};
+
+/// Three squares through one another.
+pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene) * torus_model(turn + Angle::from_degrees(25));
+    scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &mvp, &Flat::colors(light()));
+}
+
+/// Random triangles of all sizes around the eye.
+pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene) * Affine::rotation_y(turn);
+    scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &Gouraud::unlit());
+}
+
+/// Triangles whose vertices are up to 30,000 px outside of the screen.
+pub fn far<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -4)) * Affine::rotation_z(turn);
+    scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &Gouraud::unlit());
+}
+
+/// Triangles in clip space, cut by the near plane or with vertices behind the eye.
+pub fn near<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = Projective::from(Affine::rotation_z(turn));
+    scene.draw_with(BOTH_SIDES, &soup::NEAR, &mvp, &Gouraud::unlit());
+}
+
+/// Many triangles of about 2 px.
+pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -4)) * Affine::rotation_z(turn);
+    scene.draw_with(BOTH_SIDES, &soup::TINY, &mvp, &Flat::colors(light()));
+}
+
+/// Three planks that each cover the next one: no order of drawing is right, only depth is.
+pub fn cycle<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(turn);
+    scene.draw(&polygons::CYCLE, &mvp, &Gouraud::unlit());
+}
+
+/// Long triangles thinner than a pixel.
+pub fn slivers<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(turn);
+    scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &Gouraud::unlit());
+}
+
+/// A grid, a strip, a fan and quads side by side.
+pub fn field<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene)
+        * Affine::translation(Vec3::from_ints(0, 0, -3))
+        * Affine::rotation_x(Angle::from_degrees(-20))
+        * Affine::rotation_z(turn);
+    for mesh in [&polygons::GRID, &polygons::STRIP, &polygons::FAN, &polygons::QUADS] {
+        scene.draw_with(BOTH_SIDES, mesh, &mvp, &Gouraud::unlit());
+    }
+}
+
+/// What a rendered scene was like.
+pub struct Report {
+    /// FNV-1a 64 of all bytes of the frame, row by row, RGB565 with the low byte first.
+    pub hash: u64,
+    /// Counters of all stages.
+    pub stats: Stats,
+}
+
+/// Renders a scene at 320×240 into strips with the lent buffers, and hashes them.
+pub fn render(index: usize, color: &mut [u16], depth: &mut [u16], records: &mut [u32]) -> Report {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    let stats = draw(index, 0, [320, 240], color, depth, records, |_, strip| {
+        for byte in strip.iter().flat_map(|p| p.to_le_bytes()) {
+            hash = (hash ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
+        }
+    });
+    Report { hash, stats }
+}
+
+/// Renders a scene, turned by the binary angle `turn`, at any size, and hands each strip to `sink` with its first row,
+/// from the top down. Buffers that do not hold a row draw nothing.
+pub fn draw(
+    index: usize,
+    turn: u16,
+    [width, height]: [usize; 2],
+    color: &mut [u16],
+    depth: &mut [u16],
+    records: &mut [u32],
+    mut sink: impl FnMut(usize, &[u16]),
+) -> Stats {
+    let Some(info) = SCENES.get(index) else {
+        return Stats::default();
+    };
+    frame(
+        [width, height],
+        color,
+        depth,
+        records,
+        |scene| (info.draw)(scene, Angle(turn)),
+        &mut sink,
+    )
+}
+
+/// Renders what a closure draws.
+pub fn frame(
+    [width, height]: [usize; 2],
+    color: &mut [u16],
+    depth: &mut [u16],
+    records: &mut [u32],
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
+    sink: &mut impl FnMut(usize, &[u16]),
+) -> Stats {
+    let Ok(mut renderer) = Renderer::<Rgb565>::new((width as u16, height as u16), Buffers { color, depth, records })
+    else {
+        return Stats::default();
+    };
+    let to_sink = |strip: &StripPixels<'_, Rgb565>| {
+        sink(strip.area().top_left.y as usize, strip.pixels());
+        Ok::<(), core::convert::Infallible>(())
+    };
+    match renderer.frame_to(to_sink, BACKGROUND, draw) {
+        Ok(stats) => stats,
+        Err(FrameError::Sink(never)) => match never {},
+        Err(FrameError::SceneChanged(_)) => Stats::default(),
+    }
+}

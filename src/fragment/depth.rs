@@ -1,0 +1,131 @@
+//! The depth test.
+
+/// How a fragment's depth must compare with the stored one to be drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Compare {
+    /// Nothing passes.
+    Never,
+    /// Nearer passes.
+    #[default]
+    Less,
+    /// The same depth passes.
+    Equal,
+    /// Nearer or the same passes.
+    LessEqual,
+    /// Farther passes.
+    Greater,
+    /// Any other depth passes.
+    NotEqual,
+    /// Farther or the same passes.
+    GreaterEqual,
+    /// Everything passes.
+    Always,
+}
+
+/// What to do with depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct DepthState {
+    /// The test.
+    pub compare: Compare,
+    /// Whether a fragment that passes leaves its depth.
+    pub write: bool,
+}
+
+impl DepthState {
+    /// Nearer fragments pass and leave their depth.
+    pub const LESS: Self = Self {
+        compare: Compare::Less,
+        write: true,
+    };
+    /// Depth is neither tested nor written: the painter's way.
+    pub const OFF: Self = Self {
+        compare: Compare::Always,
+        write: false,
+    };
+}
+
+impl Default for DepthState {
+    fn default() -> Self {
+        Self::LESS
+    }
+}
+
+/// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
+pub trait DepthTest: Copy {
+    /// Whether depth plays a part at all; otherwise `passes` is not called.
+    const ENABLED: bool;
+
+    /// Tests `z` against `stored`, and replaces it if the fragment passes and writes.
+    fn passes(self, z: u16, stored: &mut u16) -> bool;
+}
+
+/// [`DepthState::LESS`].
+#[derive(Clone, Copy, Debug)]
+pub struct LessWrite;
+
+impl DepthTest for LessWrite {
+    const ENABLED: bool = true;
+
+    #[inline(always)]
+    fn passes(self, z: u16, stored: &mut u16) -> bool {
+        let nearer = z < *stored;
+        if nearer {
+            *stored = z;
+        }
+        nearer
+    }
+}
+
+/// [`DepthState::OFF`].
+#[derive(Clone, Copy, Debug)]
+pub struct NoDepth;
+
+impl DepthTest for NoDepth {
+    const ENABLED: bool = false;
+
+    #[inline(always)]
+    fn passes(self, _: u16, _: &mut u16) -> bool {
+        true
+    }
+}
+
+/// Any other test.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyDepth {
+    less: bool,
+    equal: bool,
+    greater: bool,
+    write: bool,
+}
+
+impl AnyDepth {
+    /// From its description.
+    pub const fn new(state: DepthState) -> Self {
+        use Compare::*;
+        Self {
+            less: matches!(state.compare, Less | LessEqual | NotEqual | Always),
+            equal: matches!(state.compare, Equal | LessEqual | GreaterEqual | Always),
+            greater: matches!(state.compare, Greater | GreaterEqual | NotEqual | Always),
+            write: state.write,
+        }
+    }
+}
+
+impl DepthTest for AnyDepth {
+    const ENABLED: bool = true;
+
+    #[inline(always)]
+    fn passes(self, z: u16, stored: &mut u16) -> bool {
+        let passes = match z.cmp(stored) {
+            core::cmp::Ordering::Less => self.less,
+            core::cmp::Ordering::Equal => self.equal,
+            core::cmp::Ordering::Greater => self.greater,
+        };
+        if passes && self.write {
+            *stored = z;
+        }
+        passes
+    }
+}

@@ -1,0 +1,105 @@
+//! One colour a face.
+
+use super::{DepthTest, Fragments, PixelFormat, Shader};
+use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
+
+/// Flat shading: each triangle in one colour, lit by its face normal.
+///
+/// The colour is the shader's, or that of the provoking vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Flat {
+    light: Option<Light>,
+    /// The colour, lit or plain; that of the mesh where there is none.
+    lit: Option<Lit>,
+    color: [u8; 3],
+}
+
+impl Flat {
+    /// A colour under a light (given in object space, see [`Light::to_object`]).
+    pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
+        let color = channels(color.into());
+        Self {
+            light: Some(light),
+            lit: Some(light.on(color)),
+            color,
+        }
+    }
+
+    /// A colour without light.
+    pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
+        Self {
+            light: None,
+            lit: None,
+            color: channels(color.into()),
+        }
+    }
+
+    /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
+    pub const fn colors(light: Light) -> Self {
+        Self {
+            light: Some(light),
+            lit: None,
+            color: [255; 3],
+        }
+    }
+}
+
+/// Red, green, blue.
+pub(super) fn channels(color: embedded_graphics_core::pixelcolor::Rgb888) -> [u8; 3] {
+    use embedded_graphics_core::pixelcolor::RgbColor;
+    [color.r(), color.g(), color.b()]
+}
+
+impl VertexShader for Flat {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+        []
+    }
+
+    /// The colour, 8 bits a channel, blue lowest.
+    #[inline]
+    fn face(&self, face: &Face<'_>) -> u32 {
+        let rgb = match (self.light, self.lit) {
+            (Some(_), Some(lit)) => lit.shade(face.normal()).map(round),
+            (Some(light), None) => light.on(face.provoking().color()).shade(face.normal()).map(round),
+            _ => self.color,
+        };
+        u32::from_be_bytes([0, rgb[0], rgb[1], rgb[2]])
+    }
+}
+
+/// 8.8 to 8 bits, to nearest; 255.0 is the largest value there is.
+const fn round(channel: i32) -> u8 {
+    ((channel + 128) >> 8) as u8
+}
+
+impl<P: PixelFormat> Shader<P> for Flat {
+    #[inline]
+    fn fragment(&self, face: u32, _: &[i32; 0]) -> P::Raw {
+        let [_, r, g, b] = face.to_be_bytes();
+        P::pack([r, g, b])
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+        let Fragments {
+            color,
+            depth,
+            mut z,
+            dz_dx,
+            ..
+        } = span;
+        let value = Shader::<P>::fragment(self, face, &[]);
+        if !D::ENABLED {
+            color.fill(value);
+            return;
+        }
+        for (color, depth) in color.iter_mut().zip(depth) {
+            if test.passes((z >> 16) as u16, depth) {
+                *color = value;
+            }
+            z = z.wrapping_add_signed(dz_dx);
+        }
+    }
+}

@@ -1,0 +1,13 @@
+//! Span → pixels: the depth test, the fragment stage's seam, and the shaders that come with the crate.
+
+mod depth;
+mod flat;
+mod gouraud;
+mod pixel;
+mod shader;
+
+pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use flat::Flat;
+pub use gouraud::Gouraud;
+pub use pixel::PixelFormat;
+pub use shader::{Fragments, Shader};

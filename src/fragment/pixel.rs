@@ -1,0 +1,22 @@
+//! What the fragment stage must know of a pixel format; the formats themselves belong to the output stage.
+
+use embedded_graphics_core::pixelcolor::PixelColor;
+
+/// How colours are kept in a framebuffer. Implemented by marker types, which for formats that embedded-graphics knows are
+/// its own colour types.
+pub trait PixelFormat {
+    /// What one pixel is in memory, in the very bytes that [`Strip::bytes`](crate::output::StripPixels::bytes) hands out.
+    type Raw: bytemuck::Pod;
+
+    /// The embedded-graphics colour of this format.
+    type Color: PixelColor;
+
+    /// Packs red, green and blue of 8 bits; surplus bits are cut.
+    fn pack(rgb: [u8; 3]) -> Self::Raw;
+
+    /// From embedded-graphics' colour.
+    fn from_color(color: Self::Color) -> Self::Raw;
+
+    /// To embedded-graphics' colour.
+    fn to_color(raw: Self::Raw) -> Self::Color;
+}

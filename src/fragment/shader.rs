@@ -1,0 +1,54 @@
+//! The fragment stage's seam, and the loop over the pixels of a span.
+
+use super::{DepthTest, PixelFormat};
+use crate::geometry::VertexShader;
+
+/// The pixels of a span and everything that is interpolated along it.
+#[derive(Debug)]
+pub struct Fragments<'a, P: PixelFormat, V> {
+    /// Colours, to be written where the depth test passes.
+    pub color: &'a mut [P::Raw],
+    /// Stored depths, as many.
+    pub depth: &'a mut [u16],
+    /// Depth at the first pixel, 16.16, with the half that rounds it already added.
+    pub z: u32,
+    /// Change of depth a pixel, modulo 2³².
+    pub dz_dx: i32,
+    /// Varyings at the first pixel.
+    pub varyings: V,
+    /// Change of the varyings a pixel, modulo 2³².
+    pub d_dx: V,
+    /// Position of the first pixel on the screen.
+    pub position: (i32, i32),
+}
+
+/// The programmable fragment stage: colours pixels of format `P`.
+///
+/// A shader is compiled into the pixel loop; nothing is called indirectly.
+pub trait Shader<P: PixelFormat>: VertexShader {
+    /// The colour of a fragment, from the triangle's word and the varyings at the pixel's centre.
+    fn fragment(&self, face: u32, varyings: &Self::Varyings) -> P::Raw;
+
+    /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings>, test: D) {
+        let Fragments {
+            color,
+            depth,
+            mut z,
+            dz_dx,
+            mut varyings,
+            d_dx,
+            ..
+        } = span;
+        for (color, depth) in color.iter_mut().zip(depth) {
+            if !D::ENABLED || test.passes((z >> 16) as u16, depth) {
+                *color = self.fragment(face, &varyings);
+            }
+            z = z.wrapping_add_signed(dz_dx);
+            for (value, step) in varyings.as_mut().iter_mut().zip(d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+}

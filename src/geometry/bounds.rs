@@ -1,0 +1,143 @@
+//! Bounding boxes and spheres, and hierarchies of them.
+
+use crate::math::{Scalar, Vec3};
+
+/// An axis-aligned box by centre and half size; raw 16.16, the half size rounded up so that nothing sticks out.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundingBox {
+    /// Middle of the box.
+    pub center: Vec3,
+    /// Half its size an axis; never negative.
+    pub half: Vec3,
+}
+
+/// A sphere by centre and radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundingSphere {
+    /// Centre.
+    pub center: Vec3,
+    /// Radius; never negative.
+    pub radius: Scalar,
+}
+
+/// What is known about where a mesh, or a part of it, lies: a box and a sphere, both hold all of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bounds {
+    /// The box.
+    pub aabb: BoundingBox,
+    /// The sphere.
+    pub sphere: BoundingSphere,
+}
+
+/// A node of a hierarchy of bounds, flattened in depth-first order.
+///
+/// A node that is out of view is skipped with everything below it: traversal goes on at `skip`. A node whose `triangles`
+/// are not empty is a leaf that draws them. No recursion, no stack.
+///
+/// ```text
+///        0            nodes: 0 1 2 3 4
+///       / \           skip:  5 4 3 4 5      (index of the next node that is not below)
+///      1   4
+///     / \
+///    2   3
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct BoundsNode {
+    /// Bounds of everything below this node.
+    pub bounds: Bounds,
+    /// Index of the first node after this node's subtree; greater than the node's own index.
+    pub skip: u16,
+    /// First triangle of a leaf.
+    pub first_triangle: u16,
+    /// Number of triangles of a leaf; 0 for an inner node.
+    pub triangles: u16,
+}
+
+/// Smallest and largest corner of the points seen so far, in 64-bit raw 16.16: any sum below is exact.
+#[derive(Clone, Copy)]
+pub(super) struct Extent {
+    min: [i64; 3],
+    max: [i64; 3],
+}
+
+impl Extent {
+    pub(super) const fn empty() -> Self {
+        Self {
+            min: [i64::MAX; 3],
+            max: [i64::MIN; 3],
+        }
+    }
+
+    pub(super) const fn with(mut self, point: [i64; 3]) -> Self {
+        let mut k = 0;
+        while k < 3 {
+            if point[k] < self.min[k] {
+                self.min[k] = point[k];
+            }
+            if point[k] > self.max[k] {
+                self.max[k] = point[k];
+            }
+            k += 1;
+        }
+        self
+    }
+
+    /// The box, its half size rounded up; a point at the origin when nothing was added.
+    pub(super) const fn aabb(&self) -> BoundingBox {
+        let mut center = [0; 3];
+        let mut half = [0; 3];
+        let mut k = 0;
+        while k < 3 {
+            if self.min[k] <= self.max[k] {
+                let middle = (self.min[k] + self.max[k]) >> 1;
+                center[k] = clamp_bits(middle);
+                // The centre may have been clamped or rounded: cover both ends from where it is.
+                let (up, down) = (self.max[k] - center[k] as i64, center[k] as i64 - self.min[k]);
+                half[k] = clamp_bits(if up > down { up } else { down });
+            }
+            k += 1;
+        }
+        BoundingBox {
+            center: Vec3::from_bits(center),
+            half: Vec3::from_bits(half),
+        }
+    }
+}
+
+const fn clamp_bits(value: i64) -> i32 {
+    if value > i32::MAX as i64 {
+        i32::MAX
+    } else if value < i32::MIN as i64 {
+        i32::MIN
+    } else {
+        value as i32
+    }
+}
+
+/// Squared distance of `point` from `center`, both raw 16.16.
+pub(super) const fn distance_squared(point: [i64; 3], center: Vec3) -> u128 {
+    let c = center.to_bits();
+    let mut sum = 0_u128;
+    let mut k = 0;
+    while k < 3 {
+        let d = (point[k] - c[k] as i64).unsigned_abs() as u128;
+        sum += d * d;
+        k += 1;
+    }
+    sum
+}
+
+/// The sphere about `center` whose squared radius is at least `squared`: the radius is rounded up.
+pub(super) const fn sphere(center: Vec3, squared: u128) -> BoundingSphere {
+    let root = squared.isqrt();
+    let radius = if root * root < squared { root + 1 } else { root };
+    let radius = if radius > i32::MAX as u128 {
+        i32::MAX
+    } else {
+        radius as i32
+    };
+    BoundingSphere {
+        center,
+        radius: Scalar::from_bits(radius),
+    }
+}

@@ -1,0 +1,206 @@
+//! Clipping in homogeneous space: outcodes, and polygons cut by one plane after the other.
+//!
+//! Four rules hold: visible vertices pass unchanged, bit by bit; edge AB is cut like BA, since a cut always goes from
+//! the vertex inside to the one outside; planes come in one order; there is one set of planes. Sides of the view are
+//! no planes here: the rasterizer is exact to ±32,767 px, and only at that guard band anything is cut.
+
+use super::Varyings;
+use heapless::Vec;
+
+/// A vertex in clip space, in any common scale: x / w, y / w in units of 512 px from the screen's corner, z / w depth.
+///
+/// Magnitudes stay below 2⁵⁶, so that plane distances fit 63 bits.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClipVertex {
+    /// To the right.
+    pub x: i64,
+    /// Down.
+    pub y: i64,
+    /// Depth: 0 on the near plane, w on the far plane.
+    pub z: i64,
+    /// The divisor.
+    pub w: i64,
+}
+
+/// What becomes of what lies before the near plane or beyond the far plane.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthRange {
+    /// Both are cut away.
+    #[default]
+    Clip,
+    /// What is beyond the far plane is drawn at depth 65,535: a sky, a distant landscape.
+    ClampFar,
+    /// Both are drawn, at depth 0 and 65,535.
+    Clamp,
+}
+
+/// Which planes a vertex lies outside of, a bit each, after Cohen and Sutherland.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Outcode(pub u8);
+
+impl Outcode {
+    /// Bit of w > 0.
+    pub const W: u8 = 1;
+    /// Bit of the near plane, z ≥ 0.
+    pub const NEAR: u8 = 2;
+    /// Bit of the far plane, z ≤ w.
+    pub const FAR: u8 = 4;
+    /// Bits of the guard band: left, right, top, bottom.
+    pub const SIDES: u8 = 0x78;
+
+    /// The planes `vertex` lies outside of.
+    #[inline]
+    pub fn of(vertex: &ClipVertex) -> Self {
+        let mut code = 0;
+        for plane in 0..PLANES {
+            code |= u8::from(distance(plane, vertex) < 0) << plane;
+        }
+        Self(code)
+    }
+}
+
+/// w, near, far, then the guard band: left, right, top, bottom.
+const PLANES: usize = 7;
+const NEAR: usize = 1;
+const FAR: usize = 2;
+
+/// Signed distance from a plane, not negative inside, in a scale of its own.
+///
+/// # Format
+/// Below 2⁵⁶ · 65 < 2⁶³. The guard band is (64 - 2⁻¹⁶) · 512 px, or 2²³ - 2 in 24.8.
+#[inline]
+fn distance(plane: usize, v: &ClipVertex) -> i64 {
+    let band = 64 * v.w - (v.w >> 16);
+    match plane {
+        0 => v.w - 1,
+        NEAR => v.z,
+        FAR => v.w - v.z,
+        3 => band + v.x,
+        4 => band - v.x,
+        5 => band + v.y,
+        _ => band - v.y,
+    }
+}
+
+/// A triangle cut by seven planes has at most ten corners.
+const CORNERS: usize = 10;
+type Polygon<V> = Vec<(ClipVertex, V), CORNERS>;
+
+/// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on what is left: one convex
+/// polygon, or up to three where depth is clamped.
+pub fn clip_triangle<V: Varyings>(
+    triangle: &[(ClipVertex, V); 3],
+    codes: Outcode,
+    range: DepthRange,
+    mut emit: impl FnMut(&[(ClipVertex, V)]),
+) {
+    let (keep_near, keep_far) = match range {
+        DepthRange::Clip => (false, false),
+        DepthRange::ClampFar => (false, true),
+        DepthRange::Clamp => (true, true),
+    };
+    let mut polygon = Polygon::new();
+    // Three fit ten; the same holds wherever a push is not checked below.
+    let _ = polygon.extend_from_slice(triangle);
+    let kept = (u8::from(keep_near) << NEAR) | (u8::from(keep_far) << FAR);
+    for plane in 0..PLANES {
+        if codes.0 & !kept & (1 << plane) != 0 {
+            polygon = cut(&polygon, plane, true);
+        }
+    }
+    if codes.0 & kept & Outcode::NEAR != 0 {
+        let mut before = cut(&polygon, NEAR, false);
+        before.iter_mut().for_each(|(v, _)| v.z = 0);
+        hand_on(&before, &mut emit);
+        polygon = cut(&polygon, NEAR, true);
+    }
+    if codes.0 & kept & Outcode::FAR != 0 {
+        let mut beyond = cut(&polygon, FAR, false);
+        beyond.iter_mut().for_each(|(v, _)| v.z = v.w);
+        hand_on(&beyond, &mut emit);
+        polygon = cut(&polygon, FAR, true);
+    }
+    hand_on(&polygon, &mut emit);
+}
+
+fn hand_on<V>(polygon: &Polygon<V>, emit: &mut impl FnMut(&[(ClipVertex, V)])) {
+    if polygon.len() >= 3 {
+        emit(polygon);
+    }
+}
+
+/// The part of a convex polygon on one side of a plane: inside, or outside.
+///
+/// # Source
+/// Sutherland and Hodgman 1974, "Reentrant polygon clipping".
+#[inline(never)]
+fn cut<V: Varyings>(polygon: &Polygon<V>, plane: usize, inside: bool) -> Polygon<V> {
+    let mut result = Polygon::new();
+    let Some(mut from) = polygon.last() else { return result };
+    let mut from_distance = distance(plane, &from.0);
+    for to in polygon {
+        let to_distance = distance(plane, &to.0);
+        if (from_distance >= 0) != (to_distance >= 0) {
+            // Always from the vertex inside to the one outside, so that AB is cut like BA.
+            let crossing = if from_distance >= 0 {
+                intersection(from, from_distance, to, to_distance, plane)
+            } else {
+                intersection(to, to_distance, from, from_distance, plane)
+            };
+            let _ = result.push(crossing);
+        }
+        if (to_distance >= 0) == inside {
+            let _ = result.push(*to);
+        }
+        (from, from_distance) = (to, to_distance);
+    }
+    result
+}
+
+/// Where the edge from `a`, inside, to `b`, outside, meets the plane.
+///
+/// # Format
+/// t = da / (da - db) as 0.64, rounded down; coordinates are off by less than 1 + 2⁻⁸ of their unit.
+fn intersection<V: Varyings>(
+    a: &(ClipVertex, V),
+    da: i64,
+    b: &(ClipVertex, V),
+    db: i64,
+    plane: usize,
+) -> (ClipVertex, V) {
+    let t = fraction(da as u64, da.abs_diff(db));
+    let along = |a: i64, b: i64| a + ((i128::from(b - a) * i128::from(t)) >> 64) as i64;
+    let mut v = ClipVertex {
+        x: along(a.0.x, b.0.x),
+        y: along(a.0.y, b.0.y),
+        z: along(a.0.z, b.0.z),
+        w: along(a.0.w, b.0.w),
+    };
+    match plane {
+        NEAR => v.z = 0,
+        FAR => v.z = v.w,
+        _ => {}
+    }
+    let t32 = (t >> 32) as i64;
+    let mut varyings = a.1;
+    for (x, y) in varyings.as_mut().iter_mut().zip(b.1.as_ref()) {
+        // A difference of 33 bits times 32: fits with the sign.
+        *x = (i64::from(*x) + (((i64::from(*y) - i64::from(*x)) * (t32 >> 1)) >> 31)) as i32;
+    }
+    (v, varyings)
+}
+
+/// `num / den` as 0.64, rounded down; `num < den < 2⁶³`.
+fn fraction(num: u64, den: u64) -> u64 {
+    let mut rest = num;
+    let mut quotient = 0;
+    for _ in 0..64 {
+        rest <<= 1;
+        quotient <<= 1;
+        if rest >= den {
+            rest -= den;
+            quotient |= 1;
+        }
+    }
+    quotient
+}

@@ -1,0 +1,193 @@
+//! Culling of whole objects: the planes of the view volume, tested against boxes and spheres.
+
+use super::{BoundingBox, BoundingSphere, Bounds, Viewport};
+use crate::math::Projective;
+
+/// A plane in the space that the matrix maps from; its inside is where [`at`](Plane::at) is not negative.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Plane {
+    /// Normal, pointing inside, of any length; below 2²⁸.
+    normal: [i32; 3],
+    /// Offset, below 2⁶⁰: the value of the plane at the origin.
+    offset: i64,
+    /// Length of the normal, rounded up.
+    length: i32,
+}
+
+/// Where an object is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Containment {
+    /// Surely outside: nothing of it can be seen.
+    Outside,
+    /// It may cross the border.
+    Crossing,
+    /// Surely inside of all planes.
+    Inside,
+}
+
+/// The view volume as six planes: left, right, bottom, top, near, far.
+///
+/// Tests err on the side of [`Containment::Crossing`], never otherwise.
+///
+/// ```
+/// use zstrip::geometry::{Containment, Frustum, BoundingSphere};
+/// use zstrip::math::{Angle, Projective, Scalar, Vec3};
+/// let camera = Projective::perspective(Angle::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(50))?;
+/// let frustum = Frustum::new(&camera);
+/// let behind = BoundingSphere { center: Vec3::from_ints(0, 0, 5), radius: Scalar::ONE };
+/// assert_eq!(frustum.sphere(&behind), Containment::Outside);
+/// # Ok::<(), zstrip::math::ProjectionError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Frustum {
+    planes: [Plane; 6],
+}
+
+/// Rounding of a normal (half a unit an axis times 2³¹) and of the offset cannot move a value by more than this.
+const SLACK: i64 = 1 << 32;
+
+impl Plane {
+    /// The plane `row · (x, y, z, 1) ≥ 0`, entries below 2¹²⁰ with 32 fractional bits each.
+    fn new(row: [i128; 4]) -> Self {
+        // Normal below 2²⁸ and offset (16 more fractional bits) below 2⁶⁰, by one common shift.
+        let bits = |v: i128| 128 - v.unsigned_abs().leading_zeros() as i32;
+        let normal_bits = bits(row[0]).max(bits(row[1])).max(bits(row[2]));
+        let shift = (normal_bits - 28).max(bits(row[3]) + 16 - 60);
+        let scaled = |v: i128, shift: i32| {
+            if shift >= 0 {
+                v >> shift.min(127)
+            } else {
+                v << (-shift).min(90)
+            }
+        };
+        let normal = [
+            scaled(row[0], shift) as i32,
+            scaled(row[1], shift) as i32,
+            scaled(row[2], shift) as i32,
+        ];
+        let squares = normal
+            .iter()
+            .map(|&n| (i64::from(n) * i64::from(n)) as u64)
+            .fold(0, u64::wrapping_add);
+        Self {
+            normal,
+            offset: scaled(row[3], shift - 16) as i64,
+            length: squares.isqrt() as i32 + 1,
+        }
+    }
+
+    /// Value of the plane at a point in raw 16.16: positive inside, off by less than [`SLACK`].
+    fn at(&self, p: [i32; 3]) -> i64 {
+        // 2²⁸ · 2³¹ · 3 + 2⁶⁰ < 2⁶².
+        let [a, b, c] = self.normal;
+        i64::from(a) * i64::from(p[0]) + i64::from(b) * i64::from(p[1]) + i64::from(c) * i64::from(p[2]) + self.offset
+    }
+
+    fn contains(&self, center: [i32; 3], reach: i64) -> Containment {
+        let value = self.at(center);
+        if value + reach < -SLACK {
+            Containment::Outside
+        } else if value - reach > SLACK {
+            Containment::Inside
+        } else {
+            Containment::Crossing
+        }
+    }
+}
+
+impl Frustum {
+    /// The planes of clip space in the space `matrix` maps from: of world space for a camera, of object space for a
+    /// product of camera and model.
+    pub fn new(matrix: &Projective) -> Self {
+        let rows = matrix.to_rows().map(|row| row.map(i128::from));
+        let add = |a: [i128; 4], b: [i128; 4], sign: i128| {
+            [
+                a[0] + sign * b[0],
+                a[1] + sign * b[1],
+                a[2] + sign * b[2],
+                a[3] + sign * b[3],
+            ]
+        };
+        let [x, y, z, w] = rows;
+        Self {
+            planes: [
+                Plane::new(add(w, x, 1)),
+                Plane::new(add(w, x, -1)),
+                Plane::new(add(w, y, 1)),
+                Plane::new(add(w, y, -1)),
+                Plane::new(z),
+                Plane::new(add(w, z, -1)),
+            ],
+        }
+    }
+
+    /// The part of the view volume that is seen through a rectangle of the screen.
+    ///
+    /// The rectangle is `x0..x1`, `y0..y1` in pixels; clip space is mapped to `viewport`.
+    pub fn through(matrix: &Projective, viewport: &Viewport, x: (i32, i32), y: (i32, i32)) -> Self {
+        let rows = matrix.to_rows().map(|row| row.map(i128::from));
+        // X = cx + hw x / w >= x0  <=>  W x + 2 (cx - x0) w >= 0, all times two; likewise the others, y downwards.
+        let half_plane = |factor: i32, row: usize, distance: i32| {
+            let mut combined = [0; 4];
+            for ((c, a), w) in combined.iter_mut().zip(rows[row]).zip(rows[3]) {
+                *c = a * i128::from(factor) + w * i128::from(distance);
+            }
+            Plane::new(combined)
+        };
+        let (width, height) = (i32::from(viewport.width()), i32::from(viewport.height()));
+        let (cx2, cy2) = (
+            2 * i32::from(viewport.x()) + width,
+            2 * i32::from(viewport.y()) + height,
+        );
+        let mut planes = Self::new(matrix).planes;
+        planes[0] = half_plane(width, 0, cx2 - 2 * x.0);
+        planes[1] = half_plane(-width, 0, 2 * x.1 - cx2);
+        planes[2] = half_plane(height, 1, 2 * y.1 - cy2);
+        planes[3] = half_plane(-height, 1, cy2 - 2 * y.0);
+        Self { planes }
+    }
+
+    /// The planes: left, right, bottom, top, near, far.
+    pub const fn planes(&self) -> &[Plane; 6] {
+        &self.planes
+    }
+
+    /// Where a box is.
+    pub fn aabb(&self, aabb: &BoundingBox) -> Containment {
+        let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
+        self.all(center, |plane| {
+            plane
+                .normal
+                .iter()
+                .zip(half)
+                .map(|(n, h)| i64::from(n.unsigned_abs()) * i64::from(h))
+                .fold(0, i64::wrapping_add)
+        })
+    }
+
+    /// Where a sphere is.
+    pub fn sphere(&self, sphere: &BoundingSphere) -> Containment {
+        let radius = i64::from(sphere.radius.to_bits());
+        self.all(sphere.center.to_bits(), |plane| i64::from(plane.length) * radius)
+    }
+
+    /// Where something is that lies both in the sphere and in the box; the sphere is the quicker test.
+    pub fn bounds(&self, bounds: &Bounds) -> Containment {
+        match self.sphere(&bounds.sphere) {
+            Containment::Crossing => self.aabb(&bounds.aabb),
+            sure => sure,
+        }
+    }
+
+    fn all(&self, center: [i32; 3], reach: impl Fn(&Plane) -> i64) -> Containment {
+        let mut result = Containment::Inside;
+        for plane in &self.planes {
+            match plane.contains(center, reach(plane)) {
+                Containment::Outside => return Containment::Outside,
+                Containment::Crossing => result = Containment::Crossing,
+                Containment::Inside => {}
+            }
+        }
+        result
+    }
+}

@@ -1,0 +1,101 @@
+//! Lambert lighting: an ambient and a directional light.
+
+use crate::math::{Affine, Vec3};
+use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+
+/// The number 1 in the 2.14 format of normals.
+pub const NORMAL_ONE: i16 = 1 << 14;
+
+/// An ambient light and a directional one, with colours.
+///
+/// ```
+/// use embedded_graphics_core::pixelcolor::Rgb888;
+/// use zstrip::geometry::Light;
+/// use zstrip::math::Vec3;
+/// let light = Light::new(Vec3::from_ints(4, 7, 6), Rgb888::new(217, 217, 217), Rgb888::new(38, 38, 38));
+/// # let _ = light;
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Light {
+    /// Unit vector to the light, 2.14; zero for no directional light.
+    direction: [i16; 3],
+    /// Brightness a channel, 256 = full.
+    diffuse: [u16; 3],
+    ambient: [u16; 3],
+}
+
+/// Brightness of a colour's channels, 255 becoming 256.
+fn levels(color: Rgb888) -> [u16; 3] {
+    [color.r(), color.g(), color.b()].map(|c| u16::from(c) + u16::from(c >> 7))
+}
+
+impl Light {
+    /// A light that comes from `direction`, a vector of any length that points *towards* it, beside an ambient one.
+    ///
+    /// A zero vector leaves the ambient light alone.
+    pub fn new(direction: Vec3, diffuse: Rgb888, ambient: Rgb888) -> Self {
+        let unit = direction.normalized().unwrap_or(Vec3::ZERO).to_bits();
+        Self {
+            direction: unit.map(|c| ((c + 2) >> 2) as i16),
+            diffuse: levels(diffuse),
+            ambient: levels(ambient),
+        }
+    }
+
+    /// The same light, given in world (or eye) space, as seen from object space: what a shader needs, as normals are in
+    /// object space. `model` may rotate, move and scale evenly.
+    pub fn to_object(&self, model: &Affine) -> Self {
+        let direction = Vec3::from_bits(self.direction.map(|c| i32::from(c) << 2));
+        let turned = model.inverse_rigid().transform_vector(direction);
+        let unit = turned.normalized().unwrap_or(Vec3::ZERO).to_bits();
+        Self {
+            direction: unit.map(|c| ((c + 2) >> 2) as i16),
+            ..*self
+        }
+    }
+
+    /// Light on a surface of a colour: what is the same for all its normals, worked out once.
+    pub fn on(&self, color: [u8; 3]) -> Lit {
+        let times = |level: [u16; 3]| {
+            let [r, g, b] = color.map(i32::from);
+            [
+                r * i32::from(level[0]),
+                g * i32::from(level[1]),
+                b * i32::from(level[2]),
+            ]
+        };
+        Lit {
+            direction: self.direction.map(i32::from),
+            ambient: times(self.ambient),
+            diffuse: times(self.diffuse),
+        }
+    }
+}
+
+/// A [`Light`] on a colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lit {
+    direction: [i32; 3],
+    /// 8.8 a channel.
+    ambient: [i32; 3],
+    diffuse: [i32; 3],
+}
+
+/// The brightest channel value, 255 in 8.8.
+const WHITE: i32 = 255 << 8;
+
+impl Lit {
+    /// Red, green, blue for a unit normal: ambient + diffuse · max(0, n · l), at most 255.
+    ///
+    /// # Format
+    /// Normal 2.14; result 8.8, within 1/64 of the exact value for the same 2.14 vectors. n · l: 2²⁸ and a little.
+    #[inline]
+    pub fn shade(&self, normal: [i16; 3]) -> [i32; 3] {
+        let [x, y, z] = normal.map(i32::from);
+        let [lx, ly, lz] = self.direction;
+        // Components are in -2¹⁵..2¹⁵, those of the light at most 2¹⁴: below 2³¹.
+        let cosine = ((x * lx + y * ly + z * lz) >> 14).clamp(0, 1 << 14);
+        let channel = |k: usize| (self.ambient[k] + ((self.diffuse[k] * cosine) >> 14)).min(WHITE);
+        [channel(0), channel(1), channel(2)]
+    }
+}

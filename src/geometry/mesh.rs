@@ -1,0 +1,382 @@
+//! Meshes: borrowed slices, checked once.
+//!
+//! After [`Mesh::new`] every index is in range and every attribute is as long as the positions, so that the frame path
+//! needs no error for a mesh.
+
+use super::bounds::{Bounds, BoundsNode, Extent, distance_squared, sphere};
+use crate::math::{Scalar, Vec3};
+use core::fmt;
+
+/// Where the vertices of a mesh are.
+#[derive(Clone, Copy, Debug)]
+pub enum Positions<'a> {
+    /// Fractions of a cube, 6 bytes a vertex: position = `offset` + `scale` · q / 32,768. The fastest and smallest.
+    Quantized {
+        /// Fractions, 1.15.
+        points: &'a [[i16; 3]],
+        /// The distance from `offset` that the fraction 32,768 would stand for.
+        scale: Scalar,
+        /// The middle of the cube.
+        offset: Vec3,
+    },
+    /// 16.16 coordinates, 12 bytes a vertex.
+    Exact(&'a [Vec3]),
+    /// Homogeneous 16.16 coordinates x, y, z, w, for points at infinity or vertices that are in clip space already.
+    Homogeneous(&'a [[Scalar; 4]]),
+}
+
+/// How vertices, or indices, form triangles. A counter-clockwise triangle (y up) is a front face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Topology {
+    /// Three a triangle.
+    #[default]
+    Triangles,
+    /// Each vertex after the second makes a triangle with the two before it; every other one is turned round.
+    Strip,
+    /// Each vertex after the second makes a triangle with the one before it and the first.
+    Fan,
+    /// Four a quad, corners in order; drawn as (0, 1, 2) and (0, 2, 3).
+    Quads,
+}
+
+/// The slices of a mesh, before they are checked. Fill in what there is:
+///
+/// ```
+/// use zstrip::geometry::{Mesh, MeshData, Positions, Topology};
+/// use zstrip::math::{Scalar, Vec3};
+/// static CORNERS: [[i16; 3]; 4] = [[-16384, -16384, 0], [16384, -16384, 0], [16384, 16384, 0], [-16384, 16384, 0]];
+/// static SQUARE: Mesh<'static> = Mesh::constant(MeshData {
+///     topology: Topology::Quads,
+///     ..MeshData::new(Positions::Quantized { points: &CORNERS, scale: Scalar::ONE, offset: Vec3::ZERO })
+/// });
+/// assert_eq!(SQUARE.triangle_count(), 2);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct MeshData<'a> {
+    /// Vertex positions, at most 65,535.
+    pub positions: Positions<'a>,
+    /// How they form triangles.
+    pub topology: Topology,
+    /// Vertex numbers in drawing order; without them the vertices are drawn as they stand.
+    pub indices: Option<&'a [u16]>,
+    /// Unit normals a vertex, 2.14 ([`NORMAL_ONE`](super::NORMAL_ONE) is 1).
+    pub normals: Option<&'a [[i16; 3]]>,
+    /// Unit normals a triangle, 2.14, for flat shading; computed from the positions where absent.
+    pub face_normals: Option<&'a [[i16; 3]]>,
+    /// Colours a vertex: red, green, blue.
+    pub colors: Option<&'a [[u8; 3]]>,
+    /// Texture coordinates a vertex, u to the right and v down, 1 = the whole texture.
+    pub uvs: Option<&'a [[Scalar; 2]]>,
+    /// Bounds, where they are known better than a pass over the positions would find.
+    pub bounds: Option<Bounds>,
+    /// A hierarchy of bounds over the triangles; see [`BoundsNode`].
+    pub hierarchy: Option<&'a [BoundsNode]>,
+}
+
+impl<'a> MeshData<'a> {
+    /// Just positions: a list of triangles.
+    pub const fn new(positions: Positions<'a>) -> Self {
+        Self {
+            positions,
+            topology: Topology::Triangles,
+            indices: None,
+            normals: None,
+            face_normals: None,
+            colors: None,
+            uvs: None,
+            bounds: None,
+            hierarchy: None,
+        }
+    }
+}
+
+/// A checked mesh. Copying it copies references only.
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a> {
+    data: MeshData<'a>,
+    bounds: Bounds,
+    triangles: u16,
+}
+
+/// What is wrong with a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum MeshError {
+    /// More than 65,535 vertices: how many.
+    TooManyVertices(usize),
+    /// More than 65,535 triangles: how many.
+    TooManyTriangles(usize),
+    /// The number of indices (or vertices, without indices) does not divide into whole triangles or quads.
+    Incomplete(usize),
+    /// An index points past the last vertex.
+    Index {
+        /// Where in the index list.
+        at: usize,
+        /// What it says.
+        index: u16,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// The normals are not as many as the vertices: how many there are.
+    Normals(usize),
+    /// The face normals are not as many as the triangles: how many there are.
+    FaceNormals(usize),
+    /// The colours are not as many as the vertices: how many there are.
+    Colors(usize),
+    /// The texture coordinates are not as many as the vertices: how many there are.
+    Uvs(usize),
+    /// The scale of quantized positions, raw 16.16, is not positive.
+    Scale(i32),
+    /// A node of the hierarchy does not skip forward within it, or its triangles are out of range: which node.
+    Hierarchy(usize),
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::TooManyVertices(n) => write!(f, "{n} vertices, at most 65535 are possible"),
+            Self::TooManyTriangles(n) => write!(f, "{n} triangles, at most 65535 are possible"),
+            Self::Incomplete(n) => write!(f, "{n} indices leave the last primitive incomplete"),
+            Self::Index { at, index, vertices } => {
+                write!(
+                    f,
+                    "index {index} at position {at} is out of range: there are {vertices} vertices"
+                )
+            }
+            Self::Normals(n) => write!(f, "{n} normals do not match the number of vertices"),
+            Self::FaceNormals(n) => write!(f, "{n} face normals do not match the number of triangles"),
+            Self::Colors(n) => write!(f, "{n} colours do not match the number of vertices"),
+            Self::Uvs(n) => write!(f, "{n} texture coordinates do not match the number of vertices"),
+            Self::Scale(s) => write!(f, "scale {} of the positions is not positive", Scalar::from_bits(s)),
+            Self::Hierarchy(n) => write!(f, "node {n} of the hierarchy points out of range"),
+        }
+    }
+}
+
+impl core::error::Error for MeshError {}
+
+/// `Some` slice of another length than `expected`: its length.
+macro_rules! check_length {
+    ($slice:expr, $expected:expr, $error:ident) => {
+        if let Some(slice) = $slice {
+            if slice.len() != $expected {
+                return Err(MeshError::$error(slice.len()));
+            }
+        }
+    };
+}
+
+impl<'a> Mesh<'a> {
+    /// Checks the slices against each other and finds the bounds, unless they are given.
+    ///
+    /// # Errors
+    /// The first thing found wrong, with the offending index or count.
+    pub const fn new(data: MeshData<'a>) -> Result<Self, MeshError> {
+        let vertices = match data.positions {
+            Positions::Quantized { points, scale, .. } => {
+                if scale.to_bits() <= 0 {
+                    return Err(MeshError::Scale(scale.to_bits()));
+                }
+                points.len()
+            }
+            Positions::Exact(points) => points.len(),
+            Positions::Homogeneous(points) => points.len(),
+        };
+        if vertices > u16::MAX as usize {
+            return Err(MeshError::TooManyVertices(vertices));
+        }
+        let corners = match data.indices {
+            Some(indices) => {
+                let mut at = 0;
+                while at < indices.len() {
+                    if indices[at] as usize >= vertices {
+                        return Err(MeshError::Index {
+                            at,
+                            index: indices[at],
+                            vertices,
+                        });
+                    }
+                    at += 1;
+                }
+                indices.len()
+            }
+            None => vertices,
+        };
+        let (triangles, whole) = match data.topology {
+            Topology::Triangles => (corners / 3, corners % 3 == 0),
+            Topology::Quads => (corners / 4 * 2, corners % 4 == 0),
+            Topology::Strip | Topology::Fan => (corners.saturating_sub(2), corners != 1 && corners != 2),
+        };
+        if !whole {
+            return Err(MeshError::Incomplete(corners));
+        }
+        if triangles > u16::MAX as usize {
+            return Err(MeshError::TooManyTriangles(triangles));
+        }
+        check_length!(data.normals, vertices, Normals);
+        check_length!(data.colors, vertices, Colors);
+        check_length!(data.uvs, vertices, Uvs);
+        check_length!(data.face_normals, triangles, FaceNormals);
+        if let Some(nodes) = data.hierarchy {
+            let mut k = 0;
+            while k < nodes.len() {
+                let node = &nodes[k];
+                let past = node.first_triangle as usize + node.triangles as usize;
+                if node.skip as usize <= k || node.skip as usize > nodes.len() || past > triangles {
+                    return Err(MeshError::Hierarchy(k));
+                }
+                k += 1;
+            }
+        }
+        let bounds = match data.bounds {
+            Some(bounds) => bounds,
+            None => find_bounds(&data.positions),
+        };
+        Ok(Self {
+            data,
+            bounds,
+            triangles: triangles as u16,
+        })
+    }
+
+    /// [`new`](Self::new) for `const` and `static` meshes: one that is wrong does not compile.
+    ///
+    /// # Panics
+    /// When the mesh is wrong. Called at run time instead of in a constant, prefer [`new`](Self::new).
+    pub const fn constant(data: MeshData<'a>) -> Self {
+        match Self::new(data) {
+            Ok(mesh) => mesh,
+            Err(MeshError::Index { .. }) => panic!("a mesh index is out of range"),
+            Err(MeshError::Incomplete(_)) => panic!("the last primitive of a mesh is incomplete"),
+            Err(_) => panic!("mesh attributes do not match; Mesh::new tells which"),
+        }
+    }
+
+    /// Number of vertices.
+    pub const fn vertex_count(&self) -> usize {
+        match self.data.positions {
+            Positions::Quantized { points, .. } => points.len(),
+            Positions::Exact(points) => points.len(),
+            Positions::Homogeneous(points) => points.len(),
+        }
+    }
+
+    /// Number of triangles, after strips, fans and quads are taken apart.
+    pub const fn triangle_count(&self) -> usize {
+        self.triangles as usize
+    }
+
+    /// The slices.
+    pub const fn data(&self) -> &MeshData<'a> {
+        &self.data
+    }
+
+    /// Box and sphere around all vertices, in object space.
+    pub const fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
+    #[inline]
+    pub fn triangle(&self, n: usize) -> Option<[u16; 3]> {
+        if n >= self.triangles as usize {
+            return None;
+        }
+        let at = match self.data.topology {
+            Topology::Triangles => [3 * n, 3 * n + 1, 3 * n + 2],
+            // Odd triangles of a strip swap the first two corners, so that all face the same way.
+            Topology::Strip => [n + (n & 1), n + 1 - (n & 1), n + 2],
+            Topology::Fan => [0, n + 1, n + 2],
+            Topology::Quads => {
+                let first = n / 2 * 4;
+                [first, first + 1 + (n & 1), first + 2 + (n & 1)]
+            }
+        };
+        match self.data.indices {
+            Some(indices) => Some([*indices.get(at[0])?, *indices.get(at[1])?, *indices.get(at[2])?]),
+            None => Some(at.map(|k| k as u16)),
+        }
+    }
+
+    /// Position of a vertex, rounded to 16.16 and saturated; `Homogeneous` positions without their w.
+    pub fn position(&self, vertex: usize) -> Vec3 {
+        match self.data.positions {
+            Positions::Quantized { points, scale, offset } => {
+                let q = points.get(vertex).copied().unwrap_or_default();
+                let along =
+                    |q: i16| Scalar::from_bits(((i64::from(q) * i64::from(scale.to_bits()) + (1 << 14)) >> 15) as i32);
+                Vec3::new(along(q[0]), along(q[1]), along(q[2])) + offset
+            }
+            Positions::Exact(points) => points.get(vertex).copied().unwrap_or_default(),
+            Positions::Homogeneous(points) => {
+                let p = points.get(vertex).copied().unwrap_or_default();
+                Vec3::new(p[0], p[1], p[2])
+            }
+        }
+    }
+}
+
+/// Raw 16.16 coordinates of a vertex, unrounded side outwards: the box of both roundings.
+const fn raw_position(positions: &Positions<'_>, vertex: usize, up: bool) -> [i64; 3] {
+    match positions {
+        Positions::Quantized { points, scale, offset } => {
+            let o = offset.to_bits();
+            let mut p = [0; 3];
+            let mut k = 0;
+            while k < 3 {
+                let product = points[vertex][k] as i64 * scale.to_bits() as i64;
+                p[k] = ((product + if up { (1 << 15) - 1 } else { 0 }) >> 15) + o[k] as i64;
+                k += 1;
+            }
+            p
+        }
+        Positions::Exact(points) => {
+            let b = points[vertex].to_bits();
+            [b[0] as i64, b[1] as i64, b[2] as i64]
+        }
+        Positions::Homogeneous(points) => {
+            let p = points[vertex];
+            [p[0].to_bits() as i64, p[1].to_bits() as i64, p[2].to_bits() as i64]
+        }
+    }
+}
+
+/// Box and sphere of all positions, both about the middle of the box.
+const fn find_bounds(positions: &Positions<'_>) -> Bounds {
+    let vertices = match positions {
+        Positions::Quantized { points, .. } => points.len(),
+        Positions::Exact(points) => points.len(),
+        Positions::Homogeneous(points) => points.len(),
+    };
+    let mut extent = Extent::empty();
+    let mut k = 0;
+    while k < vertices {
+        extent = extent
+            .with(raw_position(positions, k, false))
+            .with(raw_position(positions, k, true));
+        k += 1;
+    }
+    let aabb = extent.aabb();
+    let mut farthest = 0;
+    let mut k = 0;
+    while k < vertices {
+        let low = distance_squared(raw_position(positions, k, false), aabb.center);
+        let high = distance_squared(raw_position(positions, k, true), aabb.center);
+        // A corner between the two roundings is nearer than one unit more.
+        let d = if low > high { low } else { high };
+        if d > farthest {
+            farthest = d;
+        }
+        k += 1;
+    }
+    let tight = sphere(aabb.center, farthest);
+    let radius = tight.radius.to_bits().saturating_add(if vertices > 0 { 2 } else { 0 });
+    Bounds {
+        aabb,
+        sphere: super::BoundingSphere {
+            center: aabb.center,
+            radius: Scalar::from_bits(radius),
+        },
+    }
+}

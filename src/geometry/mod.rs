@@ -1,0 +1,22 @@
+//! Object → screen primitive: meshes, bounds, the viewport, culling, vertex transform, lighting, clipping, projection.
+
+mod bounds;
+mod clip;
+mod frustum;
+mod light;
+mod mesh;
+mod project;
+mod transform;
+mod vertex;
+mod viewport;
+
+pub use bounds::{BoundingBox, BoundingSphere, Bounds, BoundsNode};
+pub use clip::{ClipVertex, DepthRange, Outcode, clip_triangle};
+pub use frustum::{Containment, Frustum, Plane};
+pub use light::{Light, Lit, NORMAL_ONE};
+pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
+pub(crate) use project::small;
+pub use project::{ScreenVertex, project, signed_area};
+pub use transform::{Transform, Transformed};
+pub use vertex::{Corner, Face, Varyings, VertexShader};
+pub use viewport::{Viewport, ViewportError};

@@ -1,0 +1,84 @@
+//! Clip space → screen: divide, and snap to 1/256 px.
+
+use super::clip::ClipVertex;
+use crate::math::{mul_high, mul_high_signed, reciprocal};
+
+/// A vertex on the screen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ScreenVertex {
+    /// To the right, 24.8 px from the screen's left edge; at most ±32,767 px.
+    pub x: i32,
+    /// Down, 24.8 px from the screen's top edge; at most ±32,767 px.
+    pub y: i32,
+    /// Depth, 0 near, 65,535 far.
+    pub z: u16,
+}
+
+impl ScreenVertex {
+    /// From raw 24.8 coordinates and depth.
+    pub const fn new(x: i32, y: i32, z: u16) -> Self {
+        Self { x, y, z }
+    }
+}
+
+/// Twice the signed area of a triangle: negative for a front face (counter-clockwise with y up), for y points down here.
+///
+/// # Format
+/// Differences of 24.8 coordinates are at most 2²⁴, the result below 2⁵⁰ in units of 2⁻¹⁶ px². Exact.
+#[inline]
+pub fn signed_area(a: &ScreenVertex, b: &ScreenVertex, c: &ScreenVertex) -> i64 {
+    let (bx, by) = (b.x - a.x, b.y - a.y);
+    let (cx, cy) = (c.x - a.x, c.y - a.y);
+    // 2¹⁵ · 2¹⁵ · 2 needs no more than 32 bits: nearly all triangles.
+    if small(bx) & small(by) & small(cx) & small(cy) {
+        i64::from(bx * cy - cx * by)
+    } else {
+        i64::from(bx) * i64::from(cy) - i64::from(cx) * i64::from(by)
+    }
+}
+
+/// Whether a difference of coordinates is within -2¹⁵..2¹⁵, so that products of two fit 31 bits.
+#[inline]
+pub(crate) fn small(difference: i32) -> bool {
+    (difference + (1 << 15)) as u32 >> 16 == 0
+}
+
+/// Divides by w and snaps; `None` unless w > 0.
+///
+/// x, y must lie in the guard band and z in 0..=w (both are clamped, for what rounding in the clipper may leave over).
+///
+/// # Format
+/// Positions: within 2⁻⁶ of 1/256 px, plus rounding to nearest. w is normalized to 2³¹..2³² (cut bits: 2⁻³¹), x to
+/// 2⁻²⁵ of w, and x / w = x' · (2⁶³ / w') with a reciprocal good to 2⁻²⁹: on the guard band, 2²³ steps, 2⁻⁶ in all.
+/// Depth: 65,535 z / w rounded to nearest, within 2⁻¹² of a step besides.
+#[inline]
+pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
+    if v.w <= 0 {
+        return None;
+    }
+    let shift = v.w.leading_zeros();
+    let w = ((v.w << (shift - 1)) >> 31) as u32;
+    let inv_w = reciprocal(w);
+    // w' = w 2^shift / 2³². x' keeps 7 bits of headroom for the guard band: x 2^shift / 2³⁹, below 2³¹.
+    let position = |c: i64| {
+        let c = if shift >= 39 {
+            c << (shift - 39)
+        } else {
+            c >> (39 - shift)
+        };
+        (mul_high_signed(c.clamp(-0x7FFF_FFFF, 0x7FFF_FFFF) as i32, inv_w) + 64) >> 7
+    };
+    let z = v.z.clamp(0, v.w);
+    let z = (((z << (shift - 1)) as u64) >> 31) as u32;
+    // z / w as 1.31, then 65,535 times that as 16.16, rounded.
+    let fraction = mul_high(z, inv_w) >> 15;
+    let z = (fraction.min(1 << 16) * 65_535 + (1 << 15)) >> 16;
+    Some(ScreenVertex {
+        x: position(v.x).clamp(-LIMIT, LIMIT),
+        y: position(v.y).clamp(-LIMIT, LIMIT),
+        z: z as u16,
+    })
+}
+
+/// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.
+const LIMIT: i32 = (1 << 23) - 1;

@@ -1,0 +1,187 @@
+//! The vertex stage's seam: what a shader sees of a vertex or a face, and what it hands on.
+
+use super::{Mesh, Positions};
+use crate::math::Vec3;
+
+/// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes.
+///
+/// Interpolation is linear in screen space, exact to 2⁻⁶ of a unit for values that differ by less than 2³¹ over the
+/// triangle; so keep a few fractional bits.
+pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
+    /// How many.
+    const LEN: usize;
+    /// All zero.
+    const ZERO: Self;
+}
+
+impl<const N: usize> Varyings for [i32; N] {
+    const LEN: usize = N;
+    const ZERO: Self = [0; N];
+}
+
+/// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
+/// white (colours).
+#[derive(Clone, Copy, Debug)]
+pub struct Corner<'a> {
+    mesh: &'a Mesh<'a>,
+    index: usize,
+}
+
+impl<'a> Corner<'a> {
+    pub(crate) const fn new(mesh: &'a Mesh<'a>, index: usize) -> Self {
+        Self { mesh, index }
+    }
+
+    /// Number of the vertex in its mesh.
+    pub const fn index(&self) -> usize {
+        self.index
+    }
+
+    /// Position in object space.
+    pub fn position(&self) -> Vec3 {
+        self.mesh.position(self.index)
+    }
+
+    /// Normal in object space, 2.14.
+    #[inline]
+    pub fn normal(&self) -> [i16; 3] {
+        self.mesh
+            .data()
+            .normals
+            .and_then(|n| n.get(self.index))
+            .copied()
+            .unwrap_or_default()
+    }
+
+    /// Colour: red, green, blue.
+    #[inline]
+    pub fn color(&self) -> [u8; 3] {
+        self.mesh
+            .data()
+            .colors
+            .and_then(|c| c.get(self.index))
+            .copied()
+            .unwrap_or([255; 3])
+    }
+
+    /// Texture coordinates.
+    #[inline]
+    pub fn uv(&self) -> [crate::math::Scalar; 2] {
+        self.mesh
+            .data()
+            .uvs
+            .and_then(|c| c.get(self.index))
+            .copied()
+            .unwrap_or_default()
+    }
+}
+
+/// A triangle as the vertex shader sees it.
+#[derive(Clone, Copy, Debug)]
+pub struct Face<'a> {
+    mesh: &'a Mesh<'a>,
+    triangle: usize,
+    corners: [u16; 3],
+}
+
+impl<'a> Face<'a> {
+    pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3]) -> Self {
+        Self {
+            mesh,
+            triangle,
+            corners,
+        }
+    }
+
+    /// Number of the triangle in its mesh.
+    pub const fn index(&self) -> usize {
+        self.triangle
+    }
+
+    /// The provoking vertex: the first of the triangle, which flat attributes come from.
+    pub fn provoking(&self) -> Corner<'a> {
+        Corner::new(self.mesh, usize::from(self.corners[0]))
+    }
+
+    /// Normal of the face in object space, 2.14: the mesh's own where it has face normals, computed otherwise. Zero for
+    /// a triangle without area.
+    #[inline]
+    pub fn normal(&self) -> [i16; 3] {
+        match self.mesh.data().face_normals {
+            Some(normals) => normals.get(self.triangle).copied().unwrap_or_default(),
+            None => self.computed_normal(),
+        }
+    }
+
+    fn computed_normal(&self) -> [i16; 3] {
+        if let Positions::Homogeneous(_) = self.mesh.data().positions {
+            return [0; 3];
+        }
+        let [a, b, c] = self.corners.map(|k| self.mesh.position(usize::from(k)));
+        let (ab, ac) = (edge(a, b), edge(a, c));
+        // Components below 2³⁰: differences of products below 2⁶¹. The result is scaled to 30 bits, then normalized.
+        let minor = |i: usize, j: usize| ab[i] * ac[j] - ab[j] * ac[i];
+        let n = [minor(1, 2), minor(2, 0), minor(0, 1)];
+        let widest = n.iter().fold(0, |m, v| v.unsigned_abs() | m);
+        let shift = (64 - widest.leading_zeros()).saturating_sub(30);
+        match Vec3::from_bits(n.map(|v| (v >> shift) as i32)).normalized() {
+            Some(unit) => unit.to_bits().map(|v| (v >> 2) as i16),
+            None => [0; 3],
+        }
+    }
+}
+
+/// The direction from `a` to `b`, scaled to 30 bits.
+fn edge(a: Vec3, b: Vec3) -> [i64; 3] {
+    let (a, b) = (a.to_bits(), b.to_bits());
+    let d = [0, 1, 2].map(|k: usize| i64::from(b[k]) - i64::from(a[k]));
+    let widest = d.iter().fold(0, |m, v| v.unsigned_abs() | m);
+    let zeros = widest.leading_zeros() as i32 - 34;
+    d.map(|v| if zeros >= 0 { v << zeros } else { v >> -zeros })
+}
+
+/// The programmable vertex stage: computes what is interpolated over triangles, and what is constant on them.
+///
+/// Each vertex is shaded at most once a draw while records are used; without records, as often as it is needed.
+pub trait VertexShader {
+    /// What is interpolated.
+    type Varyings: Varyings;
+
+    /// 32-bit words that a vertex's varyings take in the records.
+    const WORDS: usize = <Self::Varyings as Varyings>::LEN;
+
+    /// Whether [`displace`](Self::displace) moves vertices. Such draws are not culled by the mesh's bounds.
+    const DISPLACES: bool = false;
+
+    /// The varyings at a vertex.
+    fn vertex(&self, vertex: &Corner<'_>) -> Self::Varyings;
+
+    /// Where the vertex is to be drawn, in object space; called only if [`DISPLACES`](Self::DISPLACES).
+    fn displace(&self, vertex: &Corner<'_>) -> Vec3 {
+        vertex.position()
+    }
+
+    /// One word that is constant on the triangle, handed to the fragment stage: a packed colour, an index, anything.
+    fn face(&self, face: &Face<'_>) -> u32 {
+        let _ = face;
+        0
+    }
+
+    /// Packs varyings into `WORDS` words of a record. Override both together to save memory.
+    #[inline]
+    fn store(varyings: &Self::Varyings, words: &mut [u32]) {
+        for (word, value) in words.iter_mut().zip(varyings.as_ref()) {
+            *word = *value as u32;
+        }
+    }
+
+    /// Unpacks what [`store`](Self::store) packed.
+    #[inline]
+    fn load(words: &[u32]) -> Self::Varyings {
+        let mut varyings = Self::Varyings::ZERO;
+        for (value, word) in varyings.as_mut().iter_mut().zip(words) {
+            *value = *word as i32;
+        }
+        varyings
+    }
+}

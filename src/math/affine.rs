@@ -1,0 +1,225 @@
+//! Affine transforms: a 3×3 matrix and a translation, for placing models and cameras.
+
+use super::vector::saturate;
+use super::{Angle, ProjectionError, Scalar, Vec3};
+use core::ops::Mul;
+
+/// An affine transform of column vectors, `p -> M p + t`; entries are 16.16.
+///
+/// `a * b` applies `b` first.
+///
+/// ```
+/// use zstrip::math::{Affine, Angle, Vec3};
+/// let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_y(Angle::from_degrees(90));
+/// assert_eq!(model.transform_point(Vec3::X), Vec3::from_ints(0, 0, -4));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Affine {
+    /// Three rows of the matrix, raw 16.16, the translation in the fourth column.
+    rows: [[i32; 4]; 3],
+}
+
+const ONE: i32 = 1 << 16;
+
+impl Affine {
+    /// Leaves everything where it is.
+    pub const IDENTITY: Self = Self {
+        rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0]],
+    };
+
+    /// From the three rows of the matrix and the translation.
+    pub const fn from_rows(x: Vec3, y: Vec3, z: Vec3, translation: Vec3) -> Self {
+        let t = translation.to_bits();
+        let (x, y, z) = (x.to_bits(), y.to_bits(), z.to_bits());
+        Self {
+            rows: [
+                [x[0], x[1], x[2], t[0]],
+                [y[0], y[1], y[2], t[1]],
+                [z[0], z[1], z[2], t[2]],
+            ],
+        }
+    }
+
+    /// Moves by `offset`.
+    pub const fn translation(offset: Vec3) -> Self {
+        Self::from_rows(Vec3::X, Vec3::Y, Vec3::Z, offset)
+    }
+
+    /// Scales about the origin by the same factor on each axis.
+    pub const fn scale(factor: Scalar) -> Self {
+        Self::scale_axes(Vec3::new(factor, factor, factor))
+    }
+
+    /// Scales about the origin by a factor an axis.
+    pub const fn scale_axes(factors: Vec3) -> Self {
+        let f = factors.to_bits();
+        Self {
+            rows: [[f[0], 0, 0, 0], [0, f[1], 0, 0], [0, 0, f[2], 0]],
+        }
+    }
+
+    /// Rotates about the x axis, y towards z.
+    pub const fn rotation_x(angle: Angle) -> Self {
+        let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
+        Self {
+            rows: [[ONE, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0]],
+        }
+    }
+
+    /// Rotates about the y axis, z towards x.
+    pub const fn rotation_y(angle: Angle) -> Self {
+        let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
+        Self {
+            rows: [[c, 0, s, 0], [0, ONE, 0, 0], [-s, 0, c, 0]],
+        }
+    }
+
+    /// Rotates about the z axis, x towards y.
+    pub const fn rotation_z(angle: Angle) -> Self {
+        let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
+        Self {
+            rows: [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, ONE, 0]],
+        }
+    }
+
+    /// Rotates counter-clockwise about `axis` as seen from its tip; the identity when the axis is zero.
+    ///
+    /// # Source
+    /// Rodrigues' formula; entries within 2⁻¹⁴.
+    pub const fn rotation(axis: Vec3, angle: Angle) -> Self {
+        let Some(unit) = axis.normalized() else {
+            return Self::IDENTITY;
+        };
+        let n = unit.to_bits();
+        let (s, c) = (angle.sin_q30() >> 14, angle.cos_q30() >> 14);
+        let mut rows = [[0; 4]; 3];
+        let mut i = 0;
+        while i < 3 {
+            let mut j = 0;
+            while j < 3 {
+                let outer = (n[i] as i64 * n[j] as i64) >> 16;
+                rows[i][j] = ((outer * (ONE as i64 - c)) >> 16) as i32;
+                j += 1;
+            }
+            rows[i][i] += c as i32;
+            // The cross-product matrix: +n on (next, previous), -n on (previous, next).
+            let (next, previous) = ((i + 1) % 3, (i + 2) % 3);
+            rows[previous][next] += ((n[i] as i64 * s) >> 16) as i32;
+            rows[next][previous] -= ((n[i] as i64 * s) >> 16) as i32;
+            i += 1;
+        }
+        Self { rows }
+    }
+
+    /// The view transform of a camera at `eye` that looks at `target`: world to eye coordinates, looking along -z.
+    ///
+    /// # Errors
+    /// [`ProjectionError::DegenerateView`] if `eye == target`, or `up` is zero or parallel to the view direction.
+    pub const fn look_at(eye: Vec3, target: Vec3, up: Vec3) -> Result<Self, ProjectionError> {
+        let (e, t) = (eye.to_bits(), target.to_bits());
+        let back = Vec3::new(
+            saturate(e[0] as i64 - t[0] as i64),
+            saturate(e[1] as i64 - t[1] as i64),
+            saturate(e[2] as i64 - t[2] as i64),
+        );
+        let Some(z) = back.normalized() else {
+            return Err(ProjectionError::DegenerateView);
+        };
+        let Some(up) = up.normalized() else {
+            return Err(ProjectionError::DegenerateView);
+        };
+        let Some(x) = up.cross(z).normalized() else {
+            return Err(ProjectionError::DegenerateView);
+        };
+        let y = z.cross(x);
+        let rotation = Self::from_rows(x, y, z, Vec3::ZERO);
+        let moved = rotation.transform_vector(eye).to_bits();
+        let t = Vec3::new(
+            saturate(-(moved[0] as i64)),
+            saturate(-(moved[1] as i64)),
+            saturate(-(moved[2] as i64)),
+        );
+        Ok(Self::from_rows(x, y, z, t))
+    }
+
+    /// `self` after `first`: `const` version of `self * first`. Entries are rounded down and saturate.
+    pub const fn compose(&self, first: &Self) -> Self {
+        let mut rows = [[0; 4]; 3];
+        let mut i = 0;
+        while i < 3 {
+            let mut j = 0;
+            while j < 4 {
+                let translation = if j == 3 { self.rows[i][3] as i64 } else { 0 };
+                rows[i][j] = saturate((self.row_times(i, first.column(j)) >> 14) + translation).to_bits();
+                j += 1;
+            }
+            i += 1;
+        }
+        Self { rows }
+    }
+
+    /// The inverse of a rigid transform (rotation and translation only): the transposed matrix.
+    ///
+    /// Of a transform that scales or shears it is not the inverse.
+    pub const fn inverse_rigid(&self) -> Self {
+        let r = &self.rows;
+        let t = Vec3::from_bits([r[0][3], r[1][3], r[2][3]]);
+        let transposed = Self {
+            rows: [
+                [r[0][0], r[1][0], r[2][0], 0],
+                [r[0][1], r[1][1], r[2][1], 0],
+                [r[0][2], r[1][2], r[2][2], 0],
+            ],
+        };
+        let back = transposed.transform_vector(t).to_bits();
+        let mut rows = transposed.rows;
+        let mut i = 0;
+        while i < 3 {
+            rows[i][3] = saturate(-(back[i] as i64)).to_bits();
+            i += 1;
+        }
+        Self { rows }
+    }
+
+    /// `M p + t`, rounded down, saturating.
+    pub const fn transform_point(&self, point: Vec3) -> Vec3 {
+        let p = point.to_bits();
+        Vec3::new(
+            saturate((self.row_times(0, p) >> 14) + self.rows[0][3] as i64),
+            saturate((self.row_times(1, p) >> 14) + self.rows[1][3] as i64),
+            saturate((self.row_times(2, p) >> 14) + self.rows[2][3] as i64),
+        )
+    }
+
+    /// `M v`: a direction, which the translation does not touch.
+    pub const fn transform_vector(&self, vector: Vec3) -> Vec3 {
+        let v = vector.to_bits();
+        Vec3::new(
+            saturate(self.row_times(0, v) >> 14),
+            saturate(self.row_times(1, v) >> 14),
+            saturate(self.row_times(2, v) >> 14),
+        )
+    }
+
+    /// The rows, raw 16.16, with the translation as fourth column.
+    pub const fn to_rows(&self) -> [[i32; 4]; 3] {
+        self.rows
+    }
+
+    const fn column(&self, j: usize) -> [i32; 3] {
+        [self.rows[0][j], self.rows[1][j], self.rows[2][j]]
+    }
+
+    /// Row `i` times `v`, a quarter of it in 32.32, so that the sum of three products fits 64 bits.
+    const fn row_times(&self, i: usize, v: [i32; 3]) -> i64 {
+        let r = &self.rows[i];
+        ((r[0] as i64 * v[0] as i64) >> 2) + ((r[1] as i64 * v[1] as i64) >> 2) + ((r[2] as i64 * v[2] as i64) >> 2)
+    }
+}
+
+impl Mul for Affine {
+    type Output = Self;
+    fn mul(self, first: Self) -> Self {
+        self.compose(&first)
+    }
+}

@@ -1,0 +1,17 @@
+//! The numbers: fixed-point formats, binary angles, vectors, matrices, reciprocals.
+//!
+//! Everything here is exact integer arithmetic with a stated rounding; most of it is `const`.
+
+mod affine;
+mod angle;
+mod format;
+mod projective;
+mod reciprocal;
+mod vector;
+
+pub use affine::Affine;
+pub use angle::Angle;
+pub use format::{Scalar, Subpixel, Wide};
+pub use projective::{ProjectionError, Projective};
+pub use reciprocal::{mul_high, mul_high_signed, reciprocal};
+pub use vector::Vec3;

@@ -1,0 +1,245 @@
+//! Projective transforms: 4×4 matrices that take world or object space to clip space.
+
+use super::{Affine, Angle, Scalar, Wide};
+use core::fmt;
+use core::ops::Mul;
+
+/// A 4×4 matrix of 32.32 entries, applied to column vectors; clip space is -w ≤ x, y ≤ w, 0 ≤ z ≤ w.
+///
+/// ```
+/// use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+/// let near = Scalar::from_num(0.5);
+/// let camera = Projective::perspective(Angle::from_degrees(60), (320, 240), near, Scalar::from_num(100))?;
+/// let view = Affine::look_at(Vec3::from_ints(0, 2, 5), Vec3::ZERO, Vec3::Y)?;
+/// let mvp = camera * view * Affine::rotation_y(Angle::from_degrees(30));
+/// # let _ = mvp;
+/// # Ok::<(), zstrip::math::ProjectionError>(())
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Projective {
+    /// Four rows, raw 32.32.
+    rows: [[i64; 4]; 4],
+}
+
+/// Why a camera could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum ProjectionError {
+    /// The near plane is at or behind the eye: its distance, raw 16.16.
+    NearNotPositive(i32),
+    /// The near plane is not in front of the far plane: both distances, raw 16.16.
+    NearNotBeforeFar(i32, i32),
+    /// The field of view is not between 0 and 180 degrees.
+    FieldOfView(Angle),
+    /// One side of the aspect ratio is zero.
+    Aspect(u16, u16),
+    /// Two opposite planes of an orthographic box coincide: both, raw 16.16.
+    EmptyBox(i32, i32),
+    /// Eye and target coincide, or up is zero or parallel to the view direction.
+    DegenerateView,
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for ProjectionError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
+}
+
+impl fmt::Display for ProjectionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let scalar = Scalar::from_bits;
+        match *self {
+            Self::NearNotPositive(n) => write!(f, "near plane at {}, must be positive", scalar(n)),
+            Self::NearNotBeforeFar(n, m) => {
+                write!(
+                    f,
+                    "near plane at {} is not before the far plane at {}",
+                    scalar(n),
+                    scalar(m)
+                )
+            }
+            Self::FieldOfView(a) => write!(f, "field of view of {}/65536 turns is not within 0..32768", a.0),
+            Self::Aspect(w, h) => write!(f, "aspect ratio {w}:{h} has an empty side"),
+            Self::EmptyBox(a, b) => {
+                write!(f, "orthographic box is empty between {} and {}", scalar(a), scalar(b))
+            }
+            Self::DegenerateView => f.write_str("eye and target coincide, or up is parallel to the view"),
+        }
+    }
+}
+
+impl core::error::Error for ProjectionError {}
+
+const ONE: i64 = 1 << 32;
+
+/// `value` saturated to 64 bits.
+const fn saturate(value: i128) -> i64 {
+    if value > i64::MAX as i128 {
+        i64::MAX
+    } else if value < i64::MIN as i128 {
+        i64::MIN
+    } else {
+        value as i64
+    }
+}
+
+/// `num / den` in 32.32, rounded to nearest, of two numbers in the same format; `den != 0`.
+const fn ratio(num: i128, den: i128) -> i64 {
+    let (num, den) = if den < 0 { (-num, -den) } else { (num, den) };
+    saturate(((num << 33) + den).div_euclid(2 * den))
+}
+
+impl Projective {
+    /// Leaves everything where it is.
+    pub const IDENTITY: Self = Self {
+        rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0], [0, 0, 0, ONE]],
+    };
+
+    /// From rows of raw 32.32 bits.
+    pub const fn from_rows(rows: [[i64; 4]; 4]) -> Self {
+        Self { rows }
+    }
+
+    /// The rows, raw 32.32.
+    pub const fn to_rows(&self) -> [[i64; 4]; 4] {
+        self.rows
+    }
+
+    /// The entry in `row` and `column`; `None` outside the matrix.
+    pub fn entry(&self, row: usize, column: usize) -> Option<Wide> {
+        self.rows.get(row)?.get(column).map(|&bits| Wide::from_bits(bits))
+    }
+
+    /// A perspective camera at the origin that looks along -z.
+    ///
+    /// `field_of_view` is the vertical opening angle, `aspect` width and height of the viewport in any unit. Depth is
+    /// 0 at distance `near` and 1 at `far`.
+    ///
+    /// # Errors
+    /// When `near ≤ 0`, `near ≥ far`, the angle is not in 0..180°, or the aspect has a zero.
+    pub const fn perspective(
+        field_of_view: Angle,
+        aspect: (u16, u16),
+        near: Scalar,
+        far: Scalar,
+    ) -> Result<Self, ProjectionError> {
+        let (n, f) = (near.to_bits() as i128, far.to_bits() as i128);
+        if n <= 0 {
+            return Err(ProjectionError::NearNotPositive(near.to_bits()));
+        }
+        if n >= f {
+            return Err(ProjectionError::NearNotBeforeFar(near.to_bits(), far.to_bits()));
+        }
+        if field_of_view.0 < 2 || field_of_view.0 >= 0x8000 {
+            return Err(ProjectionError::FieldOfView(field_of_view));
+        }
+        if aspect.0 == 0 || aspect.1 == 0 {
+            return Err(ProjectionError::Aspect(aspect.0, aspect.1));
+        }
+        let half = Angle(field_of_view.0 / 2);
+        let (sin, cos) = (half.sin_q30() as i128, half.cos_q30() as i128);
+        let x = ratio(cos * aspect.1 as i128, sin * aspect.0 as i128);
+        let y = ratio(cos, sin);
+        // z = far (-ze - near) / (far - near), w = -ze: 0 on the near plane, w on the far one.
+        let a = ratio(f, n - f);
+        let b = ratio(f * n, (n - f) << 16);
+        Ok(Self {
+            rows: [[x, 0, 0, 0], [0, y, 0, 0], [0, 0, a, b], [0, 0, -ONE, 0]],
+        })
+    }
+
+    /// An orthographic camera that looks along -z: the box `left..right`, `bottom..top`, `-far..-near` fills clip space.
+    ///
+    /// # Errors
+    /// When two opposite sides coincide, or `near ≥ far`. `near` may be negative here.
+    pub const fn orthographic(
+        (left, right): (Scalar, Scalar),
+        (bottom, top): (Scalar, Scalar),
+        (near, far): (Scalar, Scalar),
+    ) -> Result<Self, ProjectionError> {
+        let (l, r) = (left.to_bits() as i128, right.to_bits() as i128);
+        let (b, t) = (bottom.to_bits() as i128, top.to_bits() as i128);
+        let (n, f) = (near.to_bits() as i128, far.to_bits() as i128);
+        if l == r {
+            return Err(ProjectionError::EmptyBox(left.to_bits(), right.to_bits()));
+        }
+        if b == t {
+            return Err(ProjectionError::EmptyBox(bottom.to_bits(), top.to_bits()));
+        }
+        if n >= f {
+            return Err(ProjectionError::NearNotBeforeFar(near.to_bits(), far.to_bits()));
+        }
+        Ok(Self {
+            rows: [
+                [ratio(2 << 16, r - l), 0, 0, ratio(-(r + l), r - l)],
+                [0, ratio(2 << 16, t - b), 0, ratio(-(t + b), t - b)],
+                [0, 0, ratio(-1 << 16, f - n), ratio(-n, f - n)],
+                [0, 0, 0, ONE],
+            ],
+        })
+    }
+
+    /// `self` after `first`: `const` version of `self * first`. Entries are rounded to nearest and saturate.
+    pub const fn compose(&self, first: &Self) -> Self {
+        let mut rows = [[0; 4]; 4];
+        let mut i = 0;
+        while i < 4 {
+            let mut j = 0;
+            while j < 4 {
+                let mut sum = 0_i128;
+                let mut k = 0;
+                while k < 4 {
+                    // 64 × 64 bits: a quarter of each product keeps the sum of four within 128.
+                    sum += (self.rows[i][k] as i128 * first.rows[k][j] as i128) >> 2;
+                    k += 1;
+                }
+                rows[i][j] = saturate((sum + (1 << 29)) >> 30);
+                j += 1;
+            }
+            i += 1;
+        }
+        Self { rows }
+    }
+
+    /// `self` after an affine transform: `const` version of `self * model`.
+    pub const fn compose_affine(&self, model: &Affine) -> Self {
+        self.compose(&Self::from_affine(model))
+    }
+
+    /// The same transform as a 4×4 matrix.
+    pub const fn from_affine(model: &Affine) -> Self {
+        let a = model.to_rows();
+        let mut rows = [[0; 4], [0; 4], [0; 4], [0, 0, 0, ONE]];
+        let mut i = 0;
+        while i < 3 {
+            let mut j = 0;
+            while j < 4 {
+                rows[i][j] = (a[i][j] as i64) << 16;
+                j += 1;
+            }
+            i += 1;
+        }
+        Self { rows }
+    }
+}
+
+impl Mul for Projective {
+    type Output = Self;
+    fn mul(self, first: Self) -> Self {
+        self.compose(&first)
+    }
+}
+
+impl Mul<Affine> for Projective {
+    type Output = Self;
+    fn mul(self, first: Affine) -> Self {
+        self.compose_affine(&first)
+    }
+}
+
+impl From<Affine> for Projective {
+    fn from(model: Affine) -> Self {
+        Self::from_affine(&model)
+    }
+}

@@ -1,0 +1,182 @@
+//! Three-dimensional vectors in 16.16.
+
+use super::Scalar;
+use core::ops::{Add, Mul, Neg, Sub};
+
+/// A point or direction: three [`Scalar`]s. Arithmetic saturates, so nothing here can panic or wrap.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Vec3 {
+    /// Right.
+    pub x: Scalar,
+    /// Up.
+    pub y: Scalar,
+    /// Towards the viewer.
+    pub z: Scalar,
+}
+
+/// `value`, a 16.16 in 64 bits, saturated to 32.
+pub(super) const fn saturate(value: i64) -> Scalar {
+    if value > i32::MAX as i64 {
+        Scalar::MAX
+    } else if value < i32::MIN as i64 {
+        Scalar::MIN
+    } else {
+        Scalar::from_bits(value as i32)
+    }
+}
+
+impl Vec3 {
+    /// The origin.
+    pub const ZERO: Self = Self::new(Scalar::ZERO, Scalar::ZERO, Scalar::ZERO);
+    /// Unit vector to the right.
+    pub const X: Self = Self::new(Scalar::ONE, Scalar::ZERO, Scalar::ZERO);
+    /// Unit vector up.
+    pub const Y: Self = Self::new(Scalar::ZERO, Scalar::ONE, Scalar::ZERO);
+    /// Unit vector towards the viewer.
+    pub const Z: Self = Self::new(Scalar::ZERO, Scalar::ZERO, Scalar::ONE);
+
+    /// From components.
+    pub const fn new(x: Scalar, y: Scalar, z: Scalar) -> Self {
+        Self { x, y, z }
+    }
+
+    /// From whole numbers.
+    pub const fn from_ints(x: i16, y: i16, z: i16) -> Self {
+        Self::from_bits([(x as i32) << 16, (y as i32) << 16, (z as i32) << 16])
+    }
+
+    /// From thousandths: a readable way to write constants, rounded down to 2⁻¹⁶.
+    pub const fn from_milli(x: i32, y: i32, z: i32) -> Self {
+        Self::new(
+            saturate(((x as i64) << 16).div_euclid(1000)),
+            saturate(((y as i64) << 16).div_euclid(1000)),
+            saturate(((z as i64) << 16).div_euclid(1000)),
+        )
+    }
+
+    /// From raw 16.16 bits.
+    pub const fn from_bits(bits: [i32; 3]) -> Self {
+        Self::new(
+            Scalar::from_bits(bits[0]),
+            Scalar::from_bits(bits[1]),
+            Scalar::from_bits(bits[2]),
+        )
+    }
+
+    /// Raw 16.16 bits.
+    pub const fn to_bits(self) -> [i32; 3] {
+        [self.x.to_bits(), self.y.to_bits(), self.z.to_bits()]
+    }
+
+    /// Dot product, rounded down to 2⁻¹⁶.
+    pub const fn dot(self, other: Self) -> Scalar {
+        let (a, b) = (self.to_bits(), other.to_bits());
+        // Each product is quartered before the sum of three can leave 64 bits.
+        let sum = ((a[0] as i64 * b[0] as i64) >> 2)
+            + ((a[1] as i64 * b[1] as i64) >> 2)
+            + ((a[2] as i64 * b[2] as i64) >> 2);
+        saturate(sum >> 14)
+    }
+
+    /// Cross product, right-handed, rounded down to 2⁻¹⁶.
+    pub const fn cross(self, other: Self) -> Self {
+        let (a, b) = (self.to_bits(), other.to_bits());
+        Self::new(
+            minor(a[1], b[2], a[2], b[1]),
+            minor(a[2], b[0], a[0], b[2]),
+            minor(a[0], b[1], a[1], b[0]),
+        )
+    }
+
+    /// Length, rounded down to 2⁻¹⁶; saturates.
+    pub const fn length(self) -> Scalar {
+        let root = self.length_bits();
+        if root > i32::MAX as u64 {
+            Scalar::MAX
+        } else {
+            Scalar::from_bits(root as i32)
+        }
+    }
+
+    /// The vector of length 1 in the same direction, each component within 2⁻¹⁵; `None` for the zero vector.
+    pub const fn normalized(self) -> Option<Self> {
+        let bits = self.to_bits();
+        // Short vectors are scaled up first, so that the length keeps 30 significant bits.
+        let widest = bits[0].unsigned_abs() | bits[1].unsigned_abs() | bits[2].unsigned_abs();
+        if widest == 0 {
+            return None;
+        }
+        let shift = widest.leading_zeros();
+        let a = [
+            (bits[0] as i64) << shift,
+            (bits[1] as i64) << shift,
+            (bits[2] as i64) << shift,
+        ];
+        // |a| <= 2³², so the squares are taken of a / 4.
+        let b = [a[0] >> 2, a[1] >> 2, a[2] >> 2];
+        let length = ((b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) as u64).isqrt() as i64;
+        if length == 0 {
+            return None;
+        }
+        Some(Self::new(
+            saturate((b[0] << 16) / length),
+            saturate((b[1] << 16) / length),
+            saturate((b[2] << 16) / length),
+        ))
+    }
+
+    const fn length_bits(self) -> u64 {
+        let a = self.to_bits();
+        ((a[0] as i64 * a[0] as i64) as u64 + (a[1] as i64 * a[1] as i64) as u64 + (a[2] as i64 * a[2] as i64) as u64)
+            .isqrt()
+    }
+}
+
+/// `a b - c d` of 16.16 numbers: the products are halved so that the difference fits 64 bits.
+const fn minor(a: i32, b: i32, c: i32, d: i32) -> Scalar {
+    saturate((((a as i64 * b as i64) >> 1) - ((c as i64 * d as i64) >> 1)) >> 15)
+}
+
+impl Add for Vec3 {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self::new(
+            self.x.saturating_add(other.x),
+            self.y.saturating_add(other.y),
+            self.z.saturating_add(other.z),
+        )
+    }
+}
+
+impl Sub for Vec3 {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self::new(
+            self.x.saturating_sub(other.x),
+            self.y.saturating_sub(other.y),
+            self.z.saturating_sub(other.z),
+        )
+    }
+}
+
+impl Neg for Vec3 {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self::new(
+            self.x.saturating_neg(),
+            self.y.saturating_neg(),
+            self.z.saturating_neg(),
+        )
+    }
+}
+
+impl Mul<Scalar> for Vec3 {
+    type Output = Self;
+    fn mul(self, factor: Scalar) -> Self {
+        Self::new(
+            self.x.saturating_mul(factor),
+            self.y.saturating_mul(factor),
+            self.z.saturating_mul(factor),
+        )
+    }
+}

@@ -1,0 +1,480 @@
+//! The loop that makes a frame: bands of strips, recorded as large as the records allow, replayed strip by strip.
+
+use super::record::{Layout, Records};
+use super::sink::{OnDisplay, StripPixels, StripSink};
+use super::{Framebuffer, Stats, Strip};
+use crate::fragment::PixelFormat;
+use crate::geometry::{Viewport, ViewportError};
+use crate::pipeline::{Phase, Scene, Target};
+use core::fmt;
+use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::geometry::{Point, Size};
+use embedded_graphics_core::primitives::Rectangle;
+
+/// The memory a renderer works with, lent by the caller.
+#[derive(Debug)]
+pub struct Buffers<'b, P: PixelFormat> {
+    /// Colours of a strip: as many whole rows as fit make its height, which `depth` limits as well.
+    pub color: &'b mut [P::Raw],
+    /// Depths of a strip.
+    pub depth: &'b mut [u16],
+    /// Records; may be empty. See [`records_len`](super::records_len).
+    pub records: &'b mut [u32],
+}
+
+/// Why a renderer could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum RendererError {
+    /// The screen is empty or too large.
+    Screen(ViewportError),
+    /// The colour buffer does not hold one row: how many pixels it has, and how many a row has.
+    ColorTooShort(usize, u16),
+    /// The depth buffer does not hold one row: how many pixels it has, and how many a row has.
+    DepthTooShort(usize, u16),
+}
+
+impl fmt::Display for RendererError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Screen(error) => write!(f, "screen: {error}"),
+            Self::ColorTooShort(has, width) => write!(f, "colour buffer of {has} pixels, one row has {width}"),
+            Self::DepthTooShort(has, width) => write!(f, "depth buffer of {has} pixels, one row has {width}"),
+        }
+    }
+}
+
+impl core::error::Error for RendererError {}
+
+/// Why a frame ended early.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum FrameError<E = core::convert::Infallible> {
+    /// The sink, or the display, failed.
+    Sink(E),
+    /// The closure drew something else than in its call before: the number of the first draw that differed.
+    SceneChanged(u16),
+}
+
+impl<E: fmt::Display> fmt::Display for FrameError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sink(error) => write!(f, "display: {error}"),
+            Self::SceneChanged(draw) => write!(f, "draw {draw} differs from the call before in the same frame"),
+        }
+    }
+}
+
+impl<E: fmt::Debug + fmt::Display> core::error::Error for FrameError<E> {}
+
+/// What all renderers share: the screen, its strips, depth and records.
+#[derive(Debug)]
+struct Engine<'b> {
+    viewport: Viewport,
+    strip_rows: u16,
+    depth: &'b mut [u16],
+    records: &'b mut [u32],
+}
+
+impl<'b> Engine<'b> {
+    fn new(
+        screen: (u16, u16),
+        rows: usize,
+        depth: &'b mut [u16],
+        records: &'b mut [u32],
+    ) -> Result<Self, RendererError> {
+        let viewport = Viewport::full(screen.0, screen.1).map_err(RendererError::Screen)?;
+        let Some(depth_rows) = depth.len().checked_div(usize::from(screen.0)).filter(|rows| *rows > 0) else {
+            return Err(RendererError::DepthTooShort(depth.len(), screen.0));
+        };
+        let strip_rows = rows.min(depth_rows).min(usize::from(screen.1)) as u16;
+        Ok(Self {
+            viewport,
+            strip_rows,
+            depth,
+            records,
+        })
+    }
+
+    fn screen(&self) -> (u16, u16) {
+        (self.viewport.width(), self.viewport.height())
+    }
+}
+
+/// Where a frame is: which strip comes next, and which band is in the records.
+#[derive(Clone, Copy, Debug)]
+struct Progress {
+    /// First row of the next strip.
+    row: u16,
+    /// Rows of the band in the records; none if it is used up.
+    band: (u16, u16),
+    /// Strips to try to record at once.
+    strips: u16,
+    layout: Layout,
+    draws: u16,
+    stats: Stats,
+}
+
+impl Progress {
+    fn new() -> Self {
+        Self {
+            row: 0,
+            band: (0, 0),
+            strips: u16::MAX,
+            layout: Layout::default(),
+            draws: 0,
+            stats: Stats::default(),
+        }
+    }
+}
+
+impl Engine<'_> {
+    /// Calls the closure in a phase; without a framebuffer while recording.
+    fn walk<F: Framebuffer>(
+        &mut self,
+        progress: &mut Progress,
+        phase: Phase,
+        band: (u16, u16),
+        framebuffer: Option<&mut F>,
+        draw: &mut impl FnMut(&mut Scene<'_, F>),
+    ) -> Option<u16> {
+        let rows = i32::from(progress.row)..i32::from(progress.row + self.rows_at(progress.row));
+        let mut scene = Scene {
+            screen: self.screen(),
+            viewport: self.viewport,
+            phase,
+            records: Records::resume(self.records, progress.layout),
+            strip_rows: self.strip_rows,
+            band: i32::from(band.0)..i32::from(band.1),
+            target: framebuffer.map(|framebuffer| Target {
+                framebuffer,
+                depth: self.depth,
+                rows,
+            }),
+            stats: progress.stats,
+            draws: 0,
+            changed: None,
+        };
+        scene.stats.walks += 1;
+        draw(&mut scene);
+        let (draws, changed) = (scene.draws, scene.changed);
+        progress.layout = scene.records.layout();
+        progress.stats = scene.stats;
+        if phase == Phase::Record {
+            progress.draws = draws;
+        }
+        match phase {
+            Phase::Replay if changed.is_none() && draws != progress.draws => Some(draws.min(progress.draws)),
+            _ => changed,
+        }
+    }
+
+    /// Height of the strip that begins at `row`.
+    fn rows_at(&self, row: u16) -> u16 {
+        self.strip_rows.min(self.viewport.height() - row)
+    }
+
+    /// Records a band that begins at the current strip: all the rest of the screen, or half of what was tried last,
+    /// until it fits. `false` if not even one strip does.
+    fn record<F: Framebuffer>(&mut self, progress: &mut Progress, draw: &mut impl FnMut(&mut Scene<'_, F>)) -> bool {
+        let height = self.viewport.height();
+        let left = (height - progress.row).div_ceil(self.strip_rows);
+        let mut strips = progress.strips.min(left);
+        loop {
+            let end = (u32::from(progress.row) + u32::from(strips) * u32::from(self.strip_rows)).min(u32::from(height));
+            let band = (progress.row, end as u16);
+            let mut records = Records::resume(self.records, progress.layout);
+            records.begin_band(usize::from(strips));
+            progress.layout = records.layout();
+            // Records that cannot even hold the lists need no walk to overflow.
+            if !records.overflowed() {
+                self.walk::<F>(progress, Phase::Record, band, None, draw);
+            }
+            let overflowed = Records::resume(self.records, progress.layout).overflowed();
+            if !overflowed {
+                progress.band = band;
+                progress.strips = strips;
+                return true;
+            }
+            progress.stats.overflows += 1;
+            if strips <= 1 {
+                progress.strips = 1;
+                return false;
+            }
+            strips /= 2;
+        }
+    }
+
+    /// Draws the next strip into rows of `framebuffer`, which hold the background already; `None` after the last one,
+    /// otherwise its first row and height.
+    fn next_strip<F: Framebuffer>(
+        &mut self,
+        progress: &mut Progress,
+        framebuffer: &mut F,
+        draw: &mut impl FnMut(&mut Scene<'_, F>),
+    ) -> Result<Option<(u16, u16)>, u16> {
+        let row = progress.row;
+        if row >= self.viewport.height() {
+            return Ok(None);
+        }
+        let rows = self.rows_at(row);
+        let recorded = row < progress.band.1 || self.record(progress, draw);
+        let pixels = usize::from(self.viewport.width()) * usize::from(rows);
+        if let Some(depth) = self.depth.get_mut(..pixels) {
+            depth.fill(u16::MAX);
+        }
+        let changed = if recorded {
+            let strip = (row - progress.band.0).checked_div(self.strip_rows).unwrap_or(0);
+            let mut records = Records::resume(self.records, progress.layout);
+            records.begin_replay(usize::from(strip));
+            progress.layout = records.layout();
+            self.walk(progress, Phase::Replay, progress.band, Some(framebuffer), draw)
+        } else {
+            progress.stats.direct_strips += 1;
+            progress.layout = Layout::default();
+            self.walk(progress, Phase::Direct, (row, row + rows), Some(framebuffer), draw)
+        };
+        if let Some(draw) = changed {
+            return Err(draw);
+        }
+        progress.row += rows;
+        progress.stats.strips += 1;
+        Ok(Some((row, rows)))
+    }
+}
+
+/// Draws frames into strips.
+///
+/// ```
+/// use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors};
+/// use zstrip::fragment::Flat;
+/// use zstrip::geometry::{Mesh, MeshData, Positions};
+/// use zstrip::math::{Projective, Vec3};
+/// use zstrip::output::{Buffers, Renderer, StripPixels};
+///
+/// static CORNERS: [Vec3; 3] = [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(0, 1, 0)];
+/// static TRIANGLE: Mesh<'static> = Mesh::constant(MeshData::new(Positions::Exact(&CORNERS)));
+///
+/// let (mut color, mut depth, mut records) = ([0; 320 * 16], [0; 320 * 16], [0; 64]);
+/// let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
+/// let mut renderer = Renderer::<Rgb565>::new((320, 240), buffers)?;
+/// let mut strips = 0;
+/// let sink = |_: &StripPixels<Rgb565>| Ok::<(), core::convert::Infallible>(strips += 1);
+/// let stats = renderer.frame_to(sink, Rgb565::BLACK, |scene| {
+///     scene.draw(&TRIANGLE, &Projective::IDENTITY, &Flat::unlit(Rgb888::CSS_ORANGE));
+/// }).unwrap();
+/// assert_eq!((strips, stats.drawn), (15, 1));
+/// # Ok::<(), zstrip::output::RendererError>(())
+/// ```
+#[derive(Debug)]
+pub struct Renderer<'b, P: PixelFormat> {
+    engine: Engine<'b>,
+    color: &'b mut [P::Raw],
+}
+
+impl<'b, P: PixelFormat> Renderer<'b, P> {
+    /// For a screen of `(width, height)` pixels; the strip is as high as the buffers allow.
+    ///
+    /// # Errors
+    /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or a buffer does not hold one row.
+    pub fn new(screen: (u16, u16), buffers: Buffers<'b, P>) -> Result<Self, RendererError> {
+        let Buffers { color, depth, records } = buffers;
+        let rows = color.len().checked_div(usize::from(screen.0)).unwrap_or(1);
+        if rows == 0 {
+            return Err(RendererError::ColorTooShort(color.len(), screen.0));
+        }
+        Ok(Self {
+            engine: Engine::new(screen, rows, depth, records)?,
+            color,
+        })
+    }
+
+    /// Rows of a strip; the last one may have fewer.
+    pub const fn strip_rows(&self) -> u16 {
+        self.engine.strip_rows
+    }
+
+    /// Draws a frame on an embedded-graphics display.
+    ///
+    /// `draw` draws the whole scene. It is called several times a frame, and must draw the same each time.
+    ///
+    /// # Errors
+    /// The display's own, or [`FrameError::SceneChanged`]. The next frame starts afresh.
+    pub fn frame<D: DrawTarget<Color = P::Color>>(
+        &mut self,
+        display: &mut D,
+        background: P::Color,
+        draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    ) -> Result<Stats, FrameError<D::Error>> {
+        self.frame_to(OnDisplay(display), background, draw)
+    }
+
+    /// Draws a frame, each finished strip going to a sink.
+    ///
+    /// # Errors
+    /// The sink's own, or [`FrameError::SceneChanged`]. The next frame starts afresh.
+    pub fn frame_to<K: StripSink<P>>(
+        &mut self,
+        mut sink: K,
+        background: P::Color,
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    ) -> Result<Stats, FrameError<K::Error>> {
+        let mut frame = self.begin(background);
+        loop {
+            match frame.next_strip(&mut draw) {
+                Ok(Some(strip)) => sink.strip(&strip).map_err(FrameError::Sink)?,
+                Ok(None) => return Ok(frame.stats()),
+                Err(FrameError::SceneChanged(draw)) => return Err(FrameError::SceneChanged(draw)),
+            }
+        }
+    }
+
+    /// Starts a frame whose strips the caller pulls.
+    pub fn begin(&mut self, background: P::Color) -> Frame<'_, 'b, P> {
+        Frame {
+            renderer: self,
+            background: P::from_color(background),
+            progress: Progress::new(),
+        }
+    }
+}
+
+/// A frame whose strips are pulled one by one: for DMA, async code, or any loop of one's own.
+///
+/// ```
+/// # use embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+/// # use zstrip::output::{Buffers, Renderer, Rgb565Be};
+/// # let (mut color, mut depth) = ([0; 64 * 8], [0; 64 * 8]);
+/// # let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
+/// # let mut renderer = Renderer::<Rgb565Be>::new((64, 64), buffers)?;
+/// # let mut sent = 0;
+/// # let mut spi_write = |bytes: &[u8]| sent += bytes.len();
+/// let mut frame = renderer.begin(Rgb565::BLACK);
+/// while let Some(strip) = frame.next_strip(|scene| { /* scene.draw(...) */ })? {
+///     spi_write(strip.bytes());
+/// }
+/// # assert_eq!(sent, 64 * 64 * 2);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Frame<'r, 'b, P: PixelFormat> {
+    renderer: &'r mut Renderer<'b, P>,
+    background: P::Raw,
+    progress: Progress,
+}
+
+impl<P: PixelFormat> Frame<'_, '_, P> {
+    /// Draws the next strip; `None` after the last.
+    ///
+    /// # Errors
+    /// [`FrameError::SceneChanged`] if `draw` drew something else than before in this frame.
+    pub fn next_strip(
+        &mut self,
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    ) -> Result<Option<StripPixels<'_, P>>, FrameError> {
+        let Renderer { engine, color } = &mut *self.renderer;
+        strip_into(engine, &mut self.progress, color, self.background, &mut draw)
+    }
+
+    /// The same into a buffer of the caller's, so that one strip can be drawn while another is on its way.
+    ///
+    /// # Errors
+    /// As [`next_strip`](Self::next_strip). A buffer shorter than the renderer's own strip gets no pixels behind its end,
+    /// and the strip says how many there are.
+    pub fn next_strip_in<'c>(
+        &mut self,
+        color: &'c mut [P::Raw],
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
+        strip_into(
+            &mut self.renderer.engine,
+            &mut self.progress,
+            color,
+            self.background,
+            &mut draw,
+        )
+    }
+
+    /// What was done so far.
+    pub const fn stats(&self) -> Stats {
+        self.progress.stats
+    }
+}
+
+/// Draws the next strip of a frame into `color`.
+fn strip_into<'c, P: PixelFormat>(
+    engine: &mut Engine<'_>,
+    progress: &mut Progress,
+    color: &'c mut [P::Raw],
+    background: P::Raw,
+    draw: &mut impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+) -> Result<Option<StripPixels<'c, P>>, FrameError> {
+    let (width, height) = engine.screen();
+    if progress.row >= height {
+        return Ok(None);
+    }
+    let pixels = usize::from(width) * usize::from(engine.rows_at(progress.row));
+    let length = pixels.min(color.len());
+    let color = color.get_mut(..length).unwrap_or_default();
+    color.fill(background);
+    let mut strip = Strip::<P>::new(&mut *color, width, u32::from(progress.row));
+    let drawn = engine
+        .next_strip(progress, &mut strip, draw)
+        .map_err(FrameError::SceneChanged)?;
+    Ok(drawn.map(|(row, rows)| {
+        let area = Rectangle::new(
+            Point::new(0, i32::from(row)),
+            Size::new(u32::from(width), u32::from(rows)),
+        );
+        StripPixels::new(area, color)
+    }))
+}
+
+/// Draws frames straight into a framebuffer, with a depth buffer as high as the screen or only a strip of it.
+#[derive(Debug)]
+pub struct FramebufferRenderer<'b> {
+    engine: Engine<'b>,
+}
+
+impl<'b> FramebufferRenderer<'b> {
+    /// For a screen of `(width, height)` pixels; as many rows as `depth` holds are drawn at a time.
+    ///
+    /// # Errors
+    /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or `depth` does not hold one row.
+    pub fn new(screen: (u16, u16), depth: &'b mut [u16], records: &'b mut [u32]) -> Result<Self, RendererError> {
+        Ok(Self {
+            engine: Engine::new(screen, usize::MAX, depth, records)?,
+        })
+    }
+
+    /// Draws a frame over `background`, or over what is there.
+    ///
+    /// # Errors
+    /// [`FrameError::SceneChanged`] if `draw` draws something else in a later call.
+    pub fn frame<F: Framebuffer>(
+        &mut self,
+        framebuffer: &mut F,
+        background: Option<<F::Format as PixelFormat>::Color>,
+        mut draw: impl FnMut(&mut Scene<'_, F>),
+    ) -> Result<Stats, FrameError> {
+        let (width, height) = self.engine.screen();
+        if let Some(color) = background {
+            for y in 0..height {
+                let row = framebuffer.row(u32::from(y));
+                let length = row.len().min(usize::from(width));
+                row.get_mut(..length)
+                    .unwrap_or_default()
+                    .fill(F::Format::from_color(color));
+            }
+        }
+        let mut progress = Progress::new();
+        while self
+            .engine
+            .next_strip(&mut progress, framebuffer, &mut draw)
+            .map_err(FrameError::SceneChanged)?
+            .is_some()
+        {}
+        Ok(progress.stats)
+    }
+}

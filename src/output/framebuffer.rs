@@ -1,0 +1,128 @@
+//! What is drawn into: anything that has rows of pixels.
+
+use crate::fragment::PixelFormat;
+use core::fmt;
+
+/// Rows of pixels to draw into.
+///
+/// The rasterizer asks for a row once a span, draws into what it gets, and skips what lies behind its end. A row outside
+/// of the buffer is an empty slice.
+pub trait Framebuffer {
+    /// The format of the pixels.
+    type Format: PixelFormat;
+
+    /// Row `y` of the screen, from column 0.
+    fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
+}
+
+/// A horizontal strip of the screen.
+#[derive(Debug)]
+pub struct Strip<'a, P: PixelFormat> {
+    pixels: &'a mut [P::Raw],
+    width: usize,
+    first_row: u32,
+}
+
+impl<'a, P: PixelFormat> Strip<'a, P> {
+    /// Rows of `width` px from `first_row` on, one after the other in `pixels`.
+    pub const fn new(pixels: &'a mut [P::Raw], width: u16, first_row: u32) -> Self {
+        Self {
+            pixels,
+            width: width as usize,
+            first_row,
+        }
+    }
+}
+
+impl<P: PixelFormat> Framebuffer for Strip<'_, P> {
+    type Format = P;
+
+    #[inline]
+    fn row(&mut self, y: u32) -> &mut [P::Raw] {
+        let start = y.wrapping_sub(self.first_row) as usize * self.width;
+        self.pixels.get_mut(start..start + self.width).unwrap_or_default()
+    }
+}
+
+/// A framebuffer in a slice, its rows `stride` pixels apart: a whole screen, or a window in a larger one.
+#[derive(Debug)]
+pub struct FrameSlice<'a, P: PixelFormat> {
+    pixels: &'a mut [P::Raw],
+    width: usize,
+    height: u32,
+    stride: usize,
+}
+
+/// What is wrong with a framebuffer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum FramebufferError {
+    /// The slice is shorter than its rows need: how many pixels it has, and how many it needs.
+    TooShort(usize, usize),
+    /// The stride is below the width: stride and width.
+    Stride(usize, u16),
+}
+
+impl fmt::Display for FramebufferError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::TooShort(has, needs) => write!(f, "framebuffer of {has} pixels, {needs} are needed"),
+            Self::Stride(stride, width) => write!(f, "stride of {stride} pixels is below the width of {width}"),
+        }
+    }
+}
+
+impl core::error::Error for FramebufferError {}
+
+impl<'a, P: PixelFormat> FrameSlice<'a, P> {
+    /// A whole screen without gaps between its rows.
+    ///
+    /// # Errors
+    /// When the slice is too short.
+    pub const fn new(pixels: &'a mut [P::Raw], width: u16, height: u16) -> Result<Self, FramebufferError> {
+        Self::with_stride(pixels, width, height, width as usize)
+    }
+
+    /// Rows of `width` pixels that begin `stride` pixels apart.
+    ///
+    /// # Errors
+    /// When the slice is too short or the stride is below the width.
+    pub const fn with_stride(
+        pixels: &'a mut [P::Raw],
+        width: u16,
+        height: u16,
+        stride: usize,
+    ) -> Result<Self, FramebufferError> {
+        if stride < width as usize {
+            return Err(FramebufferError::Stride(stride, width));
+        }
+        let needs = if height == 0 {
+            0
+        } else {
+            (height as usize - 1)
+                .saturating_mul(stride)
+                .saturating_add(width as usize)
+        };
+        if pixels.len() < needs {
+            return Err(FramebufferError::TooShort(pixels.len(), needs));
+        }
+        Ok(Self {
+            pixels,
+            width: width as usize,
+            height: height as u32,
+            stride,
+        })
+    }
+}
+
+impl<P: PixelFormat> Framebuffer for FrameSlice<'_, P> {
+    type Format = P;
+
+    #[inline]
+    fn row(&mut self, y: u32) -> &mut [P::Raw] {
+        let start = y as usize * self.stride;
+        let end = if y < self.height { start + self.width } else { start };
+        self.pixels.get_mut(start..end).unwrap_or_default()
+    }
+}

@@ -1,0 +1,341 @@
+//! Records: what the first walk over a scene leaves for the strips, in a slice of words that the caller lends.
+//!
+//! ```text
+//!  strips   draw 0              draw 1                 free              triangles, newest first
+//! ┌───────┬────────┬──────────┬────────┬─────────────┬───────────── ─ ─ ┬──────┬──────┬──────┐
+//! │ lists │ header │ vertices │ header │ vertices    │ →             ←  │  2   │  1   │  0   │
+//! └───────┴────────┴──────────┴────────┴─────────────┴───────────── ─ ─ ┴──────┴──────┴──────┘
+//! ```
+//! A strip's word holds the first and the last of its triangles, which are linked through their records in drawing
+//! order. Each triangle is in one list at a time: recorded into the list of the topmost strip it touches, it moves on to
+//! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
+
+use crate::geometry::{Outcode, ScreenVertex};
+
+/// No triangle.
+const NONE: u16 = u16::MAX;
+/// Words of a draw's header: fingerprint, first word of its vertices, number of its last triangle + 1, next header.
+const HEADER: usize = 4;
+/// Words of a triangle: two vertices; the third and the link; the word of its face.
+const TRIANGLE: usize = 3;
+/// Words of a vertex beside its varyings.
+pub(crate) const VERTEX: usize = 2;
+
+/// Words of records that a scene needs at most when nothing is clipped: `draws` calls with `vertices` vertices and
+/// `triangles` visible triangles in all, and `varying_words` words of varyings a vertex
+/// ([`VertexShader::WORDS`](crate::geometry::VertexShader::WORDS)).
+///
+/// With less, the frame takes more walks over the scene; with none, one a strip.
+pub const fn records_len(
+    strips: usize,
+    draws: usize,
+    vertices: usize,
+    varying_words: usize,
+    triangles: usize,
+) -> usize {
+    strips + HEADER * draws + (VERTEX + varying_words) * vertices + TRIANGLE * triangles
+}
+
+/// A vertex in the records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Slot {
+    /// Not shaded yet.
+    Unshaded,
+    /// On the screen.
+    Screen(ScreenVertex),
+    /// Outside of the planes in its code: has to be clipped, and so cannot be projected.
+    Outside(Outcode),
+}
+
+/// The x that marks a vertex that is not on the screen; those that are stay above it. Its low byte is the outcode, or
+/// [`UNSHADED`].
+const OFF_SCREEN: u32 = 0x8000_0000;
+const UNSHADED: u32 = OFF_SCREEN | 0x80;
+
+impl Slot {
+    /// Two words: x and y in 24 bits each, above the high and the low byte of z.
+    pub(crate) fn pack(self) -> [u32; 2] {
+        match self {
+            Self::Unshaded => [UNSHADED, 0],
+            Self::Screen(v) => [
+                (v.x as u32) << 8 | u32::from(v.z >> 8),
+                (v.y as u32) << 8 | u32::from(v.z & 0xFF),
+            ],
+            Self::Outside(code) => [OFF_SCREEN | u32::from(code.0), 0],
+        }
+    }
+
+    #[inline]
+    pub(crate) fn unpack([a, b]: [u32; 2]) -> Self {
+        if a == UNSHADED {
+            Self::Unshaded
+        } else if a & !0xFF == OFF_SCREEN {
+            Self::Outside(Outcode(a as u8))
+        } else {
+            Self::Screen(ScreenVertex::new(
+                a as i32 >> 8,
+                b as i32 >> 8,
+                ((a & 0xFF) << 8 | (b & 0xFF)) as u16,
+            ))
+        }
+    }
+}
+
+/// A triangle in the records.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct TriangleRecord {
+    pub(crate) corners: [u16; 3],
+    pub(crate) face: u32,
+    number: u16,
+}
+
+/// The words, and where in them things are.
+#[derive(Debug)]
+pub(crate) struct Records<'a> {
+    words: &'a mut [u32],
+    layout: Layout,
+}
+
+/// Positions in the words; kept by the frame from one walk to the next.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Layout {
+    /// First free word.
+    front: usize,
+    /// Triangles recorded.
+    triangles: u16,
+    /// The current draw: its header, its first vertex, how many there are, and words a vertex.
+    header: usize,
+    vertices: usize,
+    vertex_count: u16,
+    stride: usize,
+    overflow: bool,
+    /// Replay: the strip, its next triangle, and where the last one that moves on was put in the next strip's list.
+    strip: usize,
+    next: u16,
+    moved: u16,
+    /// First word behind the lists of the strips.
+    lists: usize,
+}
+
+impl<'a> Records<'a> {
+    /// Takes up the words where a walk left them.
+    pub(crate) fn resume(words: &'a mut [u32], layout: Layout) -> Self {
+        Self { words, layout }
+    }
+
+    pub(crate) fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    fn get(&self, at: usize) -> u32 {
+        self.words.get(at).copied().unwrap_or(0)
+    }
+
+    fn set(&mut self, at: usize, value: u32) {
+        if let Some(word) = self.words.get_mut(at) {
+            *word = value;
+        }
+    }
+
+    /// Empties the records and starts lists for as many strips.
+    pub(crate) fn begin_band(&mut self, strips: usize) {
+        self.layout = Layout {
+            front: strips,
+            lists: strips,
+            ..Layout::default()
+        };
+        match self.words.get_mut(..strips) {
+            Some(lists) => lists.fill(u32::from(NONE) << 16 | u32::from(NONE)),
+            None => self.layout.overflow = true,
+        }
+    }
+
+    /// Whether something did not fit, so that the walk is in vain.
+    pub(crate) fn overflowed(&self) -> bool {
+        self.layout.overflow
+    }
+
+    /// Words that are still free.
+    fn free(&self) -> usize {
+        self.words
+            .len()
+            .saturating_sub(self.layout.front + TRIANGLE * usize::from(self.layout.triangles))
+    }
+
+    /// Room for the vertices of a draw, all unshaded; whether there is enough.
+    fn reserve(&mut self, vertices: usize, stride: usize) -> bool {
+        let start = self.layout.front;
+        // At most 2¹⁶ · 2⁸: no overflow even in 32 bits.
+        let needs = vertices * stride;
+        if self.free() < needs {
+            return false;
+        }
+        self.layout.vertices = start;
+        self.layout.vertex_count = vertices as u16;
+        self.layout.stride = stride;
+        self.layout.front = start + needs;
+        if let Some(block) = self.words.get_mut(start..start + needs) {
+            for vertex in block.chunks_mut(stride) {
+                if let Some(word) = vertex.first_mut() {
+                    *word = UNSHADED;
+                }
+            }
+        }
+        true
+    }
+
+    /// Starts recording a draw.
+    pub(crate) fn begin_draw(&mut self, fingerprint: u32, vertices: usize, stride: usize) {
+        let header = self.layout.front;
+        if self.free() < HEADER {
+            self.layout.overflow = true;
+            return;
+        }
+        self.layout.header = header;
+        self.layout.front = header + HEADER;
+        if !self.reserve(vertices, stride) {
+            self.layout.overflow = true;
+            return;
+        }
+        self.set(header, fingerprint);
+        self.set(header + 1, self.layout.vertices as u32);
+    }
+
+    /// Ends recording a draw.
+    pub(crate) fn end_draw(&mut self) {
+        self.set(self.layout.header + 2, u32::from(self.layout.triangles));
+        self.set(self.layout.header + 3, self.layout.front as u32);
+    }
+
+    /// Lends all the words to the vertices of one draw that is drawn directly; whether they fit.
+    pub(crate) fn begin_direct(&mut self, vertices: usize, stride: usize) -> bool {
+        self.layout = Layout::default();
+        self.reserve(vertices, stride)
+    }
+
+    /// The words of a vertex of the current draw.
+    #[inline]
+    pub(crate) fn vertex(&self, index: usize) -> &[u32] {
+        let start = self.layout.vertices + index * self.layout.stride;
+        self.words.get(start..start + self.layout.stride).unwrap_or_default()
+    }
+
+    /// The same, to be written.
+    #[inline]
+    pub(crate) fn vertex_mut(&mut self, index: usize) -> &mut [u32] {
+        let start = self.layout.vertices + index * self.layout.stride;
+        self.words
+            .get_mut(start..start + self.layout.stride)
+            .unwrap_or_default()
+    }
+
+    /// Adds a vertex to the current draw, for a polygon that the clipper made.
+    pub(crate) fn push_vertex(&mut self) -> u16 {
+        let index = self.layout.vertex_count;
+        if self.free() < self.layout.stride || index == u16::MAX {
+            self.layout.overflow = true;
+            return 0;
+        }
+        self.layout.front += self.layout.stride;
+        self.layout.vertex_count += 1;
+        index
+    }
+
+    /// Records a triangle whose topmost strip, in this band, is `strip`.
+    pub(crate) fn push_triangle(&mut self, corners: [u16; 3], face: u32, strip: usize) {
+        let number = self.layout.triangles;
+        if self.free() < TRIANGLE || number == NONE {
+            self.layout.overflow = true;
+            return;
+        }
+        self.layout.triangles += 1;
+        let at = self.triangle_at(number);
+        self.set(at, u32::from(corners[0]) | u32::from(corners[1]) << 16);
+        self.set(at + 1, u32::from(corners[2]) | u32::from(NONE) << 16);
+        self.set(at + 2, face);
+        let list = self.get(strip);
+        let (first, last) = (list as u16, (list >> 16) as u16);
+        if last == NONE {
+            self.set(strip, u32::from(number) | u32::from(number) << 16);
+        } else {
+            self.link(last, number);
+            self.set(strip, u32::from(first) | u32::from(number) << 16);
+        }
+    }
+
+    fn triangle_at(&self, number: u16) -> usize {
+        self.words.len().wrapping_sub(TRIANGLE * (usize::from(number) + 1))
+    }
+
+    fn link(&mut self, from: u16, to: u16) {
+        let at = self.triangle_at(from) + 1;
+        let word = self.get(at) & 0xFFFF;
+        self.set(at, word | u32::from(to) << 16);
+    }
+
+    fn linked(&self, from: u16) -> u16 {
+        (self.get(self.triangle_at(from) + 1) >> 16) as u16
+    }
+
+    /// Starts replaying a strip of the band.
+    pub(crate) fn begin_replay(&mut self, strip: usize) {
+        self.layout.strip = strip;
+        self.layout.next = self.get(strip) as u16;
+        self.layout.moved = NONE;
+        self.layout.front = self.layout.lists;
+    }
+
+    /// Finds the next recorded draw; `false` if it is not the one that was recorded.
+    pub(crate) fn replay_draw(&mut self, fingerprint: u32, stride: usize) -> bool {
+        let header = self.layout.front;
+        self.layout.header = header;
+        self.layout.vertices = self.get(header + 1) as usize;
+        self.layout.stride = stride;
+        self.layout.front = self.get(header + 3) as usize;
+        self.get(header) == fingerprint
+    }
+
+    /// The next triangle of the current draw in this strip.
+    pub(crate) fn replay_triangle(&mut self) -> Option<TriangleRecord> {
+        let number = self.layout.next;
+        if number == NONE || u32::from(number) >= self.get(self.layout.header + 2) {
+            return None;
+        }
+        let at = self.triangle_at(number);
+        let (a, b) = (self.get(at), self.get(at + 1));
+        self.layout.next = (b >> 16) as u16;
+        Some(TriangleRecord {
+            corners: [a as u16, (a >> 16) as u16, b as u16],
+            face: self.get(at + 2),
+            number,
+        })
+    }
+
+    /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
+    ///
+    /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
+    pub(crate) fn move_on(&mut self, triangle: &TriangleRecord) {
+        let strip = self.layout.strip + 1;
+        if strip >= self.layout.lists {
+            return;
+        }
+        let list = self.get(strip);
+        let mut before = self.layout.moved;
+        let mut after = if before == NONE {
+            list as u16
+        } else {
+            self.linked(before)
+        };
+        while after < triangle.number {
+            before = after;
+            after = self.linked(after);
+        }
+        self.link(triangle.number, after);
+        if before == NONE {
+            self.set(strip, list & 0xFFFF_0000 | u32::from(triangle.number));
+        } else {
+            self.link(before, triangle.number);
+        }
+        self.layout.moved = triangle.number;
+    }
+}

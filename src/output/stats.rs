@@ -1,0 +1,35 @@
+//! What a frame did: counters of every stage.
+
+/// Counters of a frame. Work that is done again, for another band or strip, is counted again.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Stats {
+    /// How often the closure that draws was called.
+    pub walks: u32,
+    /// Calls that were given up because the records were full, to be repeated for fewer strips.
+    pub overflows: u32,
+    /// Strips that were drawn without records.
+    pub direct_strips: u32,
+    /// Strips handed out.
+    pub strips: u32,
+    /// Draws that were processed.
+    pub draws: u32,
+    /// Draws, or nodes of a hierarchy, that were outside the view as a whole.
+    pub culled: u32,
+    /// Vertices shaded.
+    pub vertices: u32,
+    /// Triangles taken in.
+    pub triangles: u32,
+    /// Triangles culled by their winding.
+    pub back_facing: u32,
+    /// Triangles without area on the screen.
+    pub degenerate: u32,
+    /// Triangles with all of them outside of the view, or of the strips at hand.
+    pub outside: u32,
+    /// Triangles that cover no pixel centre.
+    pub empty: u32,
+    /// Triangles cut by the near or far plane or the guard band.
+    pub clipped: u32,
+    /// Triangles that went on to be drawn; a clipped one may become several.
+    pub drawn: u32,
+}

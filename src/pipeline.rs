@@ -1,0 +1,578 @@
+//! The one place that calls every stage, in order.
+//!
+//! A frame is drawn by a closure that calls [`Scene::draw`]. The closure runs in one of three phases: it *records* a band
+//! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
+//! small even for one strip, it draws that strip *directly* (all stages at once).
+
+use crate::fragment::{AnyDepth, Compare, DepthState, DepthTest, Fragments, LessWrite, NoDepth, PixelFormat, Shader};
+use crate::geometry::{
+    Bounds, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Positions, ScreenVertex,
+    Transform, Varyings, VertexShader, Viewport, clip_triangle, project, signed_area,
+};
+use crate::math::Projective;
+use crate::output::{Framebuffer, Records, Slot, Stats};
+use crate::raster::{Gradients, PixelRect, Span, Spans, pixel_rect};
+use core::ops::Range;
+
+/// Which faces are not drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Cull {
+    /// Those that show their back: clockwise ones, with y up.
+    #[default]
+    Back,
+    /// Those that show their front.
+    Front,
+    /// Every face is drawn.
+    None,
+}
+
+/// How a draw is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct State {
+    /// Which faces are left out.
+    pub cull: Cull,
+    /// The depth test.
+    pub depth: DepthState,
+    /// What happens before the near and beyond the far plane.
+    pub range: DepthRange,
+}
+
+/// What the closure's calls do.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Phase {
+    Record,
+    Replay,
+    Direct,
+}
+
+/// Where pixels go while a strip is drawn.
+#[derive(Debug)]
+pub(crate) struct Target<'a, F> {
+    pub(crate) framebuffer: &'a mut F,
+    /// Depths of the strip's rows, one after the other.
+    pub(crate) depth: &'a mut [u16],
+    /// Rows of the strip.
+    pub(crate) rows: Range<i32>,
+}
+
+/// What a frame is drawn through; see [`Renderer::frame`](crate::Renderer::frame).
+#[derive(Debug)]
+pub struct Scene<'a, F> {
+    pub(crate) screen: (u16, u16),
+    pub(crate) viewport: Viewport,
+    pub(crate) phase: Phase,
+    pub(crate) records: Records<'a>,
+    pub(crate) strip_rows: u16,
+    /// Rows of the band that is recorded, replayed or drawn.
+    pub(crate) band: Range<i32>,
+    pub(crate) target: Option<Target<'a, F>>,
+    pub(crate) stats: Stats,
+    /// Number of the next draw, and the first that differed from what was recorded.
+    pub(crate) draws: u16,
+    pub(crate) changed: Option<u16>,
+}
+
+impl<F: Framebuffer> Scene<'_, F> {
+    /// Draws a mesh: back faces culled, nearer fragments win, clipped at the near and the far plane.
+    ///
+    /// `mvp` takes object space to clip space: camera · view · model.
+    pub fn draw<S: Shader<F::Format>>(&mut self, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
+        self.draw_with(State::default(), mesh, mvp, shader);
+    }
+
+    /// Draws a mesh by other rules.
+    pub fn draw_with<S: Shader<F::Format>>(&mut self, state: State, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
+        const {
+            assert!(
+                S::WORDS <= <S::Varyings as Varyings>::LEN,
+                "a vertex needs no more words than varyings"
+            )
+        };
+        let draw = self.draws;
+        self.draws = draw.saturating_add(1);
+        self.stats.draws += 1;
+        let stride = S::WORDS + crate::output::VERTEX_WORDS;
+        match self.phase {
+            Phase::Record => {
+                if self.records.overflowed() {
+                    return;
+                }
+                let print = fingerprint(&state, mesh, mvp, &self.viewport, stride);
+                let view = self.view::<S>(mesh, mvp);
+                // What is out of view leaves a header without vertices.
+                let vertices = if view.is_some() { mesh.vertex_count() } else { 0 };
+                self.records.begin_draw(print, vertices, stride);
+                if let Some(frustum) = view {
+                    Assembly::new(self, &state, mesh, mvp, shader, true).run(&frustum);
+                }
+                self.records.end_draw();
+            }
+            Phase::Replay => {
+                let print = fingerprint(&state, mesh, mvp, &self.viewport, stride);
+                if self.changed.is_some() || !self.records.replay_draw(print, stride) {
+                    self.changed = self.changed.or(Some(draw));
+                    return;
+                }
+                self.replay(&state, shader);
+            }
+            Phase::Direct => {
+                if let Some(frustum) = self.view::<S>(mesh, mvp) {
+                    let cached = self.records.begin_direct(mesh.vertex_count(), stride);
+                    Assembly::new(self, &state, mesh, mvp, shader, cached).run(&frustum);
+                }
+            }
+        }
+    }
+
+    /// Whether something with these bounds may be seen in the part of the screen that is being drawn; what is not can be
+    /// left out, with everything inside of it: a hierarchy of objects.
+    ///
+    /// The answer is the same in all calls of the closure that must draw the same.
+    pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
+        self.frustum(mvp).bounds(bounds) != Containment::Outside
+    }
+
+    /// Maps clip space to a part of the screen from here on; nothing outside of it is touched. Each call of the closure
+    /// starts with the whole screen.
+    pub const fn set_viewport(&mut self, viewport: Viewport) {
+        self.viewport = viewport;
+    }
+
+    /// Width and height of the screen.
+    pub const fn screen(&self) -> (u16, u16) {
+        self.screen
+    }
+
+    /// The pixels that may be drawn, in `rows` of the screen.
+    fn clip_rect(&self, rows: &Range<i32>) -> PixelRect {
+        let (x, y) = (i32::from(self.viewport.x()), i32::from(self.viewport.y()));
+        let viewport = PixelRect {
+            x: x..x + i32::from(self.viewport.width()),
+            y: y..y + i32::from(self.viewport.height()),
+        };
+        viewport.intersection(&PixelRect {
+            x: 0..i32::from(self.screen.0),
+            y: rows.clone(),
+        })
+    }
+
+    /// What can be seen of the band.
+    fn frustum(&self, mvp: &Projective) -> Frustum {
+        let rect = self.clip_rect(&self.band);
+        Frustum::through(
+            mvp,
+            &self.viewport,
+            (rect.x.start, rect.x.end),
+            (rect.y.start, rect.y.end),
+        )
+    }
+
+    /// Stage 1, culling of whole meshes: the frustum to cull parts by, or `None` if nothing can be seen.
+    fn view<S: VertexShader>(&mut self, mesh: &Mesh<'_>, mvp: &Projective) -> Option<Frustum> {
+        let frustum = self.frustum(mvp);
+        let bounded = !S::DISPLACES && !matches!(mesh.data().positions, Positions::Homogeneous(_));
+        if bounded && frustum.bounds(mesh.bounds()) == Containment::Outside {
+            self.stats.culled += 1;
+            return None;
+        }
+        Some(frustum)
+    }
+
+    /// Draws the recorded triangles of this draw in the current strip.
+    fn replay<S: Shader<F::Format>>(&mut self, state: &State, shader: &S) {
+        let Some(rows) = self.target.as_ref().map(|t| t.rows.clone()) else {
+            return;
+        };
+        let clip = self.clip_rect(&rows);
+        while let Some(triangle) = self.records.replay_triangle() {
+            let corner = |k: u16| {
+                let words = self.records.vertex(usize::from(k));
+                let [a, b, varyings @ ..] = words else {
+                    return (ScreenVertex::default(), S::Varyings::ZERO);
+                };
+                match Slot::unpack([*a, *b]) {
+                    Slot::Screen(v) => (v, S::load(varyings)),
+                    _ => (ScreenVertex::default(), S::Varyings::ZERO),
+                }
+            };
+            let corners = triangle.corners.map(corner);
+            if pixel_rect(&corners.map(|c| c.0)).y.end > rows.end {
+                self.records.move_on(&triangle);
+            }
+            if let Some(target) = &mut self.target {
+                rasterize(target, self.screen, &clip, state, shader, &corners, triangle.face);
+            }
+        }
+    }
+}
+
+/// Stages 2 to 7 for one draw: from the mesh's triangles to triangles on the screen.
+struct Assembly<'s, 'a, 'm, F, S> {
+    scene: &'s mut Scene<'a, F>,
+    state: &'m State,
+    mesh: &'m Mesh<'m>,
+    shader: &'m S,
+    transform: Transform,
+    /// Pixels that can be drawn in this phase.
+    clip: PixelRect,
+    /// Whether the records hold a place for each vertex.
+    cached: bool,
+}
+
+impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S> {
+    fn new(
+        scene: &'s mut Scene<'a, F>,
+        state: &'m State,
+        mesh: &'m Mesh<'m>,
+        mvp: &Projective,
+        shader: &'m S,
+        cached: bool,
+    ) -> Self {
+        let transform = Transform::new(mvp, &scene.viewport, &mesh.data().positions, S::DISPLACES);
+        let clip = scene.clip_rect(&scene.band);
+        Self {
+            scene,
+            state,
+            mesh,
+            shader,
+            transform,
+            clip,
+            cached,
+        }
+    }
+
+    /// Takes the mesh's triangles one by one, leaving out the nodes of its hierarchy that cannot be seen.
+    fn run(&mut self, frustum: &Frustum) {
+        let Some(nodes) = self.mesh.data().hierarchy.filter(|_| !S::DISPLACES) else {
+            return self.triangles(0..self.mesh.triangle_count());
+        };
+        let mut k = 0;
+        while let Some(node) = nodes.get(k) {
+            if frustum.bounds(&node.bounds) == Containment::Outside {
+                self.scene.stats.culled += 1;
+                k = usize::from(node.skip);
+            } else {
+                let first = usize::from(node.first_triangle);
+                self.triangles(first..first + usize::from(node.triangles));
+                k += 1;
+            }
+        }
+    }
+
+    fn triangles(&mut self, numbers: Range<usize>) {
+        for number in numbers {
+            if self.scene.records.overflowed() {
+                return;
+            }
+            // 2. Primitive assembly.
+            let Some(corners) = self.mesh.triangle(number) else {
+                return;
+            };
+            self.scene.stats.triangles += 1;
+            // 3. Vertex stage, once a vertex where there are records to keep the result.
+            let slots = corners.map(|k| self.slot(usize::from(k)));
+            let face = Face::new(self.mesh, number, corners);
+            if let [Slot::Screen(a), Slot::Screen(b), Slot::Screen(c)] = slots {
+                self.screen_triangle(&[a, b, c], corners, &face);
+            } else {
+                self.clip(&slots, corners, &face);
+            }
+        }
+    }
+
+    /// The vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
+    #[inline]
+    fn slot(&mut self, index: usize) -> Slot {
+        if !self.cached {
+            self.scene.stats.vertices += 1;
+            return self.place(&self.transformed(index));
+        }
+        if let [a, b, ..] = self.scene.records.vertex(index) {
+            match Slot::unpack([*a, *b]) {
+                Slot::Unshaded => {}
+                shaded => return shaded,
+            }
+        }
+        self.scene.stats.vertices += 1;
+        let slot = self.place(&self.transformed(index));
+        let varyings = match slot {
+            Slot::Screen(_) => self.shader.vertex(&Corner::new(self.mesh, index)),
+            _ => S::Varyings::ZERO,
+        };
+        keep::<S>(self.scene.records.vertex_mut(index), slot, &varyings);
+        slot
+    }
+
+    #[inline]
+    fn transformed(&self, index: usize) -> ClipVertex {
+        if S::DISPLACES {
+            self.transform
+                .point(self.shader.displace(&Corner::new(self.mesh, index)))
+        } else {
+            self.transform.vertex(&self.mesh.data().positions, index)
+        }
+    }
+
+    /// Outcodes, projection and snapping.
+    #[inline]
+    fn place(&self, vertex: &ClipVertex) -> Slot {
+        let code = Outcode::of(vertex);
+        match project(vertex) {
+            Some(v) if code.0 == 0 => Slot::Screen(v),
+            _ => Slot::Outside(code),
+        }
+    }
+
+    /// 4. Clipping, of a triangle with a vertex outside.
+    #[inline(never)]
+    fn clip(&mut self, slots: &[Slot; 3], corners: [u16; 3], face: &Face<'_>) {
+        let codes = slots.map(|slot| match slot {
+            Slot::Outside(code) => code.0,
+            _ => 0,
+        });
+        let clamped = match self.state.range {
+            DepthRange::Clip => 0,
+            DepthRange::ClampFar => Outcode::FAR,
+            DepthRange::Clamp => Outcode::FAR | Outcode::NEAR,
+        };
+        if codes[0] & codes[1] & codes[2] & !clamped != 0 {
+            self.scene.stats.outside += 1;
+            return;
+        }
+        self.scene.stats.clipped += 1;
+        let triangle = corners.map(|k| {
+            let corner = Corner::new(self.mesh, usize::from(k));
+            (self.transformed(usize::from(k)), self.shader.vertex(&corner))
+        });
+        let all = Outcode(codes[0] | codes[1] | codes[2]);
+        clip_triangle(&triangle, all, self.state.range, |polygon| self.fan(polygon, face));
+    }
+
+    /// Draws a clipped polygon as a fan of triangles.
+    fn fan(&mut self, polygon: &[(ClipVertex, S::Varyings)], face: &Face<'_>) {
+        let mut placed = polygon.iter().filter_map(|(v, varyings)| {
+            let v = project(v)?;
+            Some((v, *varyings))
+        });
+        let recording = self.scene.phase == Phase::Record;
+        let (Some(first), Some(mut last)) = (placed.next(), placed.next()) else {
+            return;
+        };
+        let mut first_index = 0;
+        let mut last_index = 0;
+        if recording {
+            first_index = self.push(&first);
+            last_index = self.push(&last);
+        }
+        for next in placed {
+            let next_index = if recording { self.push(&next) } else { 0 };
+            let v = [first.0, last.0, next.0];
+            if let Some(visible) = self.visible(&v) {
+                let word = self.shader.face(face);
+                if recording {
+                    self.record(&visible, [first_index, last_index, next_index], word);
+                } else {
+                    // What the records would keep of the varyings, so that the picture is the same without them.
+                    let corners = [first, last, next].map(|(v, varyings)| (v, rounded::<S>(&varyings)));
+                    self.draw(&corners, word);
+                }
+            }
+            (last, last_index) = (next, next_index);
+        }
+    }
+
+    fn push(&mut self, vertex: &(ScreenVertex, S::Varyings)) -> u16 {
+        let index = self.scene.records.push_vertex();
+        keep::<S>(
+            self.scene.records.vertex_mut(usize::from(index)),
+            Slot::Screen(vertex.0),
+            &vertex.1,
+        );
+        index
+    }
+
+    /// A triangle that needs no clipping.
+    #[inline]
+    fn screen_triangle(&mut self, v: &[ScreenVertex; 3], corners: [u16; 3], face: &Face<'_>) {
+        let Some(visible) = self.visible(v) else { return };
+        let word = self.shader.face(face);
+        if self.scene.phase == Phase::Record {
+            self.record(&visible, corners, word);
+        } else {
+            let varyings = corners.map(|k| self.varyings(usize::from(k)));
+            self.draw(&[(v[0], varyings[0]), (v[1], varyings[1]), (v[2], varyings[2])], word);
+        }
+    }
+
+    fn varyings(&self, index: usize) -> S::Varyings {
+        if self.cached {
+            let words = self.scene.records.vertex(index);
+            return S::load(words.get(crate::output::VERTEX_WORDS..).unwrap_or_default());
+        }
+        rounded::<S>(&self.shader.vertex(&Corner::new(self.mesh, index)))
+    }
+
+    /// 5. Culling by winding, and of what covers no pixel: where the triangle can have pixels, if it can.
+    #[inline]
+    fn visible(&mut self, v: &[ScreenVertex; 3]) -> Option<PixelRect> {
+        let stats = &mut self.scene.stats;
+        let area = signed_area(&v[0], &v[1], &v[2]);
+        if area == 0 {
+            stats.degenerate += 1;
+            return None;
+        }
+        if (self.state.cull == Cull::Back && area > 0) || (self.state.cull == Cull::Front && area < 0) {
+            stats.back_facing += 1;
+            return None;
+        }
+        let rect = pixel_rect(v);
+        if rect.is_empty() {
+            stats.empty += 1;
+            return None;
+        }
+        let rect = rect.intersection(&self.clip);
+        if rect.is_empty() {
+            stats.outside += 1;
+            return None;
+        }
+        stats.drawn += 1;
+        Some(rect)
+    }
+
+    /// 6, 7. Into the records, to the strip it begins in.
+    fn record(&mut self, rect: &PixelRect, corners: [u16; 3], face: u32) {
+        let row = (rect.y.start - self.scene.band.start) as u32;
+        let Some(rows) = core::num::NonZeroU32::new(u32::from(self.scene.strip_rows)) else {
+            return;
+        };
+        self.scene.records.push_triangle(corners, face, (row / rows) as usize);
+    }
+
+    fn draw(&mut self, corners: &[(ScreenVertex, S::Varyings); 3], face: u32) {
+        if let Some(target) = &mut self.scene.target {
+            rasterize(
+                target,
+                self.scene.screen,
+                &self.clip,
+                self.state,
+                self.shader,
+                corners,
+                face,
+            );
+        }
+    }
+}
+
+/// Packs a vertex into its words.
+fn keep<S: VertexShader>(words: &mut [u32], slot: Slot, varyings: &S::Varyings) {
+    if let [a, b, rest @ ..] = words {
+        [*a, *b] = slot.pack();
+        S::store(varyings, rest);
+    }
+}
+
+/// The varyings as the records would give them back.
+fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
+    let mut words = S::Varyings::ZERO;
+    let words: &mut [u32] = bytemuck::cast_slice_mut(words.as_mut());
+    let words = words.get_mut(..S::WORDS).unwrap_or_default();
+    S::store(varyings, words);
+    S::load(words)
+}
+
+/// 8 to 11. A triangle on the screen: set-up, spans, depth test, fragments.
+fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
+    target: &mut Target<'_, F>,
+    screen: (u16, u16),
+    clip: &PixelRect,
+    state: &State,
+    shader: &S,
+    corners: &[(ScreenVertex, S::Varyings); 3],
+    face: u32,
+) {
+    // 8. Plane equations of depth and varyings.
+    let v = corners.map(|c| c.0);
+    let Some(gradients) = Gradients::new(&v, screen) else {
+        return;
+    };
+    let depth = gradients.plane(v.map(|v| i64::from(v.z) << 16));
+    let (mut base, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
+    let values = corners.each_ref().map(|c| c.1.as_ref());
+    for (k, ((base, dx), dy)) in base.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
+        let plane = gradients.plane(values.map(|v| v.get(k).copied().map_or(0, i64::from)));
+        (*base, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
+    }
+    let origin = gradients.origin();
+    let width = usize::from(screen.0);
+
+    // 9. Spans.
+    for Span { y, x } in Spans::new(&v, clip) {
+        let columns = x.start as usize..x.end as usize;
+        let row = width * (y - target.rows.start) as usize;
+        let Some(depths) = target.depth.get_mut(row + columns.start..row + columns.end) else {
+            return;
+        };
+        let Some(colors) = target.framebuffer.row(y as u32).get_mut(columns) else {
+            return;
+        };
+        let mut varyings = base;
+        for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(dx.as_ref()).zip(dy.as_ref()) {
+            let along = dx
+                .wrapping_mul(x.start - origin.0)
+                .wrapping_add(dy.wrapping_mul(y - origin.1));
+            *value = value.wrapping_add(along);
+        }
+        let fragments = Fragments {
+            color: colors,
+            depth: depths,
+            z: depth.at(origin, x.start, y).wrapping_add(1 << 15),
+            dz_dx: depth.dx,
+            varyings,
+            d_dx: dx,
+            position: (x.start, y),
+        };
+        // 10, 11. Depth test and fragments, in a loop of its own for each kind of test.
+        shade::<F::Format, S>(shader, face, fragments, state.depth);
+    }
+}
+
+#[inline]
+fn shade<P: PixelFormat, S: Shader<P>>(
+    shader: &S,
+    face: u32,
+    fragments: Fragments<'_, P, S::Varyings>,
+    depth: DepthState,
+) {
+    fn with<P: PixelFormat, S: Shader<P>>(s: &S, face: u32, f: Fragments<'_, P, S::Varyings>, test: impl DepthTest) {
+        s.span(face, f, test);
+    }
+    match depth {
+        DepthState {
+            compare: Compare::Less,
+            write: true,
+        } => with(shader, face, fragments, LessWrite),
+        DepthState {
+            compare: Compare::Always,
+            write: false,
+        } => with(shader, face, fragments, NoDepth),
+        other => with(shader, face, fragments, AnyDepth::new(other)),
+    }
+}
+
+/// A word that differs, almost surely, between draws that would not leave the same records.
+fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &Viewport, stride: usize) -> u32 {
+    // FNV-1a over words instead of bytes.
+    let mut hash = 0x811C_9DC5_u32;
+    let mut add = |word: u32| hash = (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(11);
+    for entry in mvp.to_rows().iter().flatten() {
+        add(*entry as u32);
+        add((*entry >> 32) as u32);
+    }
+    add(viewport.x() as u32 ^ (viewport.y() as u32) << 16);
+    add(u32::from(viewport.width()) | u32::from(viewport.height()) << 16);
+    add(mesh.vertex_count() as u32 | (mesh.triangle_count() as u32) << 16);
+    add(stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20);
+    add(state.depth.compare as u32 | u32::from(state.depth.write) << 8);
+    hash
+}

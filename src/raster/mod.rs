@@ -1,0 +1,9 @@
+//! Screen primitive → spans: exact edges walked row by row, and the plane equations of what is interpolated.
+
+mod edge;
+mod gradient;
+mod triangle;
+
+pub use edge::Edge;
+pub use gradient::{Gradients, PlaneEquation};
+pub use triangle::{PixelRect, Span, Spans, pixel_rect};

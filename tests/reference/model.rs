@@ -1,0 +1,53 @@
+//! The rasterizer that the conformance checker is itself checked with: exact coverage and depth, and 2-D homogeneous clipping.
+//!
+//! It passes every record, which shows that files, checker and references agree on the rules.
+
+use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
+use super::exact;
+use super::homogeneous::{Vertex, Viewport, for_each_sample};
+
+/// A rasterizer without any cleverness.
+#[derive(Clone, Copy, Debug)]
+pub struct Model;
+
+impl Rasterizer for Model {
+    fn triangle(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(u32, u32)) {
+        exact::for_each_pixel(exact::widen(v), width, height, hit);
+    }
+
+    fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>) {
+        let count = width as usize * height as usize;
+        let (mut winners, mut depths) = (vec![0; count], vec![u16::MAX; count]);
+        for (&(v, z), id) in tris.iter().zip(1..) {
+            let (tri, z) = (exact::widen(v), z.map(i64::from));
+            exact::for_each_pixel(tri, width, height, |x, y| {
+                let index = y as usize * width as usize + x as usize;
+                let depth = exact::depth_rounded(tri, z, x.into(), y.into());
+                if depth < i64::from(depths[index]) {
+                    // Inside the triangle the plane stays between the vertices' codes.
+                    depths[index] = depth as u16;
+                    winners[index] = id;
+                }
+            });
+        }
+        (winners, depths)
+    }
+
+    fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32)) {
+        let viewport = Viewport {
+            clip_y_down: true,
+            ..Viewport::new(width, height)
+        };
+        for (index, tri) in tris.iter().enumerate() {
+            let vertices = tri.map(|v| Vertex {
+                position: v.map(f64::from),
+                attributes: [],
+            });
+            for_each_sample(&viewport, (width, height), &vertices, |sample| {
+                if sample.covered {
+                    hit(index, sample.x, sample.y);
+                }
+            });
+        }
+    }
+}

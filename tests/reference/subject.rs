@@ -1,0 +1,160 @@
+//! The crate itself, through its whole pipeline, behind the checker's trait.
+//!
+//! Screen positions become homogeneous vertices with w = 1 that project to exactly the same 1/256 px: the viewports of
+//! the data are powers of two.
+
+use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
+use std::cell::RefCell;
+use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::fragment::{DepthState, DepthTest, Fragments, Shader};
+use zstrip::geometry::{Corner, Face, Mesh, MeshData, Positions, VertexShader};
+use zstrip::math::{Projective, Scalar};
+use zstrip::output::{FrameSlice, FramebufferRenderer};
+use zstrip::{Cull, State};
+
+/// Draws with zstrip; strips of `strip_rows` rows, and `records` words of records.
+pub struct Subject {
+    pub strip_rows: usize,
+    pub records: usize,
+}
+
+impl Default for Subject {
+    fn default() -> Self {
+        Self {
+            strip_rows: usize::MAX,
+            records: 100_000,
+        }
+    }
+}
+
+/// Reports each pixel that is reached, with the number of its triangle.
+struct Reached<'a>(RefCell<&'a mut dyn FnMut(usize, u32, u32)>);
+
+impl VertexShader for Reached<'_> {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+        []
+    }
+
+    fn face(&self, face: &Face<'_>) -> u32 {
+        face.index() as u32
+    }
+}
+
+impl Shader<Rgb565> for Reached<'_> {
+    fn fragment(&self, _: u32, _: &[i32; 0]) -> u16 {
+        1
+    }
+
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0]>, _: D) {
+        let (x, y) = span.position;
+        for (k, color) in span.color.iter_mut().enumerate() {
+            *color = 1;
+            (self.0.borrow_mut())(face as usize, x as u32 + k as u32, y as u32);
+        }
+    }
+}
+
+/// Colours pixels with the number of the triangle, from 1.
+struct Numbered;
+
+impl VertexShader for Numbered {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+        []
+    }
+
+    fn face(&self, face: &Face<'_>) -> u32 {
+        face.index() as u32 + 1
+    }
+}
+
+impl Shader<Rgb565> for Numbered {
+    fn fragment(&self, face: u32, _: &[i32; 0]) -> u16 {
+        face as u16
+    }
+}
+
+/// y down, as in the data; the pipeline's clip space has y up.
+fn y_down() -> Projective {
+    let one = 1_i64 << 32;
+    Projective::from_rows([[one, 0, 0, 0], [0, -one, 0, 0], [0, 0, one, 0], [0, 0, 0, one]])
+}
+
+fn on_screen([x, y]: [i32; 2], z: u16, width: u32, height: u32) -> [Scalar; 4] {
+    // X = (x / w + 1) · 128 width, in 1/256 px.
+    let clip = |c: i32, size: u32| {
+        let (half, one) = (128 * i64::from(size), 1_i64 << 16);
+        let scaled = (i64::from(c) - half) * one;
+        assert_eq!(scaled % half, 0, "a viewport of the data is a power of two");
+        Scalar::from_bits((scaled / half) as i32)
+    };
+    let z = (i64::from(z) * 65_536 + 32_767) / 65_535;
+    [
+        clip(x, width),
+        clip(y, height),
+        Scalar::from_bits(z as i32),
+        Scalar::ONE,
+    ]
+}
+
+impl Subject {
+    fn draw<S: Shader<Rgb565>>(
+        &self,
+        (width, height): (u32, u32),
+        vertices: &[[Scalar; 4]],
+        depth_state: DepthState,
+        shader: &S,
+    ) -> (Vec<u16>, Vec<u16>) {
+        let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(vertices))).expect("a mesh");
+        let pixels = (width * height) as usize;
+        let mut color = vec![0; pixels];
+        let mut depth = vec![0; width as usize * self.strip_rows.min(height as usize)];
+        let mut records = vec![0; self.records];
+        let size = (width as u16, height as u16);
+        let mut frame = FrameSlice::<Rgb565>::new(&mut color, size.0, size.1).expect("a framebuffer");
+        let mut renderer = FramebufferRenderer::new(size, &mut depth, &mut records).expect("a renderer");
+        let state = State {
+            cull: Cull::None,
+            depth: depth_state,
+            ..State::default()
+        };
+        renderer
+            .frame(&mut frame, None, |scene| {
+                scene.draw_with(state, &mesh, &y_down(), shader)
+            })
+            .expect("the same scene each time");
+        (color, depth)
+    }
+
+    fn reach(&self, size: (u32, u32), vertices: &[[Scalar; 4]], hit: &mut dyn FnMut(usize, u32, u32)) {
+        self.draw(size, vertices, DepthState::OFF, &Reached(RefCell::new(hit)));
+    }
+}
+
+impl Rasterizer for Subject {
+    fn triangle(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(u32, u32)) {
+        let vertices = v.map(|p| on_screen(p, 0, width, height));
+        self.reach((width, height), &vertices, &mut |_, x, y| hit(x, y));
+    }
+
+    fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>) {
+        assert!(
+            self.strip_rows >= height as usize,
+            "depths are read back from a buffer of the whole screen"
+        );
+        let vertices: Vec<_> = tris
+            .iter()
+            .flat_map(|(v, z)| [0, 1, 2].map(|k| on_screen(v[k], z[k], width, height)))
+            .collect();
+        let (winners, depth) = self.draw((width, height), &vertices, DepthState::LESS, &Numbered);
+        (winners.into_iter().map(u32::from).collect(), depth)
+    }
+
+    fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32)) {
+        let vertices: Vec<_> = tris.iter().flatten().map(|v| v.map(Scalar::from_bits)).collect();
+        self.reach((width, height), &vertices, hit);
+    }
+}
