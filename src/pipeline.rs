@@ -6,8 +6,8 @@
 
 use crate::fragment::{AnyDepth, Compare, DepthState, DepthTest, Fragments, LessWrite, NoDepth, PixelFormat, Shader};
 use crate::geometry::{
-    Bounds, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Positions, ScreenVertex,
-    Transform, Varyings, VertexShader, Viewport, clip_triangle, project, signed_area,
+    Bounds, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Placed, Positions, ScreenVertex,
+    Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
@@ -286,7 +286,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     fn slot(&mut self, index: usize) -> Slot {
         if !self.cached {
             self.scene.stats.vertices += 1;
-            return self.place(&self.transformed(index));
+            return self.place(index);
         }
         if let [a, b, ..] = self.scene.records.vertex(index) {
             match Slot::unpack([*a, *b]) {
@@ -295,7 +295,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             }
         }
         self.scene.stats.vertices += 1;
-        let slot = self.place(&self.transformed(index));
+        let slot = self.place(index);
         let varyings = match slot {
             Slot::Screen(_) => self.shader.vertex(&Corner::new(self.mesh, index)),
             _ => S::Varyings::ZERO,
@@ -314,13 +314,16 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         }
     }
 
-    /// Outcodes, projection and snapping.
     #[inline]
-    fn place(&self, vertex: &ClipVertex) -> Slot {
-        let code = Outcode::of(vertex);
-        match project(vertex) {
-            Some(v) if code.0 == 0 => Slot::Screen(v),
-            _ => Slot::Outside(code),
+    fn place(&self, index: usize) -> Slot {
+        let placed = if S::DISPLACES {
+            place(&self.transformed(index))
+        } else {
+            self.transform.place(&self.mesh.data().positions, index)
+        };
+        match placed {
+            Placed::Screen(v) => Slot::Screen(v),
+            Placed::Outside(code) => Slot::Outside(code),
         }
     }
 
@@ -496,11 +499,14 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
     let Some(gradients) = Gradients::new(&v, screen) else {
         return;
     };
-    let depth = gradients.plane(v.map(|v| i64::from(v.z) << 16));
+    let depth = gradients.plane(v.map(|v| i32::from(v.z)), 16);
     let (mut base, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
     let values = corners.each_ref().map(|c| c.1.as_ref());
     for (k, ((base, dx), dy)) in base.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
-        let plane = gradients.plane(values.map(|v| v.get(k).copied().map_or(0, i64::from)));
+        let plane = gradients.plane(
+            values.map(|v| v.get(k).copied().unwrap_or(0) >> S::ZERO_BITS),
+            S::ZERO_BITS,
+        );
         (*base, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
     }
     let origin = gradients.origin();

@@ -46,6 +46,8 @@ impl VertexShader for Gouraud {
     /// All three in one word: red 8.2, green and blue 8.3; off by at most 1/8 of 255.
     const WORDS: usize = 1;
 
+    const ZERO_BITS: u32 = 13;
+
     #[inline]
     fn vertex(&self, vertex: &Corner<'_>) -> [i32; 3] {
         let rgb = match (self.lit, self.light) {

@@ -80,5 +80,55 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     })
 }
 
+/// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.
+#[inline]
+pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
+    // 2 to 5; counted by comparisons, as small cores have no instruction for it.
+    let zeros = 2 + u32::from(w < 1 << 29) + u32::from(w < 1 << 28) + u32::from(w < 1 << 27);
+    let inv_w = reciprocal((w as u32) << zeros);
+    let position = |c: i32| (mul_high_signed(c >> (7 - zeros), inv_w) + 64) >> 7;
+    ScreenVertex {
+        x: position(x),
+        y: position(y),
+        z: depth((z as u32) << zeros, inv_w),
+    }
+}
+
+/// 65,535 z / w rounded to nearest, from z and 2⁶³ / w in the scale that puts w into 2³¹..2³².
+#[inline]
+fn depth(z: u32, inv_w: u32) -> u16 {
+    // z / w as 1.31, then 65,535 times that as 16.16, rounded.
+    let fraction = (mul_high(z, inv_w) >> 15).min(1 << 16);
+    ((fraction * 65_535 + (1 << 15)) >> 16) as u16
+}
+
 /// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.
 const LIMIT: i32 = (1 << 23) - 1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_projection_is_the_same() {
+        let mut state = 3_u64;
+        let mut next = |bound: i32| {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            ((u128::from(state >> 16) * bound as u128) >> 48) as i32
+        };
+        for _ in 0..100_000 {
+            let w = (1 << 26) + next((1 << 30) - (1 << 26));
+            let w = if next(10) == 0 { 1 << (26 + next(4)) } else { w };
+            let (x, y, z) = (next(i32::MAX) - (1 << 30), next(i32::MAX) - (1 << 30), next(w));
+            let long = ClipVertex {
+                x: x.into(),
+                y: y.into(),
+                z: z.into(),
+                w: w.into(),
+            };
+            assert_eq!(Some(project_short([x, y, z, w])), project(&long), "{x} {y} {z} {w}");
+        }
+    }
+}

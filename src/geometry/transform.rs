@@ -4,7 +4,8 @@
 //! largest value any vertex can reach just fits the format, and the viewport is folded in: x / w and y / w are screen
 //! positions in units of 512 px from the screen's corner, z / w is depth.
 
-use super::clip::ClipVertex;
+use super::clip::{ClipVertex, Outcode};
+use super::project::{ScreenVertex, project, project_short};
 use super::{Positions, Viewport};
 use crate::math::{Projective, Vec3};
 
@@ -28,6 +29,25 @@ struct Short {
     low: [[i32; 3]; 4],
     translation_high: [i32; 4],
     translation_low: [i32; 4],
+}
+
+/// Where a vertex is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Placed {
+    /// On the screen, or at least within the guard band.
+    Screen(ScreenVertex),
+    /// Outside of the planes in its code.
+    Outside(Outcode),
+}
+
+/// Outcodes, projection and snapping of a vertex in clip space.
+#[inline]
+pub fn place(vertex: &ClipVertex) -> Placed {
+    let code = Outcode::of(vertex);
+    match project(vertex) {
+        Some(v) if code.0 == 0 => Placed::Screen(v),
+        _ => Placed::Outside(code),
+    }
 }
 
 /// What a vertex transform yields: clip coordinates in the transform's own scale.
@@ -123,7 +143,10 @@ impl Transform {
             Positions::Quantized { points, .. } => {
                 let q = points.get(index).copied().unwrap_or_default();
                 match &self.short {
-                    Some(short) => short.apply(q),
+                    Some(short) => {
+                        let [x, y, z, w] = short.apply(q).map(i64::from);
+                        ClipVertex { x, y, z, w }
+                    }
                     None => self.apply([i32::from(q[0]) << 16, i32::from(q[1]) << 16, i32::from(q[2]) << 16, 0]),
                 }
             }
@@ -132,6 +155,22 @@ impl Transform {
                 self.apply(points.get(index).copied().unwrap_or_default().map(|c| c.to_bits()))
             }
         }
+    }
+
+    /// Where a mesh vertex is on the screen, or which planes keep it off.
+    #[inline]
+    pub fn place(&self, positions: &Positions<'_>, index: usize) -> Placed {
+        if let (Positions::Quantized { points, .. }, Some(short)) = (positions, &self.short) {
+            let clip = short.apply(points.get(index).copied().unwrap_or_default());
+            // In `Short::new`'s range of w, only the near and the far plane are left to be outside of.
+            let [_, _, z, w] = clip;
+            return if (z as u32) <= w as u32 {
+                Placed::Screen(project_short(clip))
+            } else {
+                Placed::Outside(Outcode(if z < 0 { Outcode::NEAR } else { Outcode::FAR }))
+            };
+        }
+        place(&self.vertex(positions, index))
     }
 
     /// Clip coordinates of a 16.16 position, of a transform made for those.
@@ -172,9 +211,9 @@ impl Short {
     ///
     /// # Format
     /// Values are those of the long path / 2²⁵, below 2³⁰, off by at most 3: half a unit from each of three entries,
-    /// half from the constant and one from the cut. With w ≥ 2²⁵, a screen position, 2¹⁷ x / w, is off by at most
-    /// 2¹⁷ · 3 · (1 + |x / w|) / w: below 1/80 of 1/256 px a screen of 512 px, and |x / w| < 32 keeps it off the guard
-    /// band.
+    /// half from the constant and one from the cut. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at
+    /// most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it be,
+    /// which is well inside the guard band.
     fn new(entries: &[[i64; 4]; 4], translation: &[i64; 4]) -> Option<Self> {
         let w = &entries[3];
         let swing = (w[0].unsigned_abs() + w[1].unsigned_abs() + w[2].unsigned_abs()) << 15;
@@ -203,18 +242,13 @@ impl Short {
     }
 
     #[inline]
-    fn apply(&self, q: [i16; 3]) -> Transformed {
+    fn apply(&self, q: [i16; 3]) -> [i32; 4] {
         let q = q.map(i32::from);
         let row = |i: usize| {
             let (h, l) = (&self.high[i], &self.low[i]);
             let low = l[0] * q[0] + l[1] * q[1] + l[2] * q[2] + self.translation_low[i];
-            i64::from(h[0] * q[0] + h[1] * q[1] + h[2] * q[2] + self.translation_high[i] + (low >> 15))
+            h[0] * q[0] + h[1] * q[1] + h[2] * q[2] + self.translation_high[i] + (low >> 15)
         };
-        ClipVertex {
-            x: row(0),
-            y: row(1),
-            z: row(2),
-            w: row(3),
-        }
+        [row(0), row(1), row(2), row(3)]
     }
 }

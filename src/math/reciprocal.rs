@@ -1,15 +1,48 @@
 //! Reciprocals without a divider: a table, two Newton steps, and a proven bound.
 
+/// Whether the core multiplies 32 × 32 bits to 32 only, so that a wide product is best put together by hand: Armv6-M,
+/// recognized by its lack of compare-and-swap. (`__aeabi_lmul` takes three times as long.)
+const NARROW: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+
 /// High word of a 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high(a: u32, b: u32) -> u32 {
-    ((a as u64 * b as u64) >> 32) as u32
+    if NARROW {
+        mul_high_by_halves(a, b)
+    } else {
+        ((a as u64 * b as u64) >> 32) as u32
+    }
 }
 
 /// High word of a signed by unsigned 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
-    ((a as i64 * b as i64) >> 32) as i32
+    if NARROW {
+        mul_high_signed_by_halves(a, b)
+    } else {
+        ((a as i64 * b as i64) >> 32) as i32
+    }
+}
+
+/// [`mul_high`] from four products of 16 bits.
+///
+/// # Format
+/// Each product is at most (2¹⁶ - 1)², which leaves room for one more carry of 16 bits.
+#[inline(always)]
+const fn mul_high_by_halves(a: u32, b: u32) -> u32 {
+    let (a1, a0, b1, b0) = (a >> 16, a & 0xFFFF, b >> 16, b & 0xFFFF);
+    let middle = a1 * b0 + ((a0 * b0) >> 16);
+    let other = a0 * b1 + (middle & 0xFFFF);
+    a1 * b1 + (middle >> 16) + (other >> 16)
+}
+
+/// [`mul_high_signed`] from four products of 16 bits, the upper half of `a` with its sign.
+#[inline(always)]
+const fn mul_high_signed_by_halves(a: i32, b: u32) -> i32 {
+    let (a1, a0, b1, b0) = (a >> 16, a as u32 & 0xFFFF, b >> 16, b & 0xFFFF);
+    let middle = a1 * b0 as i32 + ((a0 * b0) >> 16) as i32;
+    let other = a0 * b1 + (middle as u32 & 0xFFFF);
+    a1 * b1 as i32 + (middle >> 16) + (other >> 16) as i32
 }
 
 /// Entry `i` is 2³¹ / m rounded, m the middle of the i-th 256th of 2¹⁵..2¹⁶: the seed of [`reciprocal`].
@@ -84,6 +117,42 @@ mod tests {
         });
         let found = worst(strided.chain(ends).filter(|x| *x >= 1 << 31));
         assert!(found < 2f64.powi(-29), "worst relative error 2^{}", found.log2());
+    }
+
+    #[test]
+    fn products_by_halves_are_the_same() {
+        let corners = [
+            0,
+            1,
+            0x7FFF,
+            0x8000,
+            0xFFFF,
+            0x1_0000,
+            0x7FFF_FFFF,
+            0x8000_0000,
+            0x8000_FFFF,
+            u32::MAX,
+        ];
+        let mut state = 1_u32;
+        let random = core::iter::repeat_with(|| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 15
+        });
+        for a in corners.into_iter().chain(random.take(1000)) {
+            for b in corners.into_iter().chain([a.rotate_left(7), !a]) {
+                assert_eq!(
+                    u64::from(mul_high_by_halves(a, b)),
+                    (u64::from(a) * u64::from(b)) >> 32,
+                    "{a} {b}"
+                );
+                let signed = i64::from(a as i32) * i64::from(b);
+                assert_eq!(
+                    i64::from(mul_high_signed_by_halves(a as i32, b)),
+                    signed >> 32,
+                    "{a} {b}"
+                );
+            }
+        }
     }
 
     #[test]

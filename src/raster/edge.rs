@@ -4,13 +4,14 @@
 //! pixel = ⌈(x - 128) / 256⌉ with x the edge's position, in 1/256 px, at the height of the row's pixel centres. A centre
 //! exactly on the edge belongs to the span to its right, which is the top-left rule for edges that are not horizontal.
 
+use crate::geometry::small;
 use core::num::{NonZeroU32, NonZeroU64};
 
 /// The state of an edge at a row.
 ///
 /// With the edge from `a` down to `b`, D = 256 (b.y - a.y), and N / D = (x - 128) / 256 its exact position in pixels at
 /// this row, `pixel` = ⌈N / D⌉ and `error` = `pixel` D - N, in 0..D. A row down, N grows by 256 dx = q D + 256 r.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
     pixel: i32,
     error: u32,
@@ -54,7 +55,55 @@ impl Edge {
     /// Points (x, y) in 24.8, at most ±32,767 px; `row` is one the edge crosses: 0 ≤ p < dy for its height p below `a`.
     /// dx = q dy + r with 0 ≤ r < dy ≤ 2²⁴, and the position at p is a.x + p q + p r / dy: p q stays within dx ± dy,
     /// p r below 2⁴⁸ (and mostly below 2³²).
+    #[inline]
     pub fn new(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
+        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
+        let p = 256 * row + 128 - a.1;
+        // The usual edge: short, not flatter than 1 in 4, and begun at its upper end.
+        if small(dx) & ((dy as u32) < 1 << 15) & ((p as u32) < 256) && dx.abs() <= 4 * dy {
+            return Self::walked(a.0, dx, dy, p);
+        }
+        Self::divided(a, b, row)
+    }
+
+    /// [`new`](Self::new) without a division, for quotients of -4..=4.
+    ///
+    /// # Format
+    /// |dx|, dy < 2¹⁵, so D < 2²³; p < 2⁸. N is taken from the pixel of `x`: (-128..128) dy + p dx, below 2²³ + 2²².
+    #[inline]
+    fn walked(x: i32, dx: i32, dy: i32, p: i32) -> Self {
+        let (mut quotient, mut r) = (0, dx);
+        while r < 0 {
+            r += dy;
+            quotient -= 1;
+        }
+        while r >= dy {
+            r -= dy;
+            quotient += 1;
+        }
+        let d = dy << 8;
+        let mut pixel = x >> 8;
+        let mut error = (128 - (x & 0xFF)) * dy - p * dx;
+        while error < 0 {
+            error += d;
+            pixel += 1;
+        }
+        while error >= d {
+            error -= d;
+            pixel -= 1;
+        }
+        Self {
+            pixel,
+            error: error as u32,
+            quotient,
+            remainder: (r << 8) as u32,
+            denominator: d as u32,
+        }
+    }
+
+    /// [`new`](Self::new) for any edge.
+    #[inline(never)]
+    fn divided(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
         let dx = b.0 - a.0;
         let Ok(dy) = u32::try_from(b.1 - a.1) else {
             return Self::EMPTY;
@@ -104,5 +153,35 @@ impl Edge {
             self.error = error.wrapping_add(self.denominator);
             self.pixel = self.pixel.wrapping_add(1);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn walking_and_dividing_give_the_same_edge() {
+        let mut state = 7_u32;
+        let mut next = |low: i32, high: i32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            low + ((u64::from(state >> 8) * (high - low) as u64) >> 24) as i32
+        };
+        let mut walked = 0;
+        for _ in 0..200_000 {
+            let size = [3, 100, 2000, 32_768][next(0, 4) as usize];
+            let a = (next(-100_000, 100_000), next(-100_000, 100_000));
+            let b = (a.0 + next(-size, size), a.1 + next(1, size));
+            let row = (a.1 + 127) >> 8;
+            if 256 * row + 128 >= b.1 {
+                continue;
+            }
+            let (dx, dy, p) = (b.0 - a.0, b.1 - a.1, 256 * row + 128 - a.1);
+            if dx.abs() <= 4 * dy {
+                walked += 1;
+                assert_eq!(Edge::walked(a.0, dx, dy, p), Edge::divided(a, b, row), "{a:?} {b:?}");
+            }
+        }
+        assert!(walked > 50_000, "{walked}");
     }
 }

@@ -11,17 +11,20 @@
 //! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
 //! What is off is only the rounding of the gradients, 2⁻¹⁷ a pixel in 16.16: below 2⁻⁴ over the largest viewport.
 
-use crate::geometry::{ScreenVertex, signed_area};
-use crate::math::{mul_high_signed, reciprocal};
+use crate::geometry::{ScreenVertex, signed_area, small};
+use crate::math::mul_high_signed;
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
 pub struct Gradients {
-    x: [i32; 3],
-    y: [i32; 3],
+    /// Vertices 1 and 2 as seen from vertex 0.
+    x: [i32; 2],
+    y: [i32; 2],
+    /// The centre of the pixel at the origin as seen from vertex 0.
+    to: (i32, i32),
     /// Twice the signed area; never 0.
     area: i64,
-    /// 2⁶³ / (|area| << shift), and shift, which puts the top bit of |area| into bit 31; for areas below 2³¹.
+    /// 2⁶³ / (|area| << shift), and shift, which puts the top bit of |area| into bit 31; 0 for large triangles.
     reciprocal: u32,
     shift: i32,
     /// The pixel that plane values refer to: the one that holds vertex 0, for large triangles brought onto the screen.
@@ -41,33 +44,34 @@ pub struct PlaneEquation {
 
 impl Gradients {
     /// Of a triangle, for a screen of `width` × `height` px; `None` if it has no area.
+    #[inline]
     pub fn new(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> Option<Self> {
         let area = signed_area(&v[0], &v[1], &v[2]);
-        let magnitude = area.unsigned_abs();
-        if magnitude == 0 {
+        if area == 0 {
             return None;
         }
-        let origin = (v[0].x >> 8, v[0].y >> 8);
-        let (reciprocal, shift, origin) = match u32::try_from(magnitude) {
-            Ok(m) if small_triangle(v) => {
-                let shift = m.leading_zeros();
-                (reciprocal(m << shift), shift as i32, origin)
-            }
-            _ => (
-                0,
-                0,
-                (
-                    origin.0.clamp(0, i32::from(width) - 1),
-                    origin.1.clamp(0, i32::from(height) - 1),
-                ),
-            ),
-        };
+        let x = [v[1].x - v[0].x, v[2].x - v[0].x];
+        let y = [v[1].y - v[0].y, v[2].y - v[0].y];
+        let mut origin = (v[0].x >> 8, v[0].y >> 8);
+        let (mut reciprocal, mut shift) = (0, 0);
+        if small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]) {
+            let magnitude = (area as i32).unsigned_abs();
+            shift = magnitude.leading_zeros();
+            reciprocal = crate::math::reciprocal(magnitude << shift);
+        } else {
+            origin = (
+                origin.0.clamp(0, i32::from(width) - 1),
+                origin.1.clamp(0, i32::from(height) - 1),
+            );
+        }
+        let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
         Some(Self {
-            x: v.map(|v| v.x),
-            y: v.map(|v| v.y),
+            x,
+            y,
+            to,
             area,
             reciprocal,
-            shift,
+            shift: shift as i32,
             origin,
         })
     }
@@ -78,78 +82,114 @@ impl Gradients {
         self.origin
     }
 
-    /// The plane through values at the three vertices, in 16.16 (or any unit of which 2⁻⁶ · 2¹⁶ does not matter).
+    /// The plane through the values at the three vertices times 2^`scale`, modulo 2³²; usually 16.16.
     ///
     /// # Format
-    /// Values as 32-bit patterns; differences are taken as signed 33-bit numbers, times 2²⁵ below 2⁵⁸, in sums below
-    /// 2⁵⁹. Evaluated anywhere on the screen inside the triangle, the result is within 2⁻⁴ · 2¹⁶ of the exact plane.
-    pub fn plane(&self, values: [i64; 3]) -> PlaneEquation {
-        let (v1, v2) = (values[1] - values[0], values[2] - values[0]);
-        if v1 == 0 && v2 == 0 {
-            return PlaneEquation {
-                dx: 0,
-                dy: 0,
-                base: values[0] as u32,
-            };
+    /// Any values, `scale` up to 16. Evaluated at a pixel inside the triangle and on the screen, the result is within 2¹² of
+    /// the exact plane: 2⁻⁴ of a unit in 16.16.
+    #[inline]
+    pub fn plane(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
+        let (v1, v2) = (values[1].wrapping_sub(values[0]), values[2].wrapping_sub(values[0]));
+        let base = (values[0] as u32) << scale;
+        if v1 | v2 == 0 {
+            return PlaneEquation { dx: 0, dy: 0, base };
         }
-        let (x1, x2) = (i64::from(self.x[1] - self.x[0]), i64::from(self.x[2] - self.x[0]));
-        let (y1, y2) = (i64::from(self.y[1] - self.y[0]), i64::from(self.y[2] - self.y[0]));
-        let (a, b) = (v1 * y2 - v2 * y1, v2 * x1 - v1 * x2);
-        if self.reciprocal != 0 {
-            if let (Some(dx), Some(dy)) = (self.gentle(a), self.gentle(b)) {
-                // From vertex 0 to the centre of its pixel, at most half a pixel: 2²⁹⁻⁶ · 2⁷ twice.
-                let along = |g: i32, from: i32, to: i32| (g >> 6) * (256 * to + 128 - from);
-                let offset = along(dx, self.x[0], self.origin.0) + along(dy, self.y[0], self.origin.1);
-                return PlaneEquation {
-                    dx,
-                    dy,
-                    base: (values[0] as u32).wrapping_add((offset >> 2) as u32),
+        // Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
+        let up = self.shift + scale as i32 - 23;
+        if self.reciprocal != 0 && up <= 4 && moderate(v1) & moderate(v2) {
+            let a = v1 * self.y[1] - v2 * self.y[0];
+            let b = v2 * self.x[0] - v1 * self.x[1];
+            let (a, b) = if self.area < 0 { (-a, -b) } else { (a, b) };
+            let (dx, dy) = (mul_high_signed(a, self.reciprocal), mul_high_signed(b, self.reciprocal));
+            // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
+            // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
+            let limit = 1 << (29 - up.max(0));
+            if dx.abs() < limit && dy.abs() < limit {
+                let (dx, dy) = if up >= 0 {
+                    (dx << up, dy << up)
+                } else {
+                    (dx >> -up, dy >> -up)
                 };
+                return self.near(base, dx, dy);
             }
         }
-        self.exact(values[0], a, b)
+        self.long(values, scale)
     }
 
-    /// 256 n / area, if it is below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative error below
-    /// 2⁻²⁸, less than 2⁻⁷ over the 128 px of a small triangle, and one unit.
+    /// The plane by its gradients, which are below 2²⁹, at a pixel at most half a pixel from vertex 0.
+    ///
+    /// # Format
+    /// 2²⁹⁻⁶ · 2⁷ twice: below 2³¹. The cut bits are 2⁻¹¹ of a unit in 16.16.
+    #[inline]
+    fn near(&self, base: u32, dx: i32, dy: i32) -> PlaneEquation {
+        let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
+        PlaneEquation {
+            dx,
+            dy,
+            base: base.wrapping_add(offset as u32),
+        }
+    }
+
+    /// [`plane`](Self::plane) for any triangle and any values, in 64 bits.
+    ///
+    /// # Format
+    /// Differences of 33 bits, of 49 with `scale`; times 2²⁵ below 2⁵⁸ without it, in sums below 2⁵⁹.
+    #[inline(never)]
+    fn long(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
+        let [v0, v1, v2] = values.map(i64::from);
+        let (v1, v2) = (v1 - v0, v2 - v0);
+        let [x1, x2] = self.x.map(i64::from);
+        let [y1, y2] = self.y.map(i64::from);
+        let (a, b) = (v1 * y2 - v2 * y1, v2 * x1 - v1 * x2);
+        let base = (values[0] as u32) << scale;
+        if self.reciprocal != 0 {
+            if let (Some(dx), Some(dy)) = (self.gentle(a, scale), self.gentle(b, scale)) {
+                return self.near(base, dx, dy);
+            }
+        }
+        self.exact(base, a, b, scale)
+    }
+
+    /// 256 2^scale n / area, if it is below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative
+    /// error below 2⁻²⁸, less than 2⁻⁷ over the 128 px of a small triangle, and one unit.
     ///
     /// 256 / area = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
     /// 2⁻³⁰).
-    #[inline]
-    fn gentle(&self, n: i64) -> Option<i32> {
+    fn gentle(&self, n: i64, scale: u32) -> Option<i32> {
         let n = if self.area < 0 { -n } else { n };
         // Redundant sign bits above bit 31: how far n can move up (or must move down) to fill an i32.
         let up = (n ^ (n >> 63)).leading_zeros() as i32 - 33;
         let normalized = if up >= 0 { n << up } else { n >> -up } as i32;
         let high = mul_high_signed(normalized, self.reciprocal);
-        // high 2³² 2^(shift - up) / 2⁵⁵.
-        let down = 23 + up - self.shift;
+        // high 2³² 2^(shift + scale - up) / 2⁵⁵.
+        let down = 23 + up - self.shift - scale as i32;
         if down < 2 { None } else { Some(high >> down.min(31)) }
     }
 
-    /// The same by exact division, for triangles that are large or steep.
+    /// The same by exact division, for triangles that are large or steep: rounded to nearest, modulo 2³².
+    ///
+    /// # Format
+    /// Below 2⁵⁹ · 2¹⁶ · 2²⁵ · 2 = 2¹⁰¹.
     #[inline(never)]
-    fn exact(&self, value: i64, a: i64, b: i64) -> PlaneEquation {
-        let flip = |n: i128| if self.area < 0 { -n } else { n };
+    fn exact(&self, base: u32, a: i64, b: i64, scale: u32) -> PlaneEquation {
+        let scaled = |n: i128| if self.area < 0 { -n << scale } else { n << scale };
         let area = self.area.unsigned_abs();
-        let to_x = 256 * self.origin.0 + 128 - self.x[0];
-        let to_y = 256 * self.origin.1 + 128 - self.y[0];
-        let offset = i128::from(a) * i128::from(to_x) + i128::from(b) * i128::from(to_y);
+        let offset = i128::from(a) * i128::from(self.to.0) + i128::from(b) * i128::from(self.to.1);
         PlaneEquation {
-            dx: divide_modulo(flip(i128::from(a) << 8), area) as i32,
-            dy: divide_modulo(flip(i128::from(b) << 8), area) as i32,
-            base: (value as u32).wrapping_add(divide_modulo(flip(offset), area)),
+            dx: divide_modulo(scaled(i128::from(a) << 8), area) as i32,
+            dy: divide_modulo(scaled(i128::from(b) << 8), area) as i32,
+            base: base.wrapping_add(divide_modulo(scaled(offset), area)),
         }
     }
 }
 
-/// Whether all differences of coordinates are below 2¹⁵, so that areas fit 31 bits.
-fn small_triangle(v: &[ScreenVertex; 3]) -> bool {
-    use crate::geometry::small;
-    small(v[1].x - v[0].x) & small(v[1].y - v[0].y) & small(v[2].x - v[0].x) & small(v[2].y - v[0].y)
+/// Whether a difference of values is within -2¹⁴..2¹⁴.
+#[inline]
+fn moderate(difference: i32) -> bool {
+    (difference.wrapping_add(1 << 14)) as u32 >> 15 == 0
 }
 
-/// ⌊num / den + 1/2⌋ modulo 2³²; |num| < 2⁹⁰, 0 < den < 2⁵¹.
+/// ⌊num / den + 1/2⌋ modulo 2³²; |num| < 2¹²⁰, 0 < den < 2⁵¹.
 ///
 /// Long division, bit by bit: no 128-bit division routine to link, and rare.
 fn divide_modulo(num: i128, den: u64) -> u32 {
