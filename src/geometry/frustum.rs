@@ -10,7 +10,7 @@ pub struct Plane {
     normal: [i32; 3],
     /// Offset, below 2⁶⁰: the value of the plane at the origin.
     offset: i64,
-    /// Length of the normal, rounded up.
+    /// At least the length of the normal.
     length: i32,
 }
 
@@ -43,36 +43,32 @@ pub struct Frustum {
     planes: [Plane; 6],
 }
 
-/// Rounding of a normal (half a unit an axis times 2³¹) and of the offset cannot move a value by more than this.
-const SLACK: i64 = 1 << 32;
+/// Rounding of a normal (a unit an axis times 2³¹) and of the offset cannot move a value by more than this.
+const SLACK: i64 = 1 << 33;
 
 impl Plane {
-    /// The plane `row · (x, y, z, 1) ≥ 0`, entries below 2¹²⁰ with 32 fractional bits each.
-    fn new(row: [i128; 4]) -> Self {
+    /// The plane `row · (x, y, z, 1) ≥ 0`, entries below 2⁶¹ with 32 fractional bits each.
+    #[inline(never)]
+    fn new(row: [i64; 4]) -> Self {
         // Normal below 2²⁸ and offset (16 more fractional bits) below 2⁶⁰, by one common shift.
-        let bits = |v: i128| 128 - v.unsigned_abs().leading_zeros() as i32;
+        let bits = |v: i64| 64 - v.unsigned_abs().leading_zeros() as i32;
         let normal_bits = bits(row[0]).max(bits(row[1])).max(bits(row[2]));
         let shift = (normal_bits - 28).max(bits(row[3]) + 16 - 60);
-        let scaled = |v: i128, shift: i32| {
-            if shift >= 0 {
-                v >> shift.min(127)
-            } else {
-                v << (-shift).min(90)
-            }
-        };
+        let scaled = |v: i64, shift: i32| if shift >= 0 { v >> shift.min(63) } else { v << -shift };
         let normal = [
             scaled(row[0], shift) as i32,
             scaled(row[1], shift) as i32,
             scaled(row[2], shift) as i32,
         ];
-        let squares = normal
-            .iter()
-            .map(|&n| (i64::from(n) * i64::from(n)) as u64)
-            .fold(0, u64::wrapping_add);
+        // The largest component, half the second and a third of the smallest are never shorter than the vector, and at
+        // most 1/6 longer.
+        let mut sizes = normal.map(i32::abs);
+        sizes.sort_unstable();
+        let length = sizes[2] + sizes[1] / 2 + sizes[0] / 3 + 2;
         Self {
             normal,
-            offset: scaled(row[3], shift - 16) as i64,
-            length: squares.isqrt() as i32 + 1,
+            offset: scaled(row[3], shift - 16),
+            length,
         }
     }
 
@@ -83,6 +79,7 @@ impl Plane {
         i64::from(a) * i64::from(p[0]) + i64::from(b) * i64::from(p[1]) + i64::from(c) * i64::from(p[2]) + self.offset
     }
 
+    #[inline(never)]
     fn contains(&self, center: [i32; 3], reach: i64) -> Containment {
         let value = self.at(center);
         if value + reach < -SLACK {
@@ -99,51 +96,47 @@ impl Frustum {
     /// The planes of clip space in the space `matrix` maps from: of world space for a camera, of object space for a
     /// product of camera and model.
     pub fn new(matrix: &Projective) -> Self {
-        let rows = matrix.to_rows().map(|row| row.map(i128::from));
-        let add = |a: [i128; 4], b: [i128; 4], sign: i128| {
-            [
-                a[0] + sign * b[0],
-                a[1] + sign * b[1],
-                a[2] + sign * b[2],
-                a[3] + sign * b[3],
-            ]
-        };
-        let [x, y, z, w] = rows;
-        Self {
-            planes: [
-                Plane::new(add(w, x, 1)),
-                Plane::new(add(w, x, -1)),
-                Plane::new(add(w, y, 1)),
-                Plane::new(add(w, y, -1)),
-                Plane::new(z),
-                Plane::new(add(w, z, -1)),
-            ],
-        }
+        let sides = [[1, 0, 0, 1], [-1, 0, 0, 1], [0, 1, 0, 1], [0, -1, 0, 1]];
+        Self::combined(matrix, sides)
     }
 
     /// The part of the view volume that is seen through a rectangle of the screen.
     ///
     /// The rectangle is `x0..x1`, `y0..y1` in pixels; clip space is mapped to `viewport`.
     pub fn through(matrix: &Projective, viewport: &Viewport, x: (i32, i32), y: (i32, i32)) -> Self {
-        let rows = matrix.to_rows().map(|row| row.map(i128::from));
         // X = cx + hw x / w >= x0  <=>  W x + 2 (cx - x0) w >= 0, all times two; likewise the others, y downwards.
-        let half_plane = |factor: i32, row: usize, distance: i32| {
-            let mut combined = [0; 4];
-            for ((c, a), w) in combined.iter_mut().zip(rows[row]).zip(rows[3]) {
-                *c = a * i128::from(factor) + w * i128::from(distance);
-            }
-            Plane::new(combined)
-        };
         let (width, height) = (i32::from(viewport.width()), i32::from(viewport.height()));
         let (cx2, cy2) = (
             2 * i32::from(viewport.x()) + width,
             2 * i32::from(viewport.y()) + height,
         );
-        let mut planes = Self::new(matrix).planes;
-        planes[0] = half_plane(width, 0, cx2 - 2 * x.0);
-        planes[1] = half_plane(-width, 0, 2 * x.1 - cx2);
-        planes[2] = half_plane(height, 1, 2 * y.1 - cy2);
-        planes[3] = half_plane(-height, 1, cy2 - 2 * y.0);
+        let sides = [
+            [width, 0, 0, cx2 - 2 * x.0],
+            [-width, 0, 0, 2 * x.1 - cx2],
+            [0, height, 0, 2 * y.1 - cy2],
+            [0, -height, 0, cy2 - 2 * y.0],
+        ];
+        Self::combined(matrix, sides)
+    }
+
+    /// Planes whose rows are sums of the matrix's rows: `sides` says how many of each; near and far are always the same.
+    #[inline(never)]
+    fn combined(matrix: &Projective, sides: [[i32; 4]; 4]) -> Self {
+        let mut rows = matrix.to_rows();
+        // To 43 bits, so that sums with factors of 16 bits fit.
+        let largest = rows.iter().flatten().fold(0, |all, v| all | v.unsigned_abs());
+        let shift = (64 - largest.leading_zeros()).saturating_sub(43);
+        rows.iter_mut().flatten().for_each(|entry| *entry >>= shift);
+        let [a, b, c, d] = sides;
+        let planes = [a, b, c, d, [0, 0, 1, 0], [0, 0, -1, 1]].map(|factors| {
+            let mut sum = [0_i64; 4];
+            for (row, factor) in rows.iter().zip(factors) {
+                for (sum, entry) in sum.iter_mut().zip(row) {
+                    *sum += entry * i64::from(factor);
+                }
+            }
+            Plane::new(sum)
+        });
         Self { planes }
     }
 

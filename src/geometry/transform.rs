@@ -53,13 +53,26 @@ pub fn place(vertex: &ClipVertex) -> Placed {
 /// What a vertex transform yields: clip coordinates in the transform's own scale.
 pub type Transformed = ClipVertex;
 
-/// `value / 2^shift`, rounded to nearest; a negative shift multiplies.
-fn scale(value: i128, shift: i32) -> i128 {
-    if shift > 0 {
-        (value + (1 << (shift - 1))) >> shift
-    } else {
-        value << -shift
+/// `value / 2^shift`, rounded to nearest; a negative shift multiplies. 0 for shifts above 62.
+#[inline(never)]
+fn scale(value: i64, shift: i32) -> i64 {
+    match shift {
+        ..=0 => value << -shift,
+        1..=62 => ((value >> (shift - 1)) + 1) >> 1,
+        _ => 0,
     }
+}
+
+/// `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶: below 2⁶¹.
+#[inline(never)]
+fn times(a: i64, b: i32) -> i64 {
+    (a >> 16) * i64::from(b) + (((a & 0xFFFF) * i64::from(b)) >> 16)
+}
+
+/// Shifts that bring the largest of `values` below 2^`bits`; negative ones if they are smaller.
+fn excess<'v>(values: impl Iterator<Item = &'v i64>, bits: i32) -> i32 {
+    let all = values.fold(0, |all, v| all | v.unsigned_abs());
+    64 - all.leading_zeros() as i32 - bits
 }
 
 impl Transform {
@@ -70,68 +83,79 @@ impl Transform {
     ///
     /// # Format
     /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
-    /// than 2⁻³⁸ of it. Clip coordinates stay below 2⁵⁵ + 2.
+    /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
+    #[inline(never)]
     pub fn new(mvp: &Projective, viewport: &Viewport, positions: &Positions<'_>, displaced: bool) -> Self {
-        // 1. The matrix to 44 significant bits, so that what follows fits 128.
-        let rows = mvp.to_rows();
-        let largest = rows.iter().flatten().fold(0, |m, v| v.unsigned_abs() | m);
-        let shift = (64 - largest.leading_zeros() as i32 - 44).max(0);
-        let r = rows.map(|row| row.map(|v| scale(i128::from(v), shift)));
-
-        // 2. Entries for 32-bit inputs p, and the constant: 16.16 positions are p / 2¹⁶, fractions q are p / 2¹⁶ too.
-        //    Below 2⁷⁵ and 2¹⁰⁹.
-        let (entries, constant) = match positions {
-            Positions::Quantized { scale: s, offset, .. } if !displaced => {
-                let o = offset.to_bits().map(i128::from);
-                let s = i128::from(s.to_bits());
-                let moved = r.map(|row| (row[0] * o[0] + row[1] * o[1] + row[2] * o[2] + (row[3] << 16)) << 31);
-                (r.map(|row| [row[0] * s, row[1] * s, row[2] * s, 0]), moved)
-            }
-            Positions::Homogeneous(_) if !displaced => (r, [0; 4]),
-            _ => (r.map(|row| [row[0], row[1], row[2], 0]), r.map(|row| row[3] << 16)),
-        };
-
-        // 3. The viewport: X px = cx + hw x / w, so 1024 X / 512 px = (W x + 2 cx w) / w; y points down. Below 2¹²⁶.
-        let (width, height) = (i128::from(viewport.width()), i128::from(viewport.height()));
+        // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
+        let mut r = mvp.to_rows();
+        let shift = excess(r.iter().flatten(), 44).max(0);
+        // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
+        let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
         let (cx2, cy2) = (
-            2 * i128::from(viewport.x()) + width,
-            2 * i128::from(viewport.y()) + height,
+            2 * i64::from(viewport.x()) + width,
+            2 * i64::from(viewport.y()) + height,
         );
-        let fold = |x: i128, y: i128, z: i128, w: i128| [width * x + cx2 * w, cy2 * w - height * y, z << 10, w << 10];
-        let mut folded = [[0_i128; 4]; 4];
         for j in 0..4 {
-            let column = fold(entries[0][j], entries[1][j], entries[2][j], entries[3][j]);
-            for (row, value) in folded.iter_mut().zip(column) {
-                row[j] = value;
+            let [x, y, z, w] = [0, 1, 2, 3].map(|i: usize| scale(r[i][j], shift));
+            r[0][j] = width * x + cx2 * w;
+            r[1][j] = cy2 * w - height * y;
+            r[2][j] = z << 10;
+            r[3][j] = w << 10;
+        }
+        let shift = excess(r.iter().flatten(), 45);
+        for entry in r.iter_mut().flatten() {
+            *entry = scale(*entry, shift);
+        }
+
+        // 3. What the mesh makes of its numbers. Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats
+        //    written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
+        let mut e = [[0_i64; 4]; 4];
+        let mut t = [0_i64; 4];
+        for i in 0..4 {
+            match positions {
+                Positions::Quantized { scale, offset, .. } if !displaced => {
+                    t[i] = r[i][3];
+                    for (j, offset) in offset.to_bits().into_iter().enumerate() {
+                        t[i] += times(r[i][j], offset);
+                        e[i][j] = times(r[i][j], scale.to_bits());
+                    }
+                }
+                _ => {
+                    e[i] = r[i].map(|r| r << 15);
+                    if displaced || !matches!(positions, Positions::Homogeneous(_)) {
+                        t[i] = r[i][3];
+                        e[i][3] = 0;
+                    }
+                }
             }
         }
-        let constant = fold(constant[0], constant[1], constant[2], constant[3]);
 
-        // 4. One shift for all, so that the largest reachable value is just below 2⁵⁵.
-        let mut reach = 0_u128;
-        for (row, t) in folded.iter().zip(constant) {
-            let sum = row.iter().fold(0_u128, |sum, e| sum + e.unsigned_abs());
-            reach |= (sum << 31) + t.unsigned_abs();
+        // 4. One shift for all, so that the largest reachable value is just below 2⁵⁵; a quarter of it is summed up here.
+        let mut reach = [0_i64; 4];
+        for (reach, (e, t)) in reach.iter_mut().zip(e.iter().zip(t)) {
+            *reach = e
+                .iter()
+                .chain([&t])
+                .fold(0, |sum, v| sum + (v.unsigned_abs() >> 2) as i64 + 1);
         }
-        let shift = 128 - reach.leading_zeros() as i32 - 55;
+        let shift = excess(reach.iter(), 53);
         let mut result = Self {
             whole: [[0; 4]; 4],
             fraction: [[0; 4]; 4],
             translation: [0; 4],
             short: None,
         };
-        let mut entries = [[0_i64; 4]; 4];
         for i in 0..4 {
             for j in 0..4 {
-                let entry = scale(folded[i][j], shift - 16) as i64;
-                entries[i][j] = entry;
-                result.whole[i][j] = (entry >> 16) as i32;
-                result.fraction[i][j] = entry as u16;
+                // 16 fractional bits: e / 2³¹ · 2¹⁶.
+                e[i][j] = scale(e[i][j], shift + 15);
+                result.whole[i][j] = (e[i][j] >> 16) as i32;
+                result.fraction[i][j] = e[i][j] as u16;
             }
-            result.translation[i] = scale(constant[i], shift) as i64;
+            result.translation[i] = scale(t[i], shift);
         }
         if let (Positions::Quantized { .. }, false) = (positions, displaced) {
-            result.short = Short::new(&entries, &result.translation);
+            result.short = Short::new(&e, &result.translation);
         }
         result
     }
@@ -186,6 +210,7 @@ impl Transform {
 
     /// # Format
     /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded in `new`; fractions below 2¹⁶ · 2³¹.
+    #[inline(never)]
     fn apply(&self, p: [i32; 4]) -> Transformed {
         let row = |i: usize| {
             let (w, f) = (&self.whole[i], &self.fraction[i]);

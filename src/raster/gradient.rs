@@ -9,7 +9,7 @@
 //!
 //! All values are kept modulo 2³². Inside the triangle the true value fits, and sums and integer multiples of the
 //! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
-//! What is off is only the rounding of the gradients, 2⁻¹⁷ a pixel in 16.16: below 2⁻⁴ over the largest viewport.
+//! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, signed_area, small};
 use crate::math::mul_high_signed;
@@ -24,7 +24,10 @@ pub struct Gradients {
     to: (i32, i32),
     /// Twice the signed area; never 0.
     area: i64,
-    /// 2⁶³ / (|area| << shift), and shift, which puts the top bit of |area| into bit 31; 0 for large triangles.
+    /// Whether x and y are within -2¹⁵..2¹⁵.
+    is_small: bool,
+    /// 2⁶³ / (|area| << shift), and shift, which puts the top bit of |area| into bit 31; 0 for triangles of more than
+    /// 512 px.
     reciprocal: u32,
     shift: i32,
     /// The pixel that plane values refer to: the one that holds vertex 0, for large triangles brought onto the screen.
@@ -54,10 +57,17 @@ impl Gradients {
         let y = [v[1].y - v[0].y, v[2].y - v[0].y];
         let mut origin = (v[0].x >> 8, v[0].y >> 8);
         let (mut reciprocal, mut shift) = (0, 0);
-        if small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]) {
+        let is_small = small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]);
+        if is_small {
             let magnitude = (area as i32).unsigned_abs();
-            shift = magnitude.leading_zeros();
+            shift = magnitude.leading_zeros() as i32;
             reciprocal = crate::math::reciprocal(magnitude << shift);
+        } else if medium(x[0]) & medium(x[1]) & medium(y[0]) & medium(y[1]) {
+            // Areas up to 2³⁵, of which the upper 32 bits count: 2⁻³¹ is lost.
+            let magnitude = area.unsigned_abs();
+            let zeros = magnitude.leading_zeros();
+            shift = zeros as i32 - 32;
+            reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
             origin = (
                 origin.0.clamp(0, i32::from(width) - 1),
@@ -70,8 +80,9 @@ impl Gradients {
             y,
             to,
             area,
+            is_small,
             reciprocal,
-            shift: shift as i32,
+            shift,
             origin,
         })
     }
@@ -96,7 +107,7 @@ impl Gradients {
         }
         // Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
         let up = self.shift + scale as i32 - 23;
-        if self.reciprocal != 0 && up <= 4 && moderate(v1) & moderate(v2) {
+        if self.is_small && up <= 4 && moderate(v1) & moderate(v2) {
             let a = v1 * self.y[1] - v2 * self.y[0];
             let b = v2 * self.x[0] - v1 * self.x[1];
             let (a, b) = if self.area < 0 { (-a, -b) } else { (a, b) };
@@ -151,7 +162,7 @@ impl Gradients {
     }
 
     /// 256 2^scale n / area, if it is below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative
-    /// error below 2⁻²⁸, less than 2⁻⁷ over the 128 px of a small triangle, and one unit.
+    /// error below 2⁻²⁸, so less than 2⁻⁵ of a unit over 512 px in both directions, and one unit of 2⁻¹⁶ a pixel.
     ///
     /// 256 / area = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
     /// 2⁻³⁰).
@@ -166,21 +177,26 @@ impl Gradients {
         if down < 2 { None } else { Some(high >> down.min(31)) }
     }
 
-    /// The same by exact division, for triangles that are large or steep: rounded to nearest, modulo 2³².
-    ///
-    /// # Format
-    /// Below 2⁵⁹ · 2¹⁶ · 2²⁵ · 2 = 2¹⁰¹.
+    /// The same by exact division, for triangles that are larger or steep: rounded down, modulo 2³².
     #[inline(never)]
     fn exact(&self, base: u32, a: i64, b: i64, scale: u32) -> PlaneEquation {
-        let scaled = |n: i128| if self.area < 0 { -n << scale } else { n << scale };
         let area = self.area.unsigned_abs();
-        let offset = i128::from(a) * i128::from(self.to.0) + i128::from(b) * i128::from(self.to.1);
+        let divided = |n: Wide, bits: u32| divide_modulo(if self.area < 0 { n.negated() } else { n }, area, bits);
         PlaneEquation {
-            dx: divide_modulo(scaled(i128::from(a) << 8), area) as i32,
-            dy: divide_modulo(scaled(i128::from(b) << 8), area) as i32,
-            base: base.wrapping_add(divide_modulo(scaled(offset), area)),
+            dx: divided(Wide::product(a, 1), 8 + scale) as i32,
+            dy: divided(Wide::product(b, 1), 8 + scale) as i32,
+            base: base.wrapping_add(divided(
+                Wide::product(a, self.to.0).plus(Wide::product(b, self.to.1)),
+                scale,
+            )),
         }
     }
+}
+
+/// Whether a difference of coordinates is within -2¹⁷..2¹⁷: 512 px.
+#[inline]
+fn medium(difference: i32) -> bool {
+    (difference + (1 << 17)) as u32 >> 18 == 0
 }
 
 /// Whether a difference of values is within -2¹⁴..2¹⁴.
@@ -189,26 +205,65 @@ fn moderate(difference: i32) -> bool {
     (difference.wrapping_add(1 << 14)) as u32 >> 15 == 0
 }
 
-/// ⌊num / den + 1/2⌋ modulo 2³²; |num| < 2¹²⁰, 0 < den < 2⁵¹.
-///
-/// Long division, bit by bit: no 128-bit division routine to link, and rare.
-fn divide_modulo(num: i128, den: u64) -> u32 {
-    let num = num + i128::from(den >> 1);
-    let magnitude = if num < 0 { !num } else { num } as u128;
-    let mut rest = 0_u64;
-    let mut quotient = 0_u32;
-    let mut bit = 128 - magnitude.leading_zeros();
-    while bit > 0 {
-        bit -= 1;
-        rest = rest << 1 | ((magnitude >> bit) as u64 & 1);
-        quotient <<= 1;
-        if rest >= den {
-            rest -= den;
-            quotient |= 1;
+/// A signed number of 96 bits: `high` 2³² + `low`.
+#[derive(Clone, Copy)]
+struct Wide {
+    high: i64,
+    low: u32,
+}
+
+impl Wide {
+    /// |a| < 2⁶⁰, |b| < 2²⁶.
+    fn product(a: i64, b: i32) -> Self {
+        let low = i64::from(a as u32) * i64::from(b);
+        Self {
+            high: (a >> 32) * i64::from(b) + (low >> 32),
+            low: low as u32,
         }
     }
-    // ⌊-n / d⌋ = !⌊(n - 1) / d⌋.
-    if num < 0 { !quotient } else { quotient }
+
+    fn plus(self, other: Self) -> Self {
+        let (low, carry) = self.low.overflowing_add(other.low);
+        Self {
+            high: self.high + other.high + i64::from(carry),
+            low,
+        }
+    }
+
+    /// -n = !n + 1.
+    fn negated(self) -> Self {
+        let (low, carry) = (!self.low).overflowing_add(1);
+        Self {
+            high: !self.high + i64::from(carry),
+            low,
+        }
+    }
+}
+
+/// ⌊n 2^bits / den⌋ modulo 2³², 0 < den < 2⁵¹.
+///
+/// Long division, bit by bit: it is rare, and wider divisions are code that small programs need not link.
+fn divide_modulo(n: Wide, den: u64, bits: u32) -> u32 {
+    // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
+    let flip = (n.high >> 63) as u32;
+    let words = [(n.high >> 32) as u32 ^ flip, n.high as u32 ^ flip, n.low ^ flip, flip];
+    let mut rest = 0_u64;
+    let mut quotient = 0_u32;
+    for (mut word, bits) in words.into_iter().zip([32, 32, 32, bits]) {
+        if word == 0 && rest == 0 && quotient == 0 {
+            continue;
+        }
+        for _ in 0..bits {
+            rest = rest << 1 | u64::from(word >> 31);
+            word <<= 1;
+            quotient <<= 1;
+            if rest >= den {
+                rest -= den;
+                quotient |= 1;
+            }
+        }
+    }
+    quotient ^ flip
 }
 
 impl PlaneEquation {
@@ -218,5 +273,47 @@ impl PlaneEquation {
         self.base
             .wrapping_add((self.dx.wrapping_mul(x - origin.0)) as u32)
             .wrapping_add((self.dy.wrapping_mul(y - origin.1)) as u32)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_division_is_exact_modulo_2_to_32() {
+        let mut state = 5_u64;
+        let mut next = || {
+            state = state
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            state ^ state >> 29
+        };
+        for case in 0..20_000 {
+            let (a, b) = (
+                next() as i64 >> (4 + next() % 58),
+                (next() as i64 >> (38 + next() % 24)) as i32,
+            );
+            let (c, d) = (
+                next() as i64 >> (4 + next() % 58),
+                (next() as i64 >> (38 + next() % 24)) as i32,
+            );
+            let den = (next() >> (13 + next() % 50)).max(1);
+            let bits = (next() % 25) as u32;
+            let exact = i128::from(a) * i128::from(b) + i128::from(c) * i128::from(d);
+            let n = Wide::product(a, b).plus(Wide::product(c, d));
+            let expected = (exact << bits).div_euclid(i128::from(den)) as u32;
+            assert_eq!(
+                divide_modulo(n, den, bits),
+                expected,
+                "case {case}: {exact} << {bits} / {den}"
+            );
+            let expected = (-exact << bits).div_euclid(i128::from(den)) as u32;
+            assert_eq!(
+                divide_modulo(n.negated(), den, bits),
+                expected,
+                "case {case}: -{exact} << {bits} / {den}"
+            );
+        }
     }
 }
