@@ -5,6 +5,8 @@
 mod affine;
 mod angle;
 mod format;
+#[cfg(feature = "micromath")]
+mod micromath;
 mod projective;
 mod reciprocal;
 mod vector;
@@ -12,6 +14,8 @@ mod vector;
 pub use affine::Affine;
 pub use angle::Angle;
 pub use format::{Scalar, Subpixel, Wide};
+#[cfg(feature = "micromath")]
+pub use micromath::FloatError;
 pub use projective::{ProjectionError, Projective};
 pub use reciprocal::{mul_high, mul_high_signed, reciprocal};
 pub use vector::Vec3;
