@@ -1,0 +1,36 @@
+//! A lit cube, one frame of it, drawn in strips of 16 rows straight into a PNG file.
+use std::io::Write;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
+use zstrip::fragment::Flat;
+use zstrip::geometry::{Light, Mesh, MeshData, Positions, Topology};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::output::StripPixels;
+use zstrip::{Buffers, Renderer};
+
+#[rustfmt::skip]
+static CUBE: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    indices: Some(&[0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7]),
+    ..MeshData::new(Positions::Exact(&[
+        Vec3::from_ints(-1, -1, -1), Vec3::from_ints(1, -1, -1), Vec3::from_ints(1, 1, -1), Vec3::from_ints(-1, 1, -1),
+        Vec3::from_ints(-1, -1, 1), Vec3::from_ints(1, -1, 1), Vec3::from_ints(1, 1, 1), Vec3::from_ints(-1, 1, 1),
+    ]))
+});
+
+fn main() -> Result<(), Box<dyn std::error::Error>> {
+    let (color, depth, records) = (&mut [[0; 3]; 320 * 16], &mut [0; 320 * 16], &mut [0; 256]);
+    let mut renderer = Renderer::<Rgb888>::new((320, 240), Buffers { color, depth, records })?;
+
+    let camera = Projective::perspective(Angle::from_degrees(45), (320, 240), Scalar::ONE, Scalar::from_num(20))?;
+    let view = Affine::look_at(Vec3::from_ints(2, 3, 4), Vec3::ZERO, Vec3::Y)?;
+    let light = Light::new(Vec3::from_ints(1, 3, 2), Rgb888::CSS_DARK_GRAY, Rgb888::CSS_DIM_GRAY);
+
+    let mut png = png::Encoder::new(std::fs::File::create("hello.png")?, 320, 240);
+    png.set_color(png::ColorType::Rgb);
+    let mut png = png.write_header()?.into_stream_writer()?;
+    let to_png = |strip: &StripPixels<Rgb888>| png.write_all(strip.bytes());
+    renderer.frame_to(to_png, Rgb888::BLACK, |scene| {
+        scene.draw(&CUBE, &(camera * view), &Flat::new(light, Rgb888::CSS_ORANGE));
+    })?;
+    Ok(png.finish()?)
+}
