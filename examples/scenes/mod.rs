@@ -91,11 +91,12 @@ pub fn light() -> Light {
     )
 }
 
-/// Where the torus is, turned.
+/// Where the torus is: tumbling, since a turn about its axis would not show.
 pub fn torus_model(turn: Angle) -> Affine {
     Affine::translation(Vec3::from_ints(0, 0, -3))
         * Affine::rotation_x(Angle::from_degrees(40))
         * Affine::rotation_y(turn)
+        * Affine::rotation_z(turn)
 }
 
 /// Draws the torus with a shader made for its light, which is given in its object space.
@@ -120,23 +121,26 @@ pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     torus_with(scene, turn, |light| Gouraud::new(light, TORUS_COLOR));
 }
 
-/// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view.
+/// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view. It
+/// looks to and fro, by 40 degrees.
 pub fn room_camera(screen: (u16, u16), turn: Angle) -> Projective {
     let eye = Vec3::from_milli(-1500, 300, 1500);
-    let view = Affine::rotation_y(turn + Angle::from_degrees(40)) * Affine::translation(-eye);
+    let sway = Angle((turn.sin().to_bits() / 9) as u16);
+    let view = Affine::rotation_y(sway + Angle::from_degrees(40)) * Affine::translation(-eye);
     camera(screen, Scalar::from_bits(1 << 13), Scalar::from_bits(16 << 16)) * view
 }
 
-/// A room seen from inside, with a pillar and a torus.
+/// A room seen from inside, with a chequered floor, a pillar and a torus of half its size.
 pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = room_camera(scene.screen(), turn);
     scene.draw(&polygons::ROOM, &mvp, &Gouraud::unlit());
+    scene.draw(&polygons::FLOOR, &mvp, &Flat::colors(light()));
     let pillar = Affine::translation(Vec3::from_milli(800, 0, -600));
     scene.draw(&polygons::PILLAR, &(mvp * pillar), &Flat::colors(light()));
-    let ring = Affine::translation(Vec3::from_milli(-800, -600, -1200)) * Affine::rotation_x(turn);
+    let ring = Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
     scene.draw(
         &torus::MESH,
-        &(mvp * ring),
+        &(mvp * (ring * Affine::scale(Scalar::from_bits(1 << 15)))),
         &Gouraud::new(light().to_object(&ring), Rgb888::new(90, 200, 120)),
     );
 }
@@ -153,7 +157,10 @@ const DEFAULT: State = State {
 
 /// Three squares through one another.
 pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene) * torus_model(turn + Angle::from_degrees(25));
+    let mvp = standard_camera(scene)
+        * Affine::translation(Vec3::from_ints(0, 0, -3))
+        * Affine::rotation_x(Angle::from_degrees(40))
+        * Affine::rotation_y(turn + Angle::from_degrees(25));
     scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &mvp, &Flat::colors(light()));
 }
 

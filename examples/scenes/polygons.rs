@@ -23,31 +23,104 @@ const fn colored(
     })
 }
 
-/// The inside of a box, 4 × 2 × 4: corners 0 to 3 below, 4 to 7 above.
-pub static ROOM: Mesh<'static> = colored(
-    &[
+/// Walls and ceiling of a box seen from inside, 4 × 2 × 4, each in a colour of its own that is darker near the floor.
+pub static ROOM: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    colors: Some(&wall_colors()),
+    ..MeshData::new(Positions::Exact(&[
+        // -z, +x, +z, -x: lower left, lower right, upper right, upper left, as seen from inside.
         at(-2000, -1000, -2000),
         at(2000, -1000, -2000),
+        at(2000, 1000, -2000),
+        at(-2000, 1000, -2000),
+        at(2000, -1000, -2000),
+        at(2000, -1000, 2000),
+        at(2000, 1000, 2000),
+        at(2000, 1000, -2000),
         at(2000, -1000, 2000),
         at(-2000, -1000, 2000),
+        at(-2000, 1000, 2000),
+        at(2000, 1000, 2000),
+        at(-2000, -1000, 2000),
+        at(-2000, -1000, -2000),
+        at(-2000, 1000, -2000),
+        at(-2000, 1000, 2000),
+        // The ceiling.
         at(-2000, 1000, -2000),
         at(2000, 1000, -2000),
         at(2000, 1000, 2000),
         at(-2000, 1000, 2000),
-    ],
-    &[0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 1, 2, 6, 5, 2, 3, 7, 6, 3, 0, 4, 7],
-    &[
-        [200, 60, 60],
-        [60, 160, 60],
-        [70, 70, 200],
-        [180, 170, 60],
-        [230, 150, 140],
-        [150, 220, 150],
-        [150, 160, 240],
-        [240, 235, 190],
-    ],
-    Topology::Quads,
-);
+    ]))
+});
+
+const fn wall_colors() -> [Rgb; 20] {
+    let walls = [
+        [196, 96, 80],
+        [90, 120, 190],
+        [180, 150, 80],
+        [90, 160, 110],
+        [225, 222, 210],
+    ];
+    let mut colors = [[0; 3]; 20];
+    let mut k = 0;
+    while k < 20 {
+        let [r, g, b] = walls[k / 4];
+        // The two lower corners of a wall: five eighths as bright.
+        let eighths = if k < 16 && k % 4 < 2 { 5 } else { 8 };
+        colors[k] = [
+            (r * eighths / 8) as u8,
+            (g * eighths / 8) as u8,
+            (b * eighths / 8) as u8,
+        ];
+        k += 1;
+    }
+    colors
+}
+
+const TILES: usize = 8;
+
+const fn floor_positions() -> [Vec3; (TILES + 1) * (TILES + 1)] {
+    let mut points = [Vec3::ZERO; (TILES + 1) * (TILES + 1)];
+    let mut k = 0;
+    while k < points.len() {
+        let (i, j) = ((k % (TILES + 1)) as i32, (k / (TILES + 1)) as i32);
+        points[k] = at(4000 * i / TILES as i32 - 2000, -1000, 4000 * j / TILES as i32 - 2000);
+        k += 1;
+    }
+    points
+}
+
+/// The colour of a tile is that of its first corner, which no other tile begins with.
+const fn floor_colors() -> [Rgb; (TILES + 1) * (TILES + 1)] {
+    let mut colors = [[245, 238, 220]; (TILES + 1) * (TILES + 1)];
+    let mut k = 0;
+    while k < colors.len() {
+        if (k % (TILES + 1) + k / (TILES + 1)) % 2 == 0 {
+            colors[k] = [110, 84, 70];
+        }
+        k += 1;
+    }
+    colors
+}
+
+const fn floor_indices() -> [u16; 4 * TILES * TILES] {
+    let mut indices = [0; 4 * TILES * TILES];
+    let mut tile = 0;
+    while tile < TILES * TILES {
+        let first = tile % TILES + (TILES + 1) * (tile / TILES);
+        let corners = [first, first + TILES + 1, first + TILES + 2, first + 1];
+        let mut k = 0;
+        while k < 4 {
+            indices[4 * tile + k] = corners[k] as u16;
+            k += 1;
+        }
+        tile += 1;
+    }
+    indices
+}
+
+/// The floor of the room: 8 × 8 tiles, to be drawn flat.
+pub static FLOOR: Mesh<'static> = colored(&floor_positions(), &floor_indices(), &floor_colors(), Topology::Quads);
 
 /// The outside of a column, 0.5 × 2 × 0.5.
 pub static PILLAR: Mesh<'static> = colored(
@@ -136,7 +209,7 @@ const fn planks() -> [Vec3; 12] {
             2 => (1300, -350, 300),
             _ => (-1300, -350, -300),
         };
-        points[k] = at(((x * c - y * s) >> 16) as i32, ((x * s + y * c) >> 16) as i32, z as i32);
+        points[k] = at(((x * c - y * s) >> 16) as i32, ((x * s + y * c) >> 16) as i32, z);
         k += 1;
     }
     points
