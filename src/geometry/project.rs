@@ -66,7 +66,8 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
         } else {
             c >> (39 - shift)
         };
-        (mul_high_signed(c.clamp(-0x7FFF_FFFF, 0x7FFF_FFFF) as i32, inv_w) + 64) >> 7
+        // Rounded in two shifts, as far outside of the guard band the sum would not fit.
+        ((mul_high_signed(c.clamp(-0x7FFF_FFFF, 0x7FFF_FFFF) as i32, inv_w) >> 6) + 1) >> 1
     };
     let z = v.z.clamp(0, v.w);
     let z = (((z << (shift - 1)) as u64) >> 31) as u32;
@@ -82,3 +83,25 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
 
 /// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.
 const LIMIT: i32 = (1 << 23) - 1;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Vertices outside of the guard band are projected before their outcode tells that the result is not needed.
+    #[test]
+    fn positions_far_outside_of_the_guard_band_stop_at_the_limit() {
+        for w in [1, 3, 1 << 20, (1 << 49) - 1] {
+            for far in [64 * w, 65 * w, 128 * w - 1, 128 * w] {
+                let placed = project(&ClipVertex {
+                    x: far,
+                    y: -far,
+                    z: w,
+                    w,
+                });
+                assert_eq!(placed, Some(ScreenVertex::new(LIMIT, -LIMIT, 0)), "w {w}, x {far}");
+            }
+        }
+        assert_eq!(project(&ClipVertex::default()), None);
+    }
+}
