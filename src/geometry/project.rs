@@ -71,9 +71,9 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     };
     let z = v.z.clamp(0, v.w);
     let z = (((z << (shift - 1)) as u64) >> 31) as u32;
-    // z / w as 1.31, then 65,535 times that as 16.16, rounded.
-    let fraction = mul_high(z, inv_w) >> 15;
-    let z = (fraction.min(1 << 16) * 65_535 + (1 << 15)) >> 16;
+    // z / w as 1.31, and 65,535 times that as 16.15, rounded: 2¹⁶ f - f.
+    let fraction = mul_high(z, inv_w).min(1 << 31);
+    let z = (fraction - (fraction >> 16) + (1 << 14)) >> 15;
     Some(ScreenVertex {
         x: position(v.x).clamp(-LIMIT, LIMIT),
         y: position(v.y).clamp(-LIMIT, LIMIT),
@@ -99,9 +99,23 @@ mod tests {
                     z: w,
                     w,
                 });
-                assert_eq!(placed, Some(ScreenVertex::new(LIMIT, -LIMIT, 0)), "w {w}, x {far}");
+                assert_eq!(placed, Some(ScreenVertex::new(LIMIT, -LIMIT, 65_535)), "w {w}, x {far}");
             }
         }
         assert_eq!(project(&ClipVertex::default()), None);
+    }
+
+    #[test]
+    fn depth_is_rounded_to_nearest() {
+        let mut worst = 0_f64;
+        for w in [1, 7, 65_535, 65_536, (1 << 32) + 12_345, (1 << 55) - 1] {
+            for k in 0..=4000 {
+                let z = (i128::from(w) * k / 4000) as i64;
+                let exact = 65_535.0 * z as f64 / w as f64;
+                let placed = project(&ClipVertex { x: 0, y: 0, z, w }).expect("w is positive");
+                worst = worst.max((f64::from(placed.z) - exact).abs());
+            }
+        }
+        assert!(worst <= 0.5 + 1.0 / 4096.0, "worst {worst} steps");
     }
 }
