@@ -66,17 +66,16 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
         } else {
             c >> (39 - shift)
         };
-        (mul_high_signed(c.clamp(-0x7FFF_FFFF, 0x7FFF_FFFF) as i32, inv_w) + 64) >> 7
+        // Rounded in two shifts, as far outside of the guard band the sum would not fit.
+        ((mul_high_signed(c.clamp(-0x7FFF_FFFF, 0x7FFF_FFFF) as i32, inv_w) >> 6) + 1) >> 1
     };
     let z = v.z.clamp(0, v.w);
     let z = (((z << (shift - 1)) as u64) >> 31) as u32;
-    // z / w as 1.31, then 65,535 times that as 16.16, rounded.
-    let fraction = mul_high(z, inv_w) >> 15;
-    let z = (fraction.min(1 << 16) * 65_535 + (1 << 15)) >> 16;
+    let z = depth(z, inv_w);
     Some(ScreenVertex {
         x: position(v.x).clamp(-LIMIT, LIMIT),
         y: position(v.y).clamp(-LIMIT, LIMIT),
-        z: z as u16,
+        z,
     })
 }
 
@@ -97,9 +96,9 @@ pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
 /// 65,535 z / w rounded to nearest, from z and 2⁶³ / w in the scale that puts w into 2³¹..2³².
 #[inline]
 fn depth(z: u32, inv_w: u32) -> u16 {
-    // z / w as 1.31, then 65,535 times that as 16.16, rounded.
-    let fraction = (mul_high(z, inv_w) >> 15).min(1 << 16);
-    ((fraction * 65_535 + (1 << 15)) >> 16) as u16
+    // z / w as 1.31, and 65,535 times that as 16.15, rounded: 2¹⁶ f - f.
+    let fraction = mul_high(z, inv_w).min(1 << 31);
+    ((fraction - (fraction >> 16) + (1 << 14)) >> 15) as u16
 }
 
 /// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.
@@ -130,5 +129,36 @@ mod tests {
             };
             assert_eq!(Some(project_short([x, y, z, w])), project(&long), "{x} {y} {z} {w}");
         }
+    }
+
+    /// Vertices outside of the guard band are projected before their outcode tells that the result is not needed.
+    #[test]
+    fn positions_far_outside_of_the_guard_band_stop_at_the_limit() {
+        for w in [1, 3, 1 << 20, (1 << 49) - 1] {
+            for far in [64 * w, 65 * w, 128 * w - 1, 128 * w] {
+                let placed = project(&ClipVertex {
+                    x: far,
+                    y: -far,
+                    z: w,
+                    w,
+                });
+                assert_eq!(placed, Some(ScreenVertex::new(LIMIT, -LIMIT, 65_535)), "w {w}, x {far}");
+            }
+        }
+        assert_eq!(project(&ClipVertex::default()), None);
+    }
+
+    #[test]
+    fn depth_is_rounded_to_nearest() {
+        let mut worst = 0_f64;
+        for w in [1, 7, 65_535, 65_536, (1 << 32) + 12_345, (1 << 55) - 1] {
+            for k in 0..=4000 {
+                let z = (i128::from(w) * k / 4000) as i64;
+                let exact = 65_535.0 * z as f64 / w as f64;
+                let placed = project(&ClipVertex { x: 0, y: 0, z, w }).expect("w is positive");
+                worst = worst.max((f64::from(placed.z) - exact).abs());
+            }
+        }
+        assert!(worst <= 0.5 + 1.0 / 4096.0, "worst {worst} steps");
     }
 }

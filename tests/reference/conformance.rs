@@ -18,7 +18,7 @@ use std::path::Path;
 
 // Paths are given because an example program may reach this file by a path of its own.
 #[path = "hits.rs"]
-mod hits;
+pub mod hits;
 #[path = "records.rs"]
 pub mod records;
 

@@ -1,6 +1,8 @@
 //! The references against the conformance data, and the checker against rasterizers that are wrong on purpose.
 
+#[path = "../reference/mod.rs"]
 mod reference;
+mod units;
 
 use reference::conformance::records::Table;
 use reference::conformance::{CheckError, Outcome, Rasterizer, check_file};
@@ -8,7 +10,7 @@ use reference::exact;
 use reference::homogeneous::{Vertex, Viewport, for_each_sample};
 use reference::mistakes::Mistake;
 use reference::model::Model;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 const CHECKED: [&str; 9] = [
     "tri_random",
@@ -125,8 +127,22 @@ fn homogeneous_margins_agree_with_the_clipping_data() {
     }
 }
 
+/// A file without most of its records where there are hundreds, which take long with slow rasterizers.
+fn thinned(stem: &str, folder: &Path) -> PathBuf {
+    if stem != "tri_bulk_hash" {
+        return data(stem);
+    }
+    let text = std::fs::read_to_string(data(stem)).expect("the data");
+    let kept: Vec<&str> = text.lines().step_by(10).collect();
+    let path = folder.join(format!("{stem}.csv"));
+    std::fs::write(&path, kept.join("\n")).expect("a file for the test");
+    path
+}
+
 #[test]
 fn every_mistake_is_found() {
+    let folder = std::env::temp_dir().join(format!("mistakes-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).expect("a folder for the test");
     use Mistake::*;
     let coverage = |m: Mistake| {
         matches!(
@@ -135,20 +151,6 @@ fn every_mistake_is_found() {
         )
     };
     for mistake in Mistake::ALL {
-        let mut found = Vec::new();
-        for stem in CHECKED {
-            let mut rasterizer = mistake;
-            let outcome = check(stem, &mut rasterizer);
-            if let Outcome::Checked {
-                right,
-                total,
-                first_wrong: Some(wrong),
-            } = &outcome
-            {
-                println!("{mistake:?}: {right}/{total}: {wrong}");
-                found.push(stem);
-            }
-        }
         let must_find: Vec<&str> = match mistake {
             // Depth scenes report one winner per pixel, and so hide what is drawn twice or outside.
             TwiceOnce | LeavesViewport => CHECKED.into_iter().filter(|s| *s != "depth").collect(),
@@ -163,9 +165,18 @@ fn every_mistake_is_found() {
             _ => unreachable!("listed above"),
         };
         for stem in must_find {
-            assert!(found.contains(&stem), "{stem} does not find {mistake:?}");
+            let mut rasterizer = mistake;
+            // Samples exactly on an edge are rare: the whole file is needed to meet some.
+            let file = match mistake {
+                AllEdgesOwn | BottomRight => data(stem),
+                _ => thinned(stem, &folder),
+            };
+            let outcome = check_file(&file, &mut rasterizer).unwrap_or_else(|error| panic!("{error}"));
+            println!("{mistake:?}: {outcome:?}");
+            assert!(!outcome.is_right(), "{stem} does not find {mistake:?}");
         }
     }
+    std::fs::remove_dir_all(&folder).expect("the folder can go");
 }
 
 #[test]
