@@ -54,10 +54,11 @@ memory() {
     printf -- '-Clink-arg=--defsym=_%s\n' "flash_length=$1" "ram_length=$2"
 }
 
-# emulate <machine> <image> [cpu]: runs an image until it exits; its prints arrive on stdout.
+# emulate <machine> <image> [QEMU options]: runs an image until it exits; its prints arrive on stdout.
 emulate() {
-    local qemu=(qemu-system-arm)
-    [ "$1" = virt ] && qemu=(qemu-system-riscv32 -bios none)
-    timeout "${LIMIT:-300}" "${qemu[@]}" -machine "$1" ${3:+-cpu "$3"} -nographic -monitor none \
-        -semihosting-config enable=on,target=native -kernel "$2" </dev/null
+    local machine=$1 image=$2 qemu=(qemu-system-arm)
+    shift 2
+    [ "$machine" = virt ] && qemu=(qemu-system-riscv32 -bios none)
+    timeout "${LIMIT:-300}" "${qemu[@]}" -machine "$machine" -nographic -monitor none \
+        -semihosting-config enable=on,target=native "$@" -kernel "$image" </dev/null
 }

@@ -1,0 +1,263 @@
+//! The benchmark's workloads: as firmware they are counted, on the host their pictures are checked. `ci/bench` runs both
+//! and prints the table.
+//!
+//! As firmware it prints, for each run, `name rows ticks hash`: SysTick's ticks over a frame, between two instructions
+//! that mark it for a counting plugin, and a hash of the picture. A frame clears colours and depths; runs of an empty
+//! scene tell what that costs. With `--cfg 'ram="records"'` or `--cfg 'ram="bare"'` it draws the Gouraud torus with the
+//! buffers such a firmware would have, and prints the RAM that takes.
+//!
+//! On the host it prints `name covered hash` and compares each picture with a reference in double precision.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod firmware;
+mod workloads;
+
+use workloads::{HEIGHT, WIDTH, Workload};
+use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+#[cfg(not(target_os = "none"))]
+use zstrip::output::Buffers;
+use zstrip::output::RamBudget;
+
+const NAMED: [(&str, Workload); 6] = [
+    ("empty", Workload::Empty),
+    ("w1", Workload::Quad),
+    ("w2", Workload::GouraudQuad),
+    ("w4", Workload::FlatTorus),
+    ("w5", Workload::GouraudTorus),
+    ("w6", Workload::Tiny),
+];
+
+/// FNV-1a over pixels.
+struct Hash(u32);
+
+impl Hash {
+    const NEW: Self = Self(0x811C_9DC5);
+
+    fn add(&mut self, pixels: &[u16]) {
+        for &pixel in pixels {
+            self.0 = (self.0 ^ u32::from(pixel)).wrapping_mul(0x0100_0193);
+        }
+    }
+}
+
+/// Rows of a strip, and words of records.
+const SIZES: (usize, usize) = if cfg!(ram = "records") {
+    let budget = RamBudget::new::<Rgb565>(WIDTH as u16, 16);
+    (
+        16,
+        budget.with_records(1, HEIGHT as u16, 512, 1, FRONT_FACES).records / 4,
+    )
+} else if cfg!(ram = "bare") {
+    (8, 0)
+} else {
+    (HEIGHT, 256 * 1024)
+};
+
+/// Triangles of the torus that are drawn.
+const FRONT_FACES: usize = 458;
+
+#[cfg(target_os = "none")]
+mod counting {
+    use super::{Hash, NAMED, SIZES, WIDTH, Workload, firmware::stack, workloads};
+    use core::arch::asm;
+    use core::hint::black_box;
+    use core::sync::atomic::{AtomicU32, Ordering};
+    use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
+    use cortex_m_rt::exception;
+    use semihosting::println;
+    use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+    use zstrip::output::Buffers;
+
+    struct Memory {
+        color: [u16; WIDTH * SIZES.0],
+        depth: [u16; WIDTH * SIZES.0],
+        records: [u32; SIZES.1],
+    }
+
+    static mut MEMORY: Memory = Memory {
+        color: [0; _],
+        depth: [0; _],
+        records: [0; _],
+    };
+
+    /// Buffers for strips of some rows.
+    fn lend(memory: &mut Memory, rows: usize) -> Buffers<'_, Rgb565> {
+        let pixels = WIDTH * rows.min(SIZES.0);
+        Buffers {
+            color: &mut memory.color[..pixels],
+            depth: &mut memory.depth[..pixels],
+            records: &mut memory.records,
+        }
+    }
+
+    pub fn run() {
+        let memory = &raw mut MEMORY;
+        // SAFETY: `run` is called once; this is the only reference.
+        let memory = unsafe { &mut *memory };
+        if cfg!(any(ram = "records", ram = "bare")) {
+            return report_ram(memory);
+        }
+        let Some(mut peripherals) = Peripherals::take() else {
+            return;
+        };
+        let timer = &mut peripherals.SYST;
+        timer.set_clock_source(SystClkSource::Core);
+        timer.set_reload(0x00FF_FFFF);
+        timer.clear_current();
+        timer.enable_interrupt();
+        timer.enable_counter();
+        for rows in [240, 16] {
+            for (name, workload) in NAMED {
+                let torus = matches!(workload, Workload::FlatTorus | Workload::GouraudTorus);
+                if rows == 240 || torus || workload == Workload::Empty {
+                    let ticks = count(workload, lend(memory, rows));
+                    let mut hash = Hash::NEW;
+                    workloads::draw(workload, lend(memory, rows), |strip| hash.add(strip));
+                    println!("{name} {rows} {ticks} {:08x}", hash.0);
+                }
+            }
+        }
+    }
+
+    /// How often the timer, of 24 bits, has gone round; its handler runs once in 84 million instructions.
+    static ROUNDS: AtomicU32 = AtomicU32::new(0);
+
+    #[exception]
+    fn SysTick() {
+        ROUNDS.store(ROUNDS.load(Ordering::Relaxed) + 1, Ordering::Relaxed);
+    }
+
+    /// Ticks since the start, modulo 2^32, if the timer does not go round just now.
+    fn now() -> u32 {
+        (ROUNDS.load(Ordering::Relaxed) << 24) + (0x00FF_FFFF - SYST::get_current())
+    }
+
+    /// Ticks of a frame.
+    #[inline(never)]
+    fn count(workload: Workload, buffers: Buffers<'_, Rgb565>) -> u32 {
+        let start = now();
+        // SAFETY: copies a register to itself.
+        unsafe { asm!("mov r10, r10") };
+        let stats = workloads::draw(workload, buffers, |strip| {
+            black_box(strip);
+        });
+        // SAFETY: as above.
+        unsafe { asm!("mov r11, r11") };
+        let end = now();
+        black_box(stats);
+        end.wrapping_sub(start)
+    }
+
+    fn report_ram(memory: &mut Memory) {
+        let mut draw = || {
+            workloads::draw(Workload::GouraudTorus, lend(memory, SIZES.0), |strip| {
+                black_box(strip);
+            });
+        };
+        let peak = stack::peak_of(&mut draw) + stack::held();
+        let statics = stack::static_ram();
+        let strip = 4 * WIDTH * SIZES.0;
+        let records = 4 * SIZES.1;
+        println!("rows {}", SIZES.0);
+        println!("strip {strip}");
+        println!("records {records}");
+        println!("stack {peak}");
+        println!("statics {}", statics - strip - records);
+        println!("total {}", statics + peak);
+    }
+}
+
+#[cfg(target_os = "none")]
+use counting::run;
+
+/// What a picture may differ by from the reference: pixels that only one of them covers, pixels that show another
+/// surface, and 8-bit steps of a channel before it is cut to RGB565.
+#[cfg(not(target_os = "none"))]
+struct Tolerance {
+    coverage: usize,
+    surface: usize,
+    channel: f64,
+}
+
+#[cfg(not(target_os = "none"))]
+impl Tolerance {
+    /// Positions are rounded to 16 bits and to 1/256 px, depth to 16 bits, and colours run linearly on the screen where
+    /// the reference's are perspective-correct.
+    const fn of(workload: Workload) -> Self {
+        let (coverage, surface, channel) = match workload {
+            Workload::Empty | Workload::Quad => (0, 0, 0.0),
+            Workload::GouraudQuad => (0, 0, 1.0),
+            Workload::FlatTorus | Workload::GouraudTorus => (20, 20, 1.5),
+            Workload::Tiny => (400, 20, 0.1),
+        };
+        Self {
+            coverage,
+            surface,
+            channel,
+        }
+    }
+}
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    let mut wrong = false;
+    for (name, workload) in NAMED {
+        let (mut color, mut depth) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
+        let mut records = vec![0; SIZES.1];
+        let buffers = Buffers {
+            color: &mut color,
+            depth: &mut depth,
+            records: &mut records,
+        };
+        let mut hash = Hash::NEW;
+        let stats = workloads::draw(workload, buffers, |strip| hash.add(strip));
+        let picture = workloads::reference::draw(workload);
+        let background = zstrip::embedded_graphics_core::pixelcolor::IntoStorage::into_storage(workloads::BACKGROUND);
+
+        let (mut covered, mut coverage, mut surface, mut channel) = (0, 0, 0, 0.0_f64);
+        for (drawn, expected) in color.iter().zip(&picture.colors) {
+            covered += usize::from(*drawn != background);
+            match expected {
+                Some(expected) if *drawn != background => {
+                    let off = distance(*drawn, *expected);
+                    // Rounding leaves a surface nearer than that: it is a neighbour's.
+                    if off > 2.0 {
+                        surface += 1;
+                    } else {
+                        channel = channel.max(off);
+                    }
+                }
+                None if *drawn == background => {}
+                _ => coverage += 1,
+            }
+        }
+        let allowed = Tolerance::of(workload);
+        let ok = coverage <= allowed.coverage && surface <= allowed.surface && channel <= allowed.channel;
+        wrong |= !ok;
+        println!("{name} {covered} {:08x}", hash.0);
+        eprintln!(
+            "{name}: {} triangles drawn, {covered} px covered; against the reference: coverage of {coverage} px and \
+             surface of {surface} px differ, colours by {channel:.2}/255 beyond RGB565{}",
+            stats.drawn,
+            if ok { "" } else { ": TOO MUCH" }
+        );
+    }
+    if wrong {
+        std::process::exit(1);
+    }
+}
+
+/// How far the colour is, in 8-bit steps, from the range of colours that are cut to this pixel.
+#[cfg(not(target_os = "none"))]
+fn distance(pixel: u16, color: [f64; 3]) -> f64 {
+    let channels = [
+        (pixel >> 11 << 3, 8.0),
+        ((pixel >> 5 & 63) << 2, 4.0),
+        ((pixel & 31) << 3, 8.0),
+    ];
+    channels.iter().zip(color).fold(0.0, |worst, (&(low, step), value)| {
+        let low = f64::from(low);
+        worst.max(low - value).max(value - (low + step))
+    })
+}

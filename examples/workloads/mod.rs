@@ -1,0 +1,486 @@
+//! The benchmark's workloads, W1 to W6, and how each is drawn.
+//!
+//! The geometry is stated in a left-handed view space: x right, y up, z forward, F = 120 / tan 30° px,
+//! screen x = 160 + F x / z, screen y = 120 - F y / z, front faces counter-clockwise on the screen. Here a camera looks
+//! along -z, so z changes its sign on the way into it; that mirrors space and camera together, and so nothing on the
+//! screen, windings included.
+//!
+//! The compiler computes all of it, in `f64`: programs contain integers only.
+#![allow(dead_code)] // each program uses its part
+#![allow(long_running_const_eval)] // 30,000 vertices are made
+
+#[cfg(not(target_os = "none"))]
+pub mod reference;
+
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::fragment::{DepthState, DepthTest, Flat, Fragments, Gouraud, PixelFormat, Shader};
+use zstrip::geometry::{Corner, Face, Light, Mesh, MeshData, Positions, VertexShader};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::output::{Buffers, Renderer, Stats, StripPixels};
+use zstrip::{Scene, State};
+
+pub const WIDTH: usize = 320;
+pub const HEIGHT: usize = 240;
+pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
+
+/// Pixels per unit of x / z: 120 / tan 30°.
+pub const FOCAL: f64 = 120.0 * root(3.0);
+
+const NEAR: Scalar = Scalar::ONE;
+const FAR: Scalar = Scalar::from_bits(16 << 16);
+
+/// What to draw.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Workload {
+    /// Nothing: what it costs to clear colours and depths and to hand out the strips.
+    Empty,
+    /// A quad that covers the screen, one colour, no depth.
+    Quad,
+    /// The same quad, depth test and write, Gouraud colours.
+    GouraudQuad,
+    /// A torus of 1,024 triangles, flat.
+    FlatTorus,
+    /// The same torus, lit at its vertices.
+    GouraudTorus,
+    /// 10,000 triangles of about 2 px, one colour each.
+    Tiny,
+}
+
+/// Draws a frame of a workload; the strip is as high as the buffers.
+pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    match workload {
+        Workload::Empty => frame(buffers, sink, |_| {}),
+        Workload::Quad => quad(buffers, sink),
+        Workload::GouraudQuad => gouraud_quad(buffers, sink),
+        Workload::FlatTorus => flat_torus(buffers, sink),
+        Workload::GouraudTorus => gouraud_torus(buffers, sink),
+        Workload::Tiny => tiny(buffers, sink),
+    }
+}
+
+type Strip<'a> = zstrip::output::Strip<'a, Rgb565>;
+
+/// Buffers that do not hold a row draw nothing.
+fn frame(
+    buffers: Buffers<'_, Rgb565>,
+    mut sink: impl FnMut(&[u16]),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_>>),
+) -> Stats {
+    let Ok(mut renderer) = Renderer::new((WIDTH as u16, HEIGHT as u16), buffers) else {
+        return Stats::default();
+    };
+    let to_sink = |strip: &StripPixels<'_, Rgb565>| {
+        sink(strip.pixels());
+        Ok::<(), core::convert::Infallible>(())
+    };
+    renderer.frame_to(to_sink, BACKGROUND, draw).unwrap_or_default()
+}
+
+#[inline(never)]
+pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    let mvp = camera() * MIRROR;
+    let [r, g, b] = QUAD_COLOR;
+    let shader = Flat::unlit(Rgb888::new(r, g, b));
+    let state = State {
+        depth: DepthState::OFF,
+        ..State::default()
+    };
+    frame(buffers, sink, |scene| scene.draw_with(state, &QUAD, &mvp, &shader))
+}
+
+#[inline(never)]
+pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    let mvp = camera() * MIRROR;
+    frame(buffers, sink, |scene| scene.draw(&QUAD, &mvp, &Gouraud::unlit()))
+}
+
+#[inline(never)]
+pub fn flat_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    let mvp = camera() * MODEL;
+    let shader = Flat::new(light(), torus_color());
+    frame(buffers, sink, |scene| scene.draw(&TORUS, &mvp, &shader))
+}
+
+#[inline(never)]
+pub fn gouraud_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    let mvp = camera() * MODEL;
+    let shader = Gouraud::new(light(), torus_color());
+    frame(buffers, sink, |scene| scene.draw(&TORUS, &mvp, &shader))
+}
+
+#[inline(never)]
+pub fn tiny(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    let mvp = camera() * MIRROR;
+    let shader = FaceColors(Flat::unlit(Rgb888::new(0, 0, 0)));
+    frame(buffers, sink, |scene| scene.draw(&TINY, &mvp, &shader))
+}
+
+fn camera() -> Projective {
+    Projective::perspective(Angle::from_degrees(60), (WIDTH as u16, HEIGHT as u16), NEAR, FAR)
+        .unwrap_or(Projective::IDENTITY)
+}
+
+/// The light as the torus sees it.
+fn light() -> Light {
+    const fn level(part: f64) -> u8 {
+        nearest(part * 255.0) as u8
+    }
+    const DIRECTION: Vec3 = vector([LIGHT[0], LIGHT[1], -LIGHT[2]]);
+    let [ambient, diffuse] = const { [level(AMBIENT), level(DIFFUSE)] };
+    Light::new(
+        DIRECTION,
+        Rgb888::new(diffuse, diffuse, diffuse),
+        Rgb888::new(ambient, ambient, ambient),
+    )
+    .to_object(&MODEL)
+}
+
+fn torus_color() -> Rgb888 {
+    let [r, g, b] = TORUS_COLOR;
+    Rgb888::new(r, g, b)
+}
+
+/// Colours of the provoking vertices as they are: a shader as a user would write it, on top of [`Flat`]'s pixel loop.
+struct FaceColors(Flat);
+
+impl VertexShader for FaceColors {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+        []
+    }
+
+    #[inline]
+    fn face(&self, face: &Face<'_>) -> u32 {
+        let [r, g, b] = face.provoking().color();
+        u32::from_be_bytes([0, r, g, b])
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for FaceColors {
+    #[inline]
+    fn fragment(&self, face: u32, varyings: &[i32; 0]) -> P::Raw {
+        Shader::<P>::fragment(&self.0, face, varyings)
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+        Shader::<P>::span(&self.0, face, span, test);
+    }
+}
+
+// The numbers: `const` code has arithmetic, but neither roots nor sines.
+
+/// Square root, by Newton's method.
+const fn root(x: f64) -> f64 {
+    let mut r = if x < 1.0 { 1.0 } else { x };
+    let mut k = 0;
+    while k < 64 {
+        r = (r + x / r) / 2.0;
+        k += 1;
+    }
+    r
+}
+
+/// Sine and cosine for |x| ≤ 2π, by their series: errors below 1e-13.
+const fn sin_cos(x: f64) -> (f64, f64) {
+    let (mut sin, mut cos) = (0.0, 0.0);
+    let mut term = 1.0;
+    let mut k = 0;
+    while k < 40 {
+        match k % 4 {
+            0 => cos += term,
+            1 => sin += term,
+            2 => cos -= term,
+            _ => sin -= term,
+        }
+        k += 1;
+        term = term * x / k as f64;
+    }
+    (sin, cos)
+}
+
+const fn nearest(x: f64) -> i64 {
+    (if x < 0.0 { x - 0.5 } else { x + 0.5 }) as i64
+}
+
+const fn vector(v: [f64; 3]) -> Vec3 {
+    Vec3::from_bits([
+        nearest(v[0] * 65_536.0) as i32,
+        nearest(v[1] * 65_536.0) as i32,
+        nearest(v[2] * 65_536.0) as i32,
+    ])
+}
+
+/// A point as fractions of a cube: its middle, and half its side.
+const fn quantized(v: [f64; 3], middle: [f64; 3], half: f64) -> [i16; 3] {
+    [
+        nearest((v[0] - middle[0]) / half * 32_768.0) as i16,
+        nearest((v[1] - middle[1]) / half * 32_768.0) as i16,
+        nearest((v[2] - middle[2]) / half * 32_768.0) as i16,
+    ]
+}
+
+const fn quantities<'a>(points: &'a [[i16; 3]], middle: [f64; 3], half: f64) -> Positions<'a> {
+    Positions::Quantized {
+        points,
+        scale: Scalar::from_bits(nearest(half * 65_536.0) as i32),
+        offset: vector(middle),
+    }
+}
+
+const fn normal(n: [f64; 3]) -> [i16; 3] {
+    [
+        nearest(n[0] * 16_384.0) as i16,
+        nearest(n[1] * 16_384.0) as i16,
+        nearest(n[2] * 16_384.0) as i16,
+    ]
+}
+
+const fn normalized(v: [f64; 3]) -> [f64; 3] {
+    let length = root(dot(v, v));
+    [v[0] / length, v[1] / length, v[2] / length]
+}
+
+const fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+const fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+const fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// View space as the workloads have it → view space as the camera has it.
+const MIRROR: Affine = Affine::from_rows(Vec3::X, Vec3::Y, Vec3::from_ints(0, 0, -1), Vec3::ZERO);
+
+// The quad, at z = 2, from edge to edge of the screen: top left, top right, bottom left, bottom right.
+
+const QUAD_X: f64 = 160.0 / FOCAL * 2.0;
+const QUAD_Y: f64 = 120.0 / FOCAL * 2.0;
+pub const QUAD_POSITIONS: [[f64; 3]; 4] = [
+    [-QUAD_X, QUAD_Y, 2.0],
+    [QUAD_X, QUAD_Y, 2.0],
+    [-QUAD_X, -QUAD_Y, 2.0],
+    [QUAD_X, -QUAD_Y, 2.0],
+];
+pub const QUAD_INDICES: [u16; 6] = [0, 2, 1, 1, 2, 3];
+pub const QUAD_COLORS: [[u8; 3]; 4] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
+/// Orange, when it has one colour.
+pub const QUAD_COLOR: [u8; 3] = [255, 165, 0];
+
+const QUAD_POINTS: [[i16; 3]; 4] = {
+    let mut points = [[0; 3]; 4];
+    let mut k = 0;
+    while k < 4 {
+        points[k] = quantized(QUAD_POSITIONS[k], [0.0, 0.0, 2.0], 2.0);
+        k += 1;
+    }
+    points
+};
+
+pub static QUAD: Mesh<'static> = Mesh::constant(MeshData {
+    indices: Some(&QUAD_INDICES),
+    colors: Some(&QUAD_COLORS),
+    ..MeshData::new(quantities(&QUAD_POINTS, [0.0, 0.0, 2.0], 2.0))
+});
+
+// The torus: axis y, radii 1 and 0.4, 32 x 16 quads, turned by RX and then RY, three units away.
+
+const AROUND: usize = 32;
+const ACROSS: usize = 16;
+const VERTICES: usize = AROUND * ACROSS;
+pub const TRIANGLES: usize = 2 * VERTICES;
+
+const RX: f64 = 0.7;
+const RY: f64 = 0.5;
+pub const DISTANCE: f64 = 3.0;
+
+/// The rows of ry(0.5) · rx(0.7).
+pub const ROTATION: [[f64; 3]; 3] = {
+    let (sx, cx) = sin_cos(RX);
+    let (sy, cy) = sin_cos(RY);
+    [[cy, sy * sx, sy * cx], [0.0, cx, -sx], [-sy, cy * sx, cy * cx]]
+};
+
+/// Towards the light, in the workloads' view space.
+pub const LIGHT: [f64; 3] = normalized([0.4, 0.7, -0.6]);
+pub const AMBIENT: f64 = 0.15;
+pub const DIFFUSE: f64 = 0.85;
+pub const TORUS_COLOR: [u8; 3] = [255, 160, 64];
+
+/// Object space → view space as the camera has it.
+const MODEL: Affine = {
+    let [x, y, [zx, zy, zz]] = ROTATION;
+    Affine::from_rows(
+        vector(x),
+        vector(y),
+        vector([-zx, -zy, -zz]),
+        vector([0.0, 0.0, -DISTANCE]),
+    )
+};
+
+pub const TORUS_POSITIONS: [[f64; 3]; VERTICES] = torus().0;
+pub const TORUS_NORMALS: [[f64; 3]; VERTICES] = torus().1;
+pub const TORUS_INDICES: [u16; 3 * TRIANGLES] = torus_faces().0;
+/// Pointing outwards.
+pub const TORUS_FACE_NORMALS: [[f64; 3]; TRIANGLES] = torus_faces().1;
+
+/// Positions and normals.
+const fn torus() -> ([[f64; 3]; VERTICES], [[f64; 3]; VERTICES]) {
+    let mut positions = [[0.0; 3]; VERTICES];
+    let mut normals = [[0.0; 3]; VERTICES];
+    let turn = 2.0 * core::f64::consts::PI;
+    let mut k = 0;
+    while k < VERTICES {
+        let (su, cu) = sin_cos(turn * (k / ACROSS) as f64 / AROUND as f64);
+        let (sv, cv) = sin_cos(turn * (k % ACROSS) as f64 / ACROSS as f64);
+        let ring = 1.0 + 0.4 * cv;
+        positions[k] = [ring * cu, 0.4 * sv, ring * su];
+        normals[k] = [cv * cu, sv, cv * su];
+        k += 1;
+    }
+    (positions, normals)
+}
+
+/// Indices and face normals: the cross product of a front face's edges points inwards, as space is left-handed.
+const fn torus_faces() -> ([u16; 3 * TRIANGLES], [[f64; 3]; TRIANGLES]) {
+    let mut indices = [0; 3 * TRIANGLES];
+    let mut normals = [[0.0; 3]; TRIANGLES];
+    let mut triangle = 0;
+    while triangle < TRIANGLES {
+        let (i, j) = (triangle / 2 / ACROSS, triangle / 2 % ACROSS);
+        let (i1, j1) = ((i + 1) % AROUND, (j + 1) % ACROSS);
+        let a = i * ACROSS + j;
+        let c = i1 * ACROSS + j1;
+        let corners = if triangle % 2 == 0 {
+            [a, i1 * ACROSS + j, c]
+        } else {
+            [a, c, i * ACROSS + j1]
+        };
+        let p = [
+            TORUS_POSITIONS[corners[0]],
+            TORUS_POSITIONS[corners[1]],
+            TORUS_POSITIONS[corners[2]],
+        ];
+        let n = normalized(cross(minus(p[1], p[0]), minus(p[2], p[0])));
+        let inwards =
+            dot(n, TORUS_NORMALS[corners[0]]) + dot(n, TORUS_NORMALS[corners[1]]) + dot(n, TORUS_NORMALS[corners[2]])
+                <= 0.0;
+        let (second, third) = if inwards { (1, 2) } else { (2, 1) };
+        indices[3 * triangle] = corners[0] as u16;
+        indices[3 * triangle + 1] = corners[second] as u16;
+        indices[3 * triangle + 2] = corners[third] as u16;
+        normals[triangle] = if inwards { [-n[0], -n[1], -n[2]] } else { n };
+        triangle += 1;
+    }
+    (indices, normals)
+}
+
+const TORUS_HALF: f64 = 1.40625;
+
+static TORUS_POINTS: [[i16; 3]; VERTICES] = {
+    let mut points = [[0; 3]; VERTICES];
+    let mut k = 0;
+    while k < VERTICES {
+        points[k] = quantized(TORUS_POSITIONS[k], [0.0; 3], TORUS_HALF);
+        k += 1;
+    }
+    points
+};
+
+const fn to_normals<const N: usize>(normals: &[[f64; 3]; N]) -> [[i16; 3]; N] {
+    let mut short = [[0; 3]; N];
+    let mut k = 0;
+    while k < N {
+        short[k] = normal(normals[k]);
+        k += 1;
+    }
+    short
+}
+
+pub static TORUS: Mesh<'static> = Mesh::constant(MeshData {
+    indices: Some(&TORUS_INDICES),
+    normals: Some(&to_normals(&TORUS_NORMALS)),
+    face_normals: Some(&to_normals(&TORUS_FACE_NORMALS)),
+    ..MeshData::new(quantities(&TORUS_POINTS, [0.0; 3], TORUS_HALF))
+});
+
+// Tiny right triangles with legs of 2 px on a jittered grid, at distances from 4 to 8.
+
+pub const TINY_TRIANGLES: usize = 10_000;
+/// State of the random numbers before the first triangle.
+pub const TINY_SEED: u32 = 12_345;
+
+/// A random number from 0 to 1, from a linear congruential generator.
+const fn random(state: u32) -> (f64, u32) {
+    let state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+    ((state >> 8) as f64 / 16_777_216.0, state)
+}
+
+/// Corners, colour and the generator's next state for triangle `k`.
+pub const fn tiny_triangle(k: usize, state: u32) -> ([[f64; 3]; 3], [u8; 3], u32) {
+    let (right, state) = random(state);
+    let (down, state) = random(state);
+    let (away, state) = random(state);
+    let (r, state) = random(state);
+    let (g, state) = random(state);
+    let (b, state) = random(state);
+    let x = 0.02 + (k % 100) as f64 * 3.17 + right * 1.1;
+    let y = 0.02 + (k / 100) as f64 * 2.37 + down * 0.3;
+    let z = 4.0 + 4.0 * away;
+    let screen = if k % 2 == 1 {
+        [(x, y), (x, y + 2.0), (x + 2.0, y)]
+    } else {
+        [(x + 2.0, y), (x, y + 2.0), (x + 2.0, y + 2.0)]
+    };
+    let mut corners = [[0.0; 3]; 3];
+    let mut c = 0;
+    while c < 3 {
+        let (sx, sy) = screen[c];
+        corners[c] = [(sx - 160.0) * z / FOCAL, (120.0 - sy) * z / FOCAL, z];
+        c += 1;
+    }
+    let color = [
+        128 + (r * 127.0) as u8,
+        128 + (g * 127.0) as u8,
+        128 + (b * 127.0) as u8,
+    ];
+    (corners, color, state)
+}
+
+const TINY_MIDDLE: [f64; 3] = [0.0, 0.0, 6.0];
+const TINY_HALF: f64 = 6.25;
+
+type Tiny = ([[i16; 3]; 3 * TINY_TRIANGLES], [[u8; 3]; 3 * TINY_TRIANGLES]);
+
+static TINY_DATA: Tiny = {
+    let mut points = [[0; 3]; 3 * TINY_TRIANGLES];
+    let mut colors = [[0; 3]; 3 * TINY_TRIANGLES];
+    let mut state = TINY_SEED;
+    let mut k = 0;
+    while k < TINY_TRIANGLES {
+        let (corners, color, next) = tiny_triangle(k, state);
+        state = next;
+        let mut c = 0;
+        while c < 3 {
+            points[3 * k + c] = quantized(corners[c], TINY_MIDDLE, TINY_HALF);
+            colors[3 * k + c] = color;
+            c += 1;
+        }
+        k += 1;
+    }
+    (points, colors)
+};
+
+pub static TINY: Mesh<'static> = Mesh::constant(MeshData {
+    colors: Some(&TINY_DATA.1),
+    ..MeshData::new(quantities(&TINY_DATA.0, TINY_MIDDLE, TINY_HALF))
+});
