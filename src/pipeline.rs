@@ -4,14 +4,14 @@
 //! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
 //! small even for one strip, it draws that strip *directly* (all stages at once).
 
-use crate::fragment::{AnyDepth, Compare, DepthState, DepthTest, Fragments, LessWrite, NoDepth, PixelFormat, Shader};
+use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, NoDepth, Shader};
 use crate::geometry::{
     Bounds, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Placed, Positions, ScreenVertex,
     Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
-use crate::raster::{Gradients, PixelRect, Span, Spans, pixel_rect};
+use crate::raster::{Gradients, PixelRect, pixel_rect, spans};
 use core::ops::Range;
 
 /// Which faces are not drawn.
@@ -186,22 +186,14 @@ impl<F: Framebuffer> Scene<'_, F> {
         };
         let clip = self.clip_rect(&rows);
         while let Some(triangle) = self.records.replay_triangle() {
-            let corner = |k: u16| {
-                let words = self.records.vertex(usize::from(k));
-                let [a, b, varyings @ ..] = words else {
-                    return (ScreenVertex::default(), S::Varyings::ZERO);
-                };
-                match Slot::unpack([*a, *b]) {
-                    Slot::Screen(v) => (v, S::load(varyings)),
-                    _ => (ScreenVertex::default(), S::Varyings::ZERO),
-                }
-            };
-            let corners = triangle.corners.map(corner);
-            if pixel_rect(&corners.map(|c| c.0)).y.end > rows.end {
+            let corners = triangle.corners.map(usize::from);
+            let v = corners.map(|k| Slot::read(self.records.vertex(k)).screen());
+            let varyings = corners.map(|k| self.records.varyings::<S>(k));
+            if pixel_rect(&v).y.end > rows.end {
                 self.records.move_on(&triangle);
             }
             if let Some(target) = &mut self.target {
-                rasterize(target, self.screen, &clip, state, shader, &corners, triangle.face);
+                rasterize(target, self.screen, &clip, state, shader, &v, &varyings, triangle.face);
             }
         }
     }
@@ -229,7 +221,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         shader: &'m S,
         cached: bool,
     ) -> Self {
-        let transform = Transform::new(mvp, &scene.viewport, &mesh.data().positions, S::DISPLACES);
+        let transform = Transform::new(mvp, &scene.viewport, mesh, S::DISPLACES);
         let clip = scene.clip_rect(&scene.band);
         Self {
             scene,
@@ -272,11 +264,10 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             self.scene.stats.triangles += 1;
             // 3. Vertex stage, once a vertex where there are records to keep the result.
             let slots = corners.map(|k| self.slot(usize::from(k)));
-            let face = Face::new(self.mesh, number, corners);
-            if let [Slot::Screen(a), Slot::Screen(b), Slot::Screen(c)] = slots {
-                self.screen_triangle(&[a, b, c], corners, &face);
+            if slots[0].is_on_screen() & slots[1].is_on_screen() & slots[2].is_on_screen() {
+                self.screen_triangle(&slots.map(Slot::screen), corners, number);
             } else {
-                self.clip(&slots, corners, &face);
+                self.clip(slots.map(Slot::outcode), corners, number);
             }
         }
     }
@@ -284,23 +275,28 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     /// The vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
     #[inline]
     fn slot(&mut self, index: usize) -> Slot {
-        if !self.cached {
-            self.scene.stats.vertices += 1;
-            return self.place(index);
-        }
-        if let [a, b, ..] = self.scene.records.vertex(index) {
-            match Slot::unpack([*a, *b]) {
-                Slot::Unshaded => {}
-                shaded => return shaded,
+        if self.cached {
+            let slot = Slot::read(self.scene.records.vertex(index));
+            if !slot.is_unshaded() {
+                return slot;
             }
         }
+        self.shade(index)
+    }
+
+    #[inline(never)]
+    fn shade(&mut self, index: usize) -> Slot {
         self.scene.stats.vertices += 1;
-        let slot = self.place(index);
-        let varyings = match slot {
-            Slot::Screen(_) => self.shader.vertex(&Corner::new(self.mesh, index)),
-            _ => S::Varyings::ZERO,
+        let placed = if S::DISPLACES {
+            place(&self.transformed(index))
+        } else {
+            self.transform.place(&self.mesh.data().positions, index)
         };
-        keep::<S>(self.scene.records.vertex_mut(index), slot, &varyings);
+        let slot = Slot::new(&placed);
+        if self.cached {
+            let varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+            self.scene.records.keep::<S>(index, slot, &varyings);
+        }
         slot
     }
 
@@ -314,26 +310,9 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         }
     }
 
-    #[inline]
-    fn place(&self, index: usize) -> Slot {
-        let placed = if S::DISPLACES {
-            place(&self.transformed(index))
-        } else {
-            self.transform.place(&self.mesh.data().positions, index)
-        };
-        match placed {
-            Placed::Screen(v) => Slot::Screen(v),
-            Placed::Outside(code) => Slot::Outside(code),
-        }
-    }
-
     /// 4. Clipping, of a triangle with a vertex outside.
     #[inline(never)]
-    fn clip(&mut self, slots: &[Slot; 3], corners: [u16; 3], face: &Face<'_>) {
-        let codes = slots.map(|slot| match slot {
-            Slot::Outside(code) => code.0,
-            _ => 0,
-        });
+    fn clip(&mut self, codes: [u8; 3], corners: [u16; 3], number: usize) {
         let clamped = match self.state.range {
             DepthRange::Clip => 0,
             DepthRange::ClampFar => Outcode::FAR,
@@ -348,8 +327,9 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             let corner = Corner::new(self.mesh, usize::from(k));
             (self.transformed(usize::from(k)), self.shader.vertex(&corner))
         });
+        let face = Face::new(self.mesh, number, corners);
         let all = Outcode(codes[0] | codes[1] | codes[2]);
-        clip_triangle(&triangle, all, self.state.range, |polygon| self.fan(polygon, face));
+        clip_triangle(&triangle, all, self.state.range, |polygon| self.fan(polygon, &face));
     }
 
     /// Draws a clipped polygon as a fan of triangles.
@@ -377,8 +357,8 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
                     self.record(&visible, [first_index, last_index, next_index], word);
                 } else {
                     // What the records would keep of the varyings, so that the picture is the same without them.
-                    let corners = [first, last, next].map(|(v, varyings)| (v, rounded::<S>(&varyings)));
-                    self.draw(&corners, word);
+                    let varyings = [&first, &last, &next].map(|corner| rounded::<S>(&corner.1));
+                    self.draw(&v, &varyings, word);
                 }
             }
             (last, last_index) = (next, next_index);
@@ -387,31 +367,26 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
 
     fn push(&mut self, vertex: &(ScreenVertex, S::Varyings)) -> u16 {
         let index = self.scene.records.push_vertex();
-        keep::<S>(
-            self.scene.records.vertex_mut(usize::from(index)),
-            Slot::Screen(vertex.0),
-            &vertex.1,
-        );
+        self.scene.records.keep::<S>(usize::from(index), Slot::new(&Placed::Screen(vertex.0)), &vertex.1);
         index
     }
 
     /// A triangle that needs no clipping.
     #[inline]
-    fn screen_triangle(&mut self, v: &[ScreenVertex; 3], corners: [u16; 3], face: &Face<'_>) {
+    fn screen_triangle(&mut self, v: &[ScreenVertex; 3], corners: [u16; 3], number: usize) {
         let Some(visible) = self.visible(v) else { return };
-        let word = self.shader.face(face);
+        let word = self.shader.face(&Face::new(self.mesh, number, corners));
         if self.scene.phase == Phase::Record {
             self.record(&visible, corners, word);
         } else {
             let varyings = corners.map(|k| self.varyings(usize::from(k)));
-            self.draw(&[(v[0], varyings[0]), (v[1], varyings[1]), (v[2], varyings[2])], word);
+            self.draw(v, &varyings, word);
         }
     }
 
     fn varyings(&self, index: usize) -> S::Varyings {
         if self.cached {
-            let words = self.scene.records.vertex(index);
-            return S::load(words.get(crate::output::VERTEX_WORDS..).unwrap_or_default());
+            return self.scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.shader.vertex(&Corner::new(self.mesh, index)))
     }
@@ -452,26 +427,10 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         self.scene.records.push_triangle(corners, face, (row / rows) as usize);
     }
 
-    fn draw(&mut self, corners: &[(ScreenVertex, S::Varyings); 3], face: u32) {
+    fn draw(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
         if let Some(target) = &mut self.scene.target {
-            rasterize(
-                target,
-                self.scene.screen,
-                &self.clip,
-                self.state,
-                self.shader,
-                corners,
-                face,
-            );
+            rasterize(target, self.scene.screen, &self.clip, self.state, self.shader, v, varyings, face);
         }
-    }
-}
-
-/// Packs a vertex into its words.
-fn keep<S: VertexShader>(words: &mut [u32], slot: Slot, varyings: &S::Varyings) {
-    if let [a, b, rest @ ..] = words {
-        [*a, *b] = slot.pack();
-        S::store(varyings, rest);
     }
 }
 
@@ -485,85 +444,64 @@ fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
 }
 
 /// 8 to 11. A triangle on the screen: set-up, spans, depth test, fragments.
+#[expect(clippy::too_many_arguments, reason = "all of them change from call to call, or belong to different owners")]
+#[inline(never)]
 fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
     target: &mut Target<'_, F>,
     screen: (u16, u16),
     clip: &PixelRect,
     state: &State,
     shader: &S,
-    corners: &[(ScreenVertex, S::Varyings); 3],
+    v: &[ScreenVertex; 3],
+    varyings: &[S::Varyings; 3],
     face: u32,
 ) {
     // 8. Plane equations of depth and varyings.
-    let v = corners.map(|c| c.0);
-    let Some(gradients) = Gradients::new(&v, screen) else {
+    let area = signed_area(&v[0], &v[1], &v[2]);
+    if area == 0 {
         return;
-    };
-    let depth = gradients.plane(v.map(|v| i32::from(v.z)), 16);
-    let (mut base, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
-    let values = corners.each_ref().map(|c| c.1.as_ref());
-    for (k, ((base, dx), dy)) in base.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
-        let plane = gradients.plane(
-            values.map(|v| v.get(k).copied().unwrap_or(0) >> S::ZERO_BITS),
-            S::ZERO_BITS,
-        );
-        (*base, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
     }
-    let origin = gradients.origin();
+    let gradients = Gradients::new(v, area, screen);
+    let depth = gradients.plane(v.map(|v| i32::from(v.z)), 16).from_corner(gradients.origin());
+    let (mut corner, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
+    let values = varyings.each_ref().map(|v| v.as_ref());
+    for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
+        let values = values.map(|v| v.get(k).copied().unwrap_or(0) >> S::ZERO_BITS);
+        let plane = gradients.plane(values, S::ZERO_BITS).from_corner(gradients.origin());
+        (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
+    }
+    // With the half that rounds.
+    let z = depth.base.wrapping_add(1 << 15);
     let width = usize::from(screen.0);
+    let first = target.rows.start;
 
     // 9. Spans.
-    for Span { y, x } in Spans::new(&v, clip) {
+    spans(v, area, clip, |y, x| {
+        let row = width * (y - first) as usize;
         let columns = x.start as usize..x.end as usize;
-        let row = width * (y - target.rows.start) as usize;
-        let Some(depths) = target.depth.get_mut(row + columns.start..row + columns.end) else {
-            return;
-        };
-        let Some(colors) = target.framebuffer.row(y as u32).get_mut(columns) else {
-            return;
-        };
-        let mut varyings = base;
+        let depths = target.depth.get_mut(row + columns.start..row + columns.end);
+        let colors = target.framebuffer.row(y as u32).get_mut(columns);
+        let (Some(depths), Some(colors)) = (depths, colors) else { return };
+        let mut varyings = corner;
         for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(dx.as_ref()).zip(dy.as_ref()) {
-            let along = dx
-                .wrapping_mul(x.start - origin.0)
-                .wrapping_add(dy.wrapping_mul(y - origin.1));
-            *value = value.wrapping_add(along);
+            *value = value.wrapping_add(dx.wrapping_mul(x.start)).wrapping_add(dy.wrapping_mul(y));
         }
         let fragments = Fragments {
             color: colors,
             depth: depths,
-            z: depth.at(origin, x.start, y).wrapping_add(1 << 15),
+            z: z.wrapping_add_signed(depth.dx.wrapping_mul(x.start).wrapping_add(depth.dy.wrapping_mul(y))),
             dz_dx: depth.dx,
             varyings,
             d_dx: dx,
             position: (x.start, y),
         };
         // 10, 11. Depth test and fragments, in a loop of its own for each kind of test.
-        shade::<F::Format, S>(shader, face, fragments, state.depth);
-    }
-}
-
-#[inline]
-fn shade<P: PixelFormat, S: Shader<P>>(
-    shader: &S,
-    face: u32,
-    fragments: Fragments<'_, P, S::Varyings>,
-    depth: DepthState,
-) {
-    fn with<P: PixelFormat, S: Shader<P>>(s: &S, face: u32, f: Fragments<'_, P, S::Varyings>, test: impl DepthTest) {
-        s.span(face, f, test);
-    }
-    match depth {
-        DepthState {
-            compare: Compare::Less,
-            write: true,
-        } => with(shader, face, fragments, LessWrite),
-        DepthState {
-            compare: Compare::Always,
-            write: false,
-        } => with(shader, face, fragments, NoDepth),
-        other => with(shader, face, fragments, AnyDepth::new(other)),
-    }
+        match state.depth {
+            DepthState { compare: Compare::Less, write: true } => shader.span(face, fragments, LessWrite),
+            DepthState { compare: Compare::Always, write: false } => shader.span(face, fragments, NoDepth),
+            other => shader.span(face, fragments, AnyDepth::new(other)),
+        }
+    });
 }
 
 /// A word that differs, almost surely, between draws that would not leave the same records.

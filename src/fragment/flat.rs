@@ -1,5 +1,6 @@
 //! One colour a face.
 
+use super::fill::fill;
 use super::{DepthTest, Fragments, PixelFormat, Shader};
 use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
 
@@ -92,8 +93,7 @@ impl<P: PixelFormat> Shader<P> for Flat {
         } = span;
         let value = Shader::<P>::fragment(self, face, &[]);
         if !D::ENABLED {
-            color.fill(value);
-            return;
+            return fill(color, value);
         }
         for (color, depth) in color.iter_mut().zip(depth) {
             if test.passes((z >> 16) as u16, depth) {

@@ -1,12 +1,14 @@
 //! Span → pixels: the depth test, the fragment stage's seam, and the shaders that come with the crate.
 
 mod depth;
+mod fill;
 mod flat;
 mod gouraud;
 mod pixel;
 mod shader;
 
 pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use fill::fill;
 pub use flat::Flat;
 pub use gouraud::Gouraud;
 pub use pixel::PixelFormat;

@@ -14,6 +14,15 @@ pub trait PixelFormat {
     /// Packs red, green and blue of 8 bits; surplus bits are cut.
     fn pack(rgb: [u8; 3]) -> Self::Raw;
 
+    /// Whether [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
+    const PACKED: bool = false;
+
+    /// From channels in one word, eight bits each: red in the bits 24 to 31, blue in 13 to 20, green in 2 to 9.
+    #[inline(always)]
+    fn from_packed(word: u32) -> Self::Raw {
+        Self::pack([(word >> 24) as u8, (word >> 2) as u8, (word >> 13) as u8])
+    }
+
     /// From embedded-graphics' colour.
     fn from_color(color: Self::Color) -> Self::Raw;
 

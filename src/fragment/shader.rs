@@ -32,23 +32,26 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings>, test: D) {
-        let Fragments {
-            color,
-            depth,
-            mut z,
-            dz_dx,
-            mut varyings,
-            d_dx,
-            ..
-        } = span;
-        for (color, depth) in color.iter_mut().zip(depth) {
-            if !D::ENABLED || test.passes((z >> 16) as u16, depth) {
-                *color = self.fragment(face, &varyings);
-            }
-            z = z.wrapping_add_signed(dz_dx);
-            for (value, step) in varyings.as_mut().iter_mut().zip(d_dx.as_ref()) {
-                *value = value.wrapping_add(*step);
-            }
+        fragments(self, face, span, test);
+    }
+}
+
+/// Draws a span fragment by fragment.
+#[inline(always)]
+pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
+    shader: &S,
+    face: u32,
+    span: Fragments<'_, P, S::Varyings>,
+    test: D,
+) {
+    let Fragments { color, depth, mut z, dz_dx, mut varyings, d_dx, .. } = span;
+    for (color, depth) in color.iter_mut().zip(depth) {
+        if !D::ENABLED || test.passes((z >> 16) as u16, depth) {
+            *color = shader.fragment(face, &varyings);
+        }
+        z = z.wrapping_add_signed(dz_dx);
+        for (value, step) in varyings.as_mut().iter_mut().zip(d_dx.as_ref()) {
+            *value = value.wrapping_add(*step);
         }
     }
 }

@@ -6,7 +6,7 @@
 
 use super::clip::{ClipVertex, Outcode};
 use super::project::{ScreenVertex, project, project_short};
-use super::{Positions, Viewport};
+use super::{BoundingBox, Mesh, Positions, Viewport};
 use crate::math::{Projective, Vec3};
 
 /// A vertex transform, made once a draw.
@@ -85,7 +85,8 @@ impl Transform {
     /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
-    pub fn new(mvp: &Projective, viewport: &Viewport, positions: &Positions<'_>, displaced: bool) -> Self {
+    pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
+        let positions = &mesh.data().positions;
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
         let mut r = mvp.to_rows();
         let shift = excess(r.iter().flatten(), 44).max(0);
@@ -155,7 +156,13 @@ impl Transform {
             result.translation[i] = scale(t[i], shift);
         }
         if let (Positions::Quantized { .. }, false) = (positions, displaced) {
-            result.short = Short::new(&e, &result.translation);
+            // The least w in the mesh's box, on the scale of the translation.
+            let BoundingBox { center, half } = mesh.bounds().aabb;
+            let mut least = r[3][3];
+            for ((r, center), half) in r[3].into_iter().zip(center.to_bits()).zip(half.to_bits()) {
+                least += times(r, center) - times(r.abs(), half);
+            }
+            result.short = Short::new(&e, &result.translation, scale(least, shift));
         }
         result
     }
@@ -232,17 +239,15 @@ impl Transform {
 }
 
 impl Short {
-    /// The 32-bit path, if w stays large enough for it in the whole cube of positions.
+    /// The 32-bit path, if w stays large enough for it in the whole of the mesh.
     ///
     /// # Format
     /// Values are those of the long path / 2²⁵, below 2³⁰, off by at most 3: half a unit from each of three entries,
     /// half from the constant and one from the cut. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at
     /// most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it be,
     /// which is well inside the guard band.
-    fn new(entries: &[[i64; 4]; 4], translation: &[i64; 4]) -> Option<Self> {
-        let w = &entries[3];
-        let swing = (w[0].unsigned_abs() + w[1].unsigned_abs() + w[2].unsigned_abs()) << 15;
-        if translation[3] - (swing as i64) < 1 << 51 {
+    fn new(entries: &[[i64; 4]; 4], translation: &[i64; 4], least_w: i64) -> Option<Self> {
+        if least_w < 1 << 51 {
             return None;
         }
         let mut short = Self {

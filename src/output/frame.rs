@@ -3,7 +3,7 @@
 use super::record::{Layout, Records};
 use super::sink::{OnDisplay, StripPixels, StripSink};
 use super::{Framebuffer, Stats, Strip};
-use crate::fragment::PixelFormat;
+use crate::fragment::{PixelFormat, fill};
 use crate::geometry::{Viewport, ViewportError};
 use crate::pipeline::{Phase, Scene, Target};
 use core::fmt;
@@ -417,7 +417,7 @@ fn strip_into<'c, P: PixelFormat>(
     let pixels = usize::from(width) * usize::from(engine.rows_at(progress.row));
     let length = pixels.min(color.len());
     let color = color.get_mut(..length).unwrap_or_default();
-    color.fill(background);
+    fill(color, background);
     let mut strip = Strip::<P>::new(&mut *color, width, u32::from(progress.row));
     let drawn = engine
         .next_strip(progress, &mut strip, draw)
@@ -463,9 +463,7 @@ impl<'b> FramebufferRenderer<'b> {
             for y in 0..height {
                 let row = framebuffer.row(u32::from(y));
                 let length = row.len().min(usize::from(width));
-                row.get_mut(..length)
-                    .unwrap_or_default()
-                    .fill(F::Format::from_color(color));
+                fill(row.get_mut(..length).unwrap_or_default(), F::Format::from_color(color));
             }
         }
         let mut progress = Progress::new();

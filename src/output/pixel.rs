@@ -10,6 +10,12 @@ const fn rgb565(rgb: [u8; 3]) -> u16 {
     (rgb[0] as u16 & 0xF8) << 8 | (rgb[1] as u16 & 0xFC) << 3 | rgb[2] as u16 >> 3
 }
 
+/// The same from channels in one word: red and blue lie as far apart there as here.
+#[inline(always)]
+const fn rgb565_from_packed(word: u32) -> u16 {
+    ((word >> 16) & 0xF81F | (word << 1) & 0x7E0) as u16
+}
+
 /// 16-bit pixels in the processor's byte order.
 impl PixelFormat for Rgb565 {
     type Raw = u16;
@@ -18,6 +24,13 @@ impl PixelFormat for Rgb565 {
     #[inline(always)]
     fn pack(rgb: [u8; 3]) -> u16 {
         rgb565(rgb)
+    }
+
+    const PACKED: bool = true;
+
+    #[inline(always)]
+    fn from_packed(word: u32) -> u16 {
+        rgb565_from_packed(word)
     }
 
     fn from_color(color: Rgb565) -> u16 {
@@ -41,6 +54,13 @@ impl PixelFormat for Rgb565Be {
     #[inline(always)]
     fn pack(rgb: [u8; 3]) -> u16 {
         rgb565(rgb).to_be()
+    }
+
+    const PACKED: bool = true;
+
+    #[inline(always)]
+    fn from_packed(word: u32) -> u16 {
+        rgb565_from_packed(word).to_be()
     }
 
     fn from_color(color: Rgb565) -> u16 {

@@ -10,7 +10,7 @@
 //! order. Each triangle is in one list at a time: recorded into the list of the topmost strip it touches, it moves on to
 //! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
 
-use crate::geometry::{Outcode, ScreenVertex};
+use crate::geometry::{Placed, ScreenVertex, VertexShader};
 
 /// No triangle.
 const NONE: u16 = u16::MAX;
@@ -36,48 +36,56 @@ pub const fn records_len(
     strips + HEADER * draws + (VERTEX + varying_words) * vertices + TRIANGLE * triangles
 }
 
-/// A vertex in the records.
+/// What the records hold of where a vertex is: two words, x and y in 24 bits each, above the high and the low byte of z.
+///
+/// An x that no vertex on the screen has marks one that is not there: its low byte is the outcode, or [`UNSHADED`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Slot {
-    /// Not shaded yet.
-    Unshaded,
-    /// On the screen.
-    Screen(ScreenVertex),
-    /// Outside of the planes in its code: has to be clipped, and so cannot be projected.
-    Outside(Outcode),
-}
+pub(crate) struct Slot([u32; 2]);
 
-/// The x that marks a vertex that is not on the screen; those that are stay above it. Its low byte is the outcode, or
-/// [`UNSHADED`].
 const OFF_SCREEN: u32 = 0x8000_0000;
 const UNSHADED: u32 = OFF_SCREEN | 0x80;
 
 impl Slot {
-    /// Two words: x and y in 24 bits each, above the high and the low byte of z.
-    pub(crate) fn pack(self) -> [u32; 2] {
-        match self {
-            Self::Unshaded => [UNSHADED, 0],
-            Self::Screen(v) => [
-                (v.x as u32) << 8 | u32::from(v.z >> 8),
-                (v.y as u32) << 8 | u32::from(v.z & 0xFF),
-            ],
-            Self::Outside(code) => [OFF_SCREEN | u32::from(code.0), 0],
+    /// Of a vertex on the screen, or of one that has to be clipped and so cannot be projected.
+    #[inline]
+    pub(crate) const fn new(placed: &Placed) -> Self {
+        match placed {
+            Placed::Screen(v) => {
+                Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32])
+            }
+            Placed::Outside(code) => Self([OFF_SCREEN | code.0 as u32, 0]),
+        }
+    }
+
+    /// From the first words of a vertex.
+    #[inline]
+    pub(crate) fn read(words: &[u32]) -> Self {
+        match words {
+            [a, b, ..] => Self([*a, *b]),
+            _ => Self([UNSHADED, 0]),
         }
     }
 
     #[inline]
-    pub(crate) fn unpack([a, b]: [u32; 2]) -> Self {
-        if a == UNSHADED {
-            Self::Unshaded
-        } else if a & !0xFF == OFF_SCREEN {
-            Self::Outside(Outcode(a as u8))
-        } else {
-            Self::Screen(ScreenVertex::new(
-                a as i32 >> 8,
-                b as i32 >> 8,
-                ((a & 0xFF) << 8 | (b & 0xFF)) as u16,
-            ))
-        }
+    pub(crate) const fn is_unshaded(self) -> bool {
+        self.0[0] == UNSHADED
+    }
+
+    #[inline]
+    pub(crate) const fn is_on_screen(self) -> bool {
+        self.0[0] >> 8 != OFF_SCREEN >> 8
+    }
+
+    /// Outcode of a vertex that is not on the screen, 0 of one that is.
+    pub(crate) const fn outcode(self) -> u8 {
+        if self.is_on_screen() { 0 } else { self.0[0] as u8 }
+    }
+
+    /// Where a vertex on the screen is.
+    #[inline]
+    pub(crate) const fn screen(self) -> ScreenVertex {
+        let [a, b] = self.0;
+        ScreenVertex::new(a as i32 >> 8, b as i32 >> 8, ((a & 0xFF) << 8 | (b & 0xFF)) as u16)
     }
 }
 
@@ -220,13 +228,27 @@ impl<'a> Records<'a> {
         self.words.get(start..start + self.layout.stride).unwrap_or_default()
     }
 
-    /// The same, to be written.
     #[inline]
-    pub(crate) fn vertex_mut(&mut self, index: usize) -> &mut [u32] {
+    fn vertex_mut(&mut self, index: usize) -> &mut [u32] {
         let start = self.layout.vertices + index * self.layout.stride;
         self.words
             .get_mut(start..start + self.layout.stride)
             .unwrap_or_default()
+    }
+
+    /// Packs a vertex of the current draw.
+    #[inline]
+    pub(crate) fn keep<S: VertexShader>(&mut self, index: usize, slot: Slot, varyings: &S::Varyings) {
+        if let [a, b, rest @ ..] = self.vertex_mut(index) {
+            [*a, *b] = slot.0;
+            S::store(varyings, rest);
+        }
+    }
+
+    /// The varyings of a vertex of the current draw.
+    #[inline]
+    pub(crate) fn varyings<S: VertexShader>(&self, index: usize) -> S::Varyings {
+        S::load(self.vertex(index).get(VERTEX..).unwrap_or_default())
     }
 
     /// Adds a vertex to the current draw, for a polygon that the clipper made.

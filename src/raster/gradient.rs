@@ -11,7 +11,7 @@
 //! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
-use crate::geometry::{ScreenVertex, signed_area, small};
+use crate::geometry::{ScreenVertex, small};
 use crate::math::mul_high_signed;
 
 /// What all plane equations of a triangle share.
@@ -46,13 +46,10 @@ pub struct PlaneEquation {
 }
 
 impl Gradients {
-    /// Of a triangle, for a screen of `width` × `height` px; `None` if it has no area.
+    /// Of a triangle with its [`signed_area`](crate::geometry::signed_area), which must not be 0, for a screen of
+    /// `width` × `height` px.
     #[inline]
-    pub fn new(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> Option<Self> {
-        let area = signed_area(&v[0], &v[1], &v[2]);
-        if area == 0 {
-            return None;
-        }
+    pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {
         let x = [v[1].x - v[0].x, v[2].x - v[0].x];
         let y = [v[1].y - v[0].y, v[2].y - v[0].y];
         let mut origin = (v[0].x >> 8, v[0].y >> 8);
@@ -75,7 +72,7 @@ impl Gradients {
             );
         }
         let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
-        Some(Self {
+        Self {
             x,
             y,
             to,
@@ -84,7 +81,7 @@ impl Gradients {
             reciprocal,
             shift,
             origin,
-        })
+        }
     }
 
     /// The pixel that [`PlaneEquation::base`] refers to.
@@ -267,12 +264,12 @@ fn divide_modulo(n: Wide, den: u64, bits: u32) -> u32 {
 }
 
 impl PlaneEquation {
-    /// Value at the centre of pixel (x, y), modulo 2³².
+    /// The same plane with its base moved from the pixel at `origin` to the screen's corner, modulo 2³²: the value at
+    /// pixel (x, y) is `base + dx x + dy y`.
     #[inline]
-    pub const fn at(&self, origin: (i32, i32), x: i32, y: i32) -> u32 {
-        self.base
-            .wrapping_add((self.dx.wrapping_mul(x - origin.0)) as u32)
-            .wrapping_add((self.dy.wrapping_mul(y - origin.1)) as u32)
+    pub const fn from_corner(self, origin: (i32, i32)) -> Self {
+        let along = self.dx.wrapping_mul(origin.0).wrapping_add(self.dy.wrapping_mul(origin.1));
+        Self { base: self.base.wrapping_sub(along as u32), ..self }
     }
 }
 

@@ -23,11 +23,13 @@ pub struct PixelRect {
 
 impl PixelRect {
     /// Whether no pixel is in it.
-    pub fn is_empty(&self) -> bool {
-        self.x.is_empty() || self.y.is_empty()
+    #[inline]
+    pub const fn is_empty(&self) -> bool {
+        self.x.start >= self.x.end || self.y.start >= self.y.end
     }
 
     /// The pixels that are in both.
+    #[inline]
     pub fn intersection(&self, other: &Self) -> Self {
         Self {
             x: self.x.start.max(other.x.start)..self.x.end.min(other.x.end),
@@ -52,109 +54,66 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
     }
 }
 
-/// A row of covered pixels, never empty.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Span {
-    /// Row.
-    pub y: i32,
-    /// Columns.
-    pub x: Range<i32>,
-}
-
-/// Walks the spans of a triangle inside a rectangle from top to bottom.
+/// Walks the spans of a triangle inside a rectangle from top to bottom: calls `span(y, columns)` for each that is not
+/// empty.
 ///
-/// Coverage is exact: as if computed with infinite precision, with the top-left rule, for either winding.
+/// `area` is the triangle's [`signed_area`](crate::geometry::signed_area), vertices are within ±32,767 px. Coverage is
+/// exact: as if computed with infinite precision, with the top-left rule, for either winding.
 ///
 /// ```
-/// use zstrip::geometry::ScreenVertex;
-/// use zstrip::raster::{PixelRect, Span, Spans};
-/// let corner = |x, y| ScreenVertex::new(x * 256, y * 256, 0);
-/// let spans = Spans::new(&[corner(0, 0), corner(0, 2), corner(2, 0)], &PixelRect { x: 0..8, y: 0..8 });
-/// assert!(spans.eq([Span { y: 0, x: 0..1 }]));
+/// use zstrip::geometry::{ScreenVertex, signed_area};
+/// use zstrip::raster::{PixelRect, spans};
+/// let [a, b, c] = [[0, 0], [0, 2], [2, 0]].map(|[x, y]| ScreenVertex::new(x * 256, y * 256, 0));
+/// let mut found = Vec::new();
+/// spans(&[a, b, c], signed_area(&a, &b, &c), &PixelRect { x: 0..8, y: 0..8 }, |y, x| found.push((y, x)));
+/// assert_eq!(found, [(0, 0..1)]);
 /// ```
-#[derive(Clone, Debug)]
-pub struct Spans {
-    /// The long edge, and the current part of the short side.
-    long: Edge,
-    short: Edge,
-    /// Second part of the short side: where it starts and ends.
-    bend: ((i32, i32), (i32, i32)),
-    long_is_left: bool,
-    row: i32,
-    /// First row of the second part.
-    bend_row: i32,
-    end_row: i32,
-    columns: Range<i32>,
-}
-
-impl Spans {
-    /// The spans of a triangle with vertices within ±32,767 px, clipped to a rectangle.
-    pub fn new(v: &[ScreenVertex; 3], clip: &PixelRect) -> Self {
-        let [mut a, mut b, mut c] = v.map(|v| (v.x, v.y));
+#[inline]
+pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl FnMut(i32, Range<i32>)) {
+    let [mut a, mut b, mut c] = v.map(|v| (v.x, v.y));
+    // Whether the bend is to the right of the long edge: the sign of the area, changed by each exchange.
+    let mut bend_right = area > 0;
+    if b.1 < a.1 {
+        (a, b) = (b, a);
+        bend_right = !bend_right;
+    }
+    if c.1 < b.1 {
+        (b, c) = (c, b);
+        bend_right = !bend_right;
         if b.1 < a.1 {
             (a, b) = (b, a);
+            bend_right = !bend_right;
         }
-        if c.1 < b.1 {
-            (b, c) = (c, b);
-            if b.1 < a.1 {
-                (a, b) = (b, a);
-            }
-        }
-        // Which side of the long edge the bend is on: the sign of the area of a b c.
-        let area = crate::geometry::signed_area(
-            &ScreenVertex::new(a.0, a.1, 0),
-            &ScreenVertex::new(b.0, b.1, 0),
-            &ScreenVertex::new(c.0, c.1, 0),
-        );
-        let row = first_centre(a.1).max(clip.y.start);
-        let end_row = first_centre(c.1).min(clip.y.end);
-        let mut spans = Self {
-            long: Edge::EMPTY,
-            short: Edge::EMPTY,
-            bend: (b, c),
-            long_is_left: area > 0,
-            row,
-            bend_row: first_centre(b.1),
-            end_row: if area == 0 { row } else { end_row },
-            columns: clip.x.clone(),
-        };
-        if spans.row < spans.end_row {
-            spans.long = Edge::new(a, c, row);
-            spans.short = if row < spans.bend_row {
-                Edge::new(a, b, row)
-            } else {
-                Edge::new(b, c, row)
-            };
-        }
-        spans
     }
-}
-
-impl Iterator for Spans {
-    type Item = Span;
-
-    #[inline]
-    fn next(&mut self) -> Option<Span> {
-        while self.row < self.end_row {
-            let y = self.row;
-            let (long, short) = (self.long.pixel(), self.short.pixel());
-            let (left, right) = if self.long_is_left {
-                (long, short)
-            } else {
-                (short, long)
-            };
-            self.row += 1;
-            self.long.step();
-            if self.row != self.bend_row {
-                self.short.step();
-            } else if self.row < self.end_row {
-                self.short = Edge::new(self.bend.0, self.bend.1, self.row);
-            }
-            let x = left.max(self.columns.start)..right.min(self.columns.end);
-            if x.start < x.end {
-                return Some(Span { y, x });
-            }
+    let mut row = first_centre(a.1).max(clip.y.start);
+    let end = first_centre(c.1).min(clip.y.end);
+    if area == 0 || row >= end {
+        return;
+    }
+    let bend = first_centre(b.1);
+    let long = Edge::new(a, c, row);
+    let mut edges = (long, long);
+    // The part above the bend, and the part below it.
+    for (from, to, end) in [(a, b, bend.min(end)), (b, c, end)] {
+        if row >= end {
+            continue;
         }
-        None
+        let short = Edge::new(from, to, row);
+        if bend_right {
+            edges.1 = short;
+        } else {
+            edges.0 = short;
+        }
+        let (mut left, mut right) = edges;
+        while row < end {
+            let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
+            if x.start < x.end {
+                span(row, x);
+            }
+            left.step();
+            right.step();
+            row += 1;
+        }
+        edges = (left, right);
     }
 }

@@ -1,0 +1,67 @@
+//! Fills with one value, two or four pixels a word.
+
+use bytemuck::Pod;
+
+/// Pixels below which words do not pay.
+const SHORT: usize = 16;
+
+/// Sets all pixels to `value`: like `slice::fill`, which the compiler leaves a loop of single pixels.
+#[inline]
+pub fn fill<R: Pod>(pixels: &mut [R], value: R) {
+    match size_of::<R>() {
+        _ if pixels.len() < SHORT => pixels.fill(value),
+        1 => fill_words(pixels, value, bytemuck::cast([value; 4].map(low_byte))),
+        2 => fill_words(pixels, value, bytemuck::cast([value; 2].map(half_word))),
+        _ => pixels.fill(value),
+    }
+}
+
+fn low_byte<R: Pod>(value: R) -> u8 {
+    bytemuck::bytes_of(&value).first().copied().unwrap_or(0)
+}
+
+fn half_word<R: Pod>(value: R) -> u16 {
+    match bytemuck::bytes_of(&value) {
+        [a, b] => u16::from_ne_bytes([*a, *b]),
+        _ => 0,
+    }
+}
+
+#[inline]
+fn fill_words<R: Pod>(pixels: &mut [R], value: R, word: u32) {
+    let (head, words, tail) = bytemuck::pod_align_to_mut::<R, u32>(pixels);
+    head.fill(value);
+    let mut blocks = words.chunks_exact_mut(8);
+    for block in &mut blocks {
+        for place in block {
+            *place = word;
+        }
+    }
+    for place in blocks.into_remainder() {
+        *place = word;
+    }
+    tail.fill(value);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::fill;
+    use std::vec;
+
+    #[test]
+    fn every_length_and_alignment_is_filled_and_nothing_else() {
+        for start in 0..5 {
+            for end in start..90 {
+                let mut halves = vec![1_u16; 100];
+                fill(&mut halves[start..end], 0xABCD);
+                assert!(halves.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 0xABCD } else { 1 }));
+                let mut bytes = vec![1_u8; 100];
+                fill(&mut bytes[start..end], 7);
+                assert!(bytes.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 7 } else { 1 }));
+                let mut triples = vec![[1_u8; 3]; 100];
+                fill(&mut triples[start..end], [7, 8, 9]);
+                assert!(triples.iter().enumerate().all(|(k, v)| (*v == [7, 8, 9]) == (start..end).contains(&k)));
+            }
+        }
+    }
+}
