@@ -32,10 +32,7 @@ fn run() {
     let peak = firmware::stack::peak_of(|| report = Some(scenes::render(0, color, depth, records)));
     let Some(report) = report else { return };
     println!("{}: hash {:016x}", scenes::SCENES[0].name, report.hash);
-    println!(
-        "triangles {}, rows of fragments {}",
-        report.triangles, report.fragments_rows
-    );
+    println!("{:#?}", report.stats);
     println!(
         "peak stack {peak} bytes, static RAM {} bytes",
         firmware::stack::static_ram()

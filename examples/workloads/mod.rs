@@ -78,7 +78,7 @@ fn frame(
 
 #[inline(never)]
 pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = camera() * MIRROR;
+    let mvp = CAMERA * MIRROR;
     let [r, g, b] = QUAD_COLOR;
     let shader = Flat::unlit(Rgb888::new(r, g, b));
     let state = State {
@@ -90,35 +90,38 @@ pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
 
 #[inline(never)]
 pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = camera() * MIRROR;
+    let mvp = CAMERA * MIRROR;
     frame(buffers, sink, |scene| scene.draw(&QUAD, &mvp, &Gouraud::unlit()))
 }
 
 #[inline(never)]
 pub fn flat_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = camera() * MODEL;
+    let mvp = CAMERA * MODEL;
     let shader = Flat::new(light(), torus_color());
     frame(buffers, sink, |scene| scene.draw(&TORUS, &mvp, &shader))
 }
 
 #[inline(never)]
 pub fn gouraud_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = camera() * MODEL;
+    let mvp = CAMERA * MODEL;
     let shader = Gouraud::new(light(), torus_color());
     frame(buffers, sink, |scene| scene.draw(&TORUS, &mvp, &shader))
 }
 
 #[inline(never)]
 pub fn tiny(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = camera() * MIRROR;
+    let mvp = CAMERA * MIRROR;
     let shader = FaceColors(Flat::unlit(Rgb888::new(0, 0, 0)));
     frame(buffers, sink, |scene| scene.draw(&TINY, &mvp, &shader))
 }
 
-fn camera() -> Projective {
-    Projective::perspective(Angle::from_degrees(60), (WIDTH as u16, HEIGHT as u16), NEAR, FAR)
-        .unwrap_or(Projective::IDENTITY)
-}
+/// The compiler makes it: 128-bit arithmetic stays out of the firmware.
+const CAMERA: Projective = {
+    match Projective::perspective(Angle::from_degrees(60), (WIDTH as u16, HEIGHT as u16), NEAR, FAR) {
+        Ok(camera) => camera,
+        Err(_) => panic!("not a camera"),
+    }
+};
 
 /// The light as the torus sees it.
 fn light() -> Light {

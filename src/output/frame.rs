@@ -179,7 +179,7 @@ impl Engine<'_> {
     /// until it fits. `false` if not even one strip does.
     fn record<F: Framebuffer>(&mut self, progress: &mut Progress, draw: &mut impl FnMut(&mut Scene<'_, F>)) -> bool {
         let height = self.viewport.height();
-        let left = (height - progress.row).div_ceil(self.strip_rows);
+        let left = (height - progress.row).div_ceil(self.strip_rows.max(1));
         let mut strips = progress.strips.min(left);
         loop {
             let end = (u32::from(progress.row) + u32::from(strips) * u32::from(self.strip_rows)).min(u32::from(height));

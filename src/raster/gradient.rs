@@ -66,9 +66,10 @@ impl Gradients {
             shift = zeros as i32 - 32;
             reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
+            // `clamp` would panic on an empty screen.
             origin = (
-                origin.0.clamp(0, i32::from(width) - 1),
-                origin.1.clamp(0, i32::from(height) - 1),
+                origin.0.min(i32::from(width) - 1).max(0),
+                origin.1.min(i32::from(height) - 1).max(0),
             );
         }
         let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
