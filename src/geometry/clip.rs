@@ -9,7 +9,8 @@ use heapless::Vec;
 
 /// A vertex in clip space, in any common scale: x / w, y / w in units of 512 px from the screen's corner, z / w depth.
 ///
-/// Magnitudes stay below 2⁵⁶, so that plane distances fit 63 bits.
+/// Magnitudes stay below 2⁵⁶, so that plane distances fit 63 bits. The scale must be so large that w below
+/// [`ClipVertex::MIN_W`] does not matter; it counts as behind the eye.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClipVertex {
     /// To the right.
@@ -20,6 +21,12 @@ pub struct ClipVertex {
     pub z: i64,
     /// The divisor.
     pub w: i64,
+}
+
+impl ClipVertex {
+    /// Smallest w in front of the eye. A cut there is off by one unit, 1/2048 px; the short path of the vertex transform
+    /// has no smaller w, and the long one only nearer to the eye than positions resolve.
+    pub const MIN_W: i64 = 1 << 20;
 }
 
 /// What becomes of what lies before the near plane or beyond the far plane.
@@ -39,7 +46,7 @@ pub enum DepthRange {
 pub struct Outcode(pub u8);
 
 impl Outcode {
-    /// Bit of w > 0.
+    /// Bit of w ≥ [`ClipVertex::MIN_W`].
     pub const W: u8 = 1;
     /// Bit of the near plane, z ≥ 0.
     pub const NEAR: u8 = 2;
@@ -72,7 +79,7 @@ const FAR: usize = 2;
 fn distance(plane: usize, v: &ClipVertex) -> i64 {
     let band = 64 * v.w - (v.w >> 16);
     match plane {
-        0 => v.w - 1,
+        0 => v.w - ClipVertex::MIN_W,
         NEAR => v.z,
         FAR => v.w - v.z,
         3 => band + v.x,
@@ -99,6 +106,10 @@ pub fn clip_triangle<V: Varyings>(
         DepthRange::ClampFar => (false, true),
         DepthRange::Clamp => (true, true),
     };
+    // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
+    if triangle.iter().any(|(v, _)| *v == ClipVertex::default()) {
+        return;
+    }
     let mut polygon = Polygon::new();
     // Three fit ten; the same holds wherever a push is not checked below.
     let _ = polygon.extend_from_slice(triangle);
@@ -203,4 +214,45 @@ fn fraction(num: u64, den: u64) -> u64 {
         }
     }
     quotient
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn corners(triangle: [[i64; 4]; 3]) -> usize {
+        let triangle = triangle.map(|[x, y, z, w]| (ClipVertex { x, y, z, w }, [0; 0]));
+        let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
+        let mut corners = 0;
+        clip_triangle(&triangle, Outcode(codes), DepthRange::Clip, |polygon| {
+            corners += polygon.len()
+        });
+        corners
+    }
+
+    #[test]
+    fn triangle_with_a_vertex_at_the_eye_has_nothing_to_see() {
+        let (a, b) = ([1 << 50, 0, 1 << 49, 1 << 50], [0, 1 << 50, 1 << 49, 1 << 50]);
+        assert_eq!(corners([a, b, [0, 0, 1 << 49, 1 << 50]]), 3);
+        assert_eq!(corners([a, b, [0; 4]]), 0);
+    }
+
+    /// The edge from a to -a meets w = 0 in the eye: what is left in front of it projects to a, and not to anywhere.
+    #[test]
+    fn edge_through_the_eye_is_cut_where_it_can_be_projected() {
+        let a = [(1 << 50) + 12_345, -(1 << 49), 1 << 48, 1 << 51];
+        let triangle = [a, a.map(|c| -c), [1 << 50, 1 << 50, 1 << 50, 1 << 51]];
+        let triangle = triangle.map(|[x, y, z, w]| (ClipVertex { x, y, z, w }, [0; 0]));
+        let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
+        let project = |v: &ClipVertex| [v.x, v.y].map(|c| c as f64 / v.w as f64 * 131_072.0);
+        let [x, y] = project(&triangle[0].0);
+        let nearest = |polygon: &[(ClipVertex, [i32; 0])]| {
+            let off = polygon
+                .iter()
+                .map(|(v, _)| (project(v)[0] - x).hypot(project(v)[1] - y));
+            // Both ends of what is left of the edge.
+            assert!(off.filter(|d| *d < 0.5).count() >= 2, "{polygon:?}");
+        };
+        clip_triangle(&triangle, Outcode(codes), DepthRange::Clip, nearest);
+    }
 }
