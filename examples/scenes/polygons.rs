@@ -95,7 +95,7 @@ const fn floor_colors() -> [Rgb; (TILES + 1) * (TILES + 1)] {
     let mut colors = [[245, 238, 220]; (TILES + 1) * (TILES + 1)];
     let mut k = 0;
     while k < colors.len() {
-        if (k % (TILES + 1) + k / (TILES + 1)) % 2 == 0 {
+        if (k % (TILES + 1) + k / (TILES + 1)) & 1 == 0 {
             colors[k] = [110, 84, 70];
         }
         k += 1;
