@@ -44,10 +44,7 @@ impl Hash {
 /// Rows of a strip, and words of records.
 const SIZES: (usize, usize) = if cfg!(ram = "records") {
     let budget = RamBudget::new::<Rgb565>(WIDTH as u16, 16);
-    (
-        16,
-        budget.with_records(1, HEIGHT as u16, 512, 1, FRONT_FACES).records / 4,
-    )
+    (16, budget.with_records(1, HEIGHT as u16, 512, 1, FRONT_FACES).records / 4)
 } else if cfg!(ram = "bare") {
     (8, 0)
 } else {
@@ -75,20 +72,12 @@ mod counting {
         records: [u32; SIZES.1],
     }
 
-    static mut MEMORY: Memory = Memory {
-        color: [0; _],
-        depth: [0; _],
-        records: [0; _],
-    };
+    static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _] };
 
     /// Buffers for strips of some rows.
     fn lend(memory: &mut Memory, rows: usize) -> Buffers<'_, Rgb565> {
         let pixels = WIDTH * rows.min(SIZES.0);
-        Buffers {
-            color: &mut memory.color[..pixels],
-            depth: &mut memory.depth[..pixels],
-            records: &mut memory.records,
-        }
+        Buffers { color: &mut memory.color[..pixels], depth: &mut memory.depth[..pixels], records: &mut memory.records }
     }
 
     pub fn run() {
@@ -191,11 +180,7 @@ impl Tolerance {
             Workload::FlatTorus | Workload::GouraudTorus => (20, 20, 1.5),
             Workload::Tiny => (400, 20, 0.1),
         };
-        Self {
-            coverage,
-            surface,
-            channel,
-        }
+        Self { coverage, surface, channel }
     }
 }
 
@@ -205,11 +190,7 @@ fn main() {
     for (name, workload) in NAMED {
         let (mut color, mut depth) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
         let mut records = vec![0; SIZES.1];
-        let buffers = Buffers {
-            color: &mut color,
-            depth: &mut depth,
-            records: &mut records,
-        };
+        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
         let mut hash = Hash::NEW;
         let stats = workloads::draw(workload, buffers, |strip| hash.add(strip));
         let picture = workloads::reference::draw(workload);
@@ -251,11 +232,7 @@ fn main() {
 /// How far the colour is, in 8-bit steps, from the range of colours that are cut to this pixel.
 #[cfg(not(target_os = "none"))]
 fn distance(pixel: u16, color: [f64; 3]) -> f64 {
-    let channels = [
-        (pixel >> 11 << 3, 8.0),
-        ((pixel >> 5 & 63) << 2, 4.0),
-        ((pixel & 31) << 3, 8.0),
-    ];
+    let channels = [(pixel >> 11 << 3, 8.0), ((pixel >> 5 & 63) << 2, 4.0), ((pixel & 31) << 3, 8.0)];
     channels.iter().zip(color).fold(0.0, |worst, (&(low, step), value)| {
         let low = f64::from(low);
         worst.max(low - value).max(value - (low + step))

@@ -31,11 +31,7 @@ fn main() -> ExitCode {
             Ok(outcome @ Outcome::Checked { right, total, .. }) => {
                 println!("{name}: {right} of {total}");
                 all_right &= outcome.is_right();
-                if let Outcome::Checked {
-                    first_wrong: Some(wrong),
-                    ..
-                } = outcome
-                {
+                if let Outcome::Checked { first_wrong: Some(wrong), .. } = outcome {
                     println!("  first wrong: {wrong}");
                 }
             }
@@ -45,9 +41,5 @@ fn main() -> ExitCode {
             }
         }
     }
-    if all_right {
-        ExitCode::SUCCESS
-    } else {
-        ExitCode::FAILURE
-    }
+    if all_right { ExitCode::SUCCESS } else { ExitCode::FAILURE }
 }

@@ -36,11 +36,7 @@ struct Buffers {
     records: [u32; RECORDS],
 }
 
-static mut BUFFERS: Buffers = Buffers {
-    color: [0; _],
-    depth: [0; _],
-    records: [0; _],
-};
+static mut BUFFERS: Buffers = Buffers { color: [0; _], depth: [0; _], records: [0; _] };
 
 fn run() {
     let buffers = &raw mut BUFFERS;

@@ -11,10 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let [scene, frames, turn, width, height, file] = &args[..] else {
         return Err("usage: frame <scene> <frames> <turn> <width> <height> <file>".into());
     };
-    let index = scenes::SCENES
-        .iter()
-        .position(|info| info.name == scene)
-        .ok_or("no scene of that name")?;
+    let index = scenes::SCENES.iter().position(|info| info.name == scene).ok_or("no scene of that name")?;
     let size: [usize; 2] = [width.parse()?, height.parse()?];
     let (frames, turn): (u16, u16) = (frames.parse()?, turn.parse()?);
 

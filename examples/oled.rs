@@ -22,12 +22,7 @@ const RECORDS: usize = 8 * 1024;
 /// Draws frame number `frame` and hands over each strip in the panel's format.
 fn draw(frame: u16, buffers: &mut Buffers, mut send: impl FnMut(usize, &[u8])) {
     let turn = frame * (u16::MAX / FRAMES);
-    let Buffers {
-        color,
-        depth,
-        records,
-        packed,
-    } = buffers;
+    let Buffers { color, depth, records, packed } = buffers;
     scenes::draw(1, turn, [WIDTH, HEIGHT], color, depth, records, |y0, strip| {
         let packed = &mut packed[..strip.len() / 2];
         pack_strip(strip, y0, packed);
@@ -43,12 +38,7 @@ struct Buffers {
 }
 
 impl Buffers {
-    const NEW: Self = Self {
-        color: [0; _],
-        depth: [0; _],
-        records: [0; _],
-        packed: [0; _],
-    };
+    const NEW: Self = Self { color: [0; _], depth: [0; _], records: [0; _], packed: [0; _] };
 }
 
 /// Reduces a strip of RGB565 whose first row is `y0` to the panel's 4 bits of grey.
@@ -210,9 +200,5 @@ fn compare(dump: &[u8], greys: &[u8]) -> Result<(), Box<dyn std::error::Error>> 
             different += 1;
         }
     }
-    if different == 0 {
-        Ok(())
-    } else {
-        Err(format!("{different} dots differ").into())
-    }
+    if different == 0 { Ok(()) } else { Err(format!("{different} dots differ").into()) }
 }

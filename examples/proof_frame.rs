@@ -38,11 +38,7 @@ mod image {
         records: [u32; RECORDS],
     }
 
-    static mut MEMORY: Memory = Memory {
-        color: [0; _],
-        depth: [0; _],
-        records: [0; _],
-    };
+    static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _] };
 
     #[entry]
     fn start() -> ! {

@@ -19,11 +19,7 @@ fn run() {
         depth: [u16; 320 * 16],
         records: [u32; 8 * 1024],
     }
-    static mut BUFFERS: Buffers = Buffers {
-        color: [0; _],
-        depth: [0; _],
-        records: [0; _],
-    };
+    static mut BUFFERS: Buffers = Buffers { color: [0; _], depth: [0; _], records: [0; _] };
     let buffers = &raw mut BUFFERS;
     // SAFETY: `run` is called once; this is the only reference.
     let Buffers { color, depth, records } = unsafe { &mut *buffers };
@@ -33,10 +29,7 @@ fn run() {
     let Some(report) = report else { return };
     println!("{}: hash {:016x}", scenes::SCENES[0].name, report.hash);
     println!("{:#?}", report.stats);
-    println!(
-        "peak stack {peak} bytes, static RAM {} bytes",
-        firmware::stack::static_ram()
-    );
+    println!("peak stack {peak} bytes, static RAM {} bytes", firmware::stack::static_ram());
 }
 
 #[cfg(not(target_os = "none"))]

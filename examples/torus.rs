@@ -55,14 +55,7 @@ struct Settings {
 /// The settings, or `None` if help was asked for.
 fn arguments() -> Result<Option<Settings>, Box<dyn Error>> {
     use lexopt::prelude::*;
-    let mut settings = Settings {
-        png: None,
-        strip_rows: 16,
-        records: AMPLE,
-        frame: 0,
-        scene: 1,
-        size: (320, 240),
-    };
+    let mut settings = Settings { png: None, strip_rows: 16, records: AMPLE, frame: 0, scene: 1, size: (320, 240) };
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {
@@ -95,9 +88,7 @@ fn scene(name: &str) -> Result<usize, String> {
 }
 
 fn size(text: &str) -> Result<(u16, u16), String> {
-    let parsed = text
-        .split_once('x')
-        .and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    let parsed = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     parsed.ok_or_else(|| "a size is like 320x240".into())
 }
 
@@ -111,11 +102,7 @@ fn ram(settings: &Settings) -> usize {
 fn render(settings: &Settings, frame: u32, picture: &mut Picture) -> Result<Stats, Box<dyn Error>> {
     let pixels = usize::from(settings.size.0) * usize::from(settings.strip_rows.min(settings.size.1));
     let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; settings.records]);
-    let buffers = Buffers {
-        color: &mut color,
-        depth: &mut depth,
-        records: &mut records,
-    };
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
     let mut renderer = Renderer::<Rgb565>::new(settings.size, buffers)?;
     let to_picture = |strip: &StripPixels<'_, Rgb565>| {
         picture.put(strip);
@@ -160,20 +147,13 @@ fn open(settings: &Settings) -> Result<Window, String> {
         return Err("neither DISPLAY nor WAYLAND_DISPLAY is set".into());
     }
     let (width, height) = (settings.size.0.into(), settings.size.1.into());
-    let options = WindowOptions {
-        scale: if width <= 640 { Scale::X2 } else { Scale::X1 },
-        ..WindowOptions::default()
-    };
+    let options = WindowOptions { scale: if width <= 640 { Scale::X2 } else { Scale::X1 }, ..WindowOptions::default() };
     Window::new("zstrip", width, height, options).map_err(|error| error.to_string())
 }
 
 /// The next entry above `value`, or the one below; `value` itself at the ends.
 fn neighbour<T: Copy + PartialOrd>(list: impl Iterator<Item = T> + Clone, value: T, up: bool) -> T {
-    let next = if up {
-        list.clone().find(|entry| *entry > value)
-    } else {
-        list.filter(|entry| *entry < value).last()
-    };
+    let next = if up { list.clone().find(|entry| *entry > value) } else { list.filter(|entry| *entry < value).last() };
     next.unwrap_or(value)
 }
 

@@ -83,12 +83,7 @@ impl<F: Framebuffer> Scene<'_, F> {
 
     /// Draws a mesh by other rules.
     pub fn draw_with<S: Shader<F::Format>>(&mut self, state: State, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
-        const {
-            assert!(
-                S::WORDS <= <S::Varyings as Varyings>::LEN,
-                "a vertex needs no more words than varyings"
-            )
-        };
+        const { assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings") };
         let draw = self.draws;
         self.draws = draw.saturating_add(1);
         self.stats.draws += 1;
@@ -147,25 +142,15 @@ impl<F: Framebuffer> Scene<'_, F> {
     /// The pixels that may be drawn, in `rows` of the screen.
     fn clip_rect(&self, rows: &Range<i32>) -> PixelRect {
         let (x, y) = (i32::from(self.viewport.x()), i32::from(self.viewport.y()));
-        let viewport = PixelRect {
-            x: x..x + i32::from(self.viewport.width()),
-            y: y..y + i32::from(self.viewport.height()),
-        };
-        viewport.intersection(&PixelRect {
-            x: 0..i32::from(self.screen.0),
-            y: rows.clone(),
-        })
+        let viewport =
+            PixelRect { x: x..x + i32::from(self.viewport.width()), y: y..y + i32::from(self.viewport.height()) };
+        viewport.intersection(&PixelRect { x: 0..i32::from(self.screen.0), y: rows.clone() })
     }
 
     /// What can be seen of the band.
     fn frustum(&self, mvp: &Projective) -> Frustum {
         let rect = self.clip_rect(&self.band);
-        Frustum::through(
-            mvp,
-            &self.viewport,
-            (rect.x.start, rect.x.end),
-            (rect.y.start, rect.y.end),
-        )
+        Frustum::through(mvp, &self.viewport, (rect.x.start, rect.x.end), (rect.y.start, rect.y.end))
     }
 
     /// Stage 1, culling of whole meshes: the frustum to cull parts by, or `None` if nothing can be seen.
@@ -223,15 +208,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     ) -> Self {
         let transform = Transform::new(mvp, &scene.viewport, mesh, S::DISPLACES);
         let clip = scene.clip_rect(&scene.band);
-        Self {
-            scene,
-            state,
-            mesh,
-            shader,
-            transform,
-            clip,
-            cached,
-        }
+        Self { scene, state, mesh, shader, transform, clip, cached }
     }
 
     /// Takes the mesh's triangles one by one, leaving out the nodes of its hierarchy that cannot be seen.
@@ -303,8 +280,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     #[inline]
     fn transformed(&self, index: usize) -> ClipVertex {
         if S::DISPLACES {
-            self.transform
-                .point(self.shader.displace(&Corner::new(self.mesh, index)))
+            self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
         } else {
             self.transform.vertex(&self.mesh.data().positions, index)
         }

@@ -29,11 +29,7 @@ const COMPARES: [Compare; 8] = [
     Compare::GreaterEqual,
     Compare::Always,
 ];
-const NO_CULLING: State = State {
-    cull: Cull::None,
-    depth: DepthState::LESS,
-    range: DepthRange::Clip,
-};
+const NO_CULLING: State = State { cull: Cull::None, depth: DepthState::LESS, range: DepthRange::Clip };
 
 /// In the scale of the vertex transform.
 fn scaled([x, y, z, w]: [i32; 4]) -> ClipVertex {
@@ -49,9 +45,7 @@ type Polygon = Vec<(ClipVertex, [i32; 3])>;
 fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Polygon> {
     let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
     let mut polygons = Vec::new();
-    clip_triangle(triangle, Outcode(codes), range, |polygon| {
-        polygons.push(polygon.to_vec())
-    });
+    clip_triangle(triangle, Outcode(codes), range, |polygon| polygons.push(polygon.to_vec()));
     polygons
 }
 
@@ -64,10 +58,7 @@ fn visible_vertices_pass_bit_exact() {
     let mut visible = 0;
     for seed in 0..400 {
         let mut rng = Rng::new(seed);
-        for (kind, range) in ClipKind::ALL
-            .into_iter()
-            .flat_map(|kind| RANGES.map(|range| (kind, range)))
-        {
+        for (kind, range) in ClipKind::ALL.into_iter().flat_map(|kind| RANGES.map(|range| (kind, range))) {
             let triangle = labelled(random_triangle(&mut rng, kind));
             if triangle.iter().any(|(v, _)| *v == ClipVertex::default()) {
                 continue;
@@ -76,10 +67,7 @@ fn visible_vertices_pass_bit_exact() {
             for vertex in triangle.iter().filter(|(v, _)| Outcode::of(v).0 == 0) {
                 visible += 1;
                 let found = polygons.iter().flatten().any(|v| v == vertex);
-                assert!(
-                    found,
-                    "seed {seed} {kind:?} {range:?}: {vertex:?} is missing from {polygons:?}"
-                );
+                assert!(found, "seed {seed} {kind:?} {range:?}: {vertex:?} is missing from {polygons:?}");
             }
         }
     }
@@ -90,10 +78,7 @@ fn visible_vertices_pass_bit_exact() {
 fn clipped_vertices_lie_inside_of_all_planes() {
     for seed in 0..400 {
         let mut rng = Rng::new(seed);
-        for (kind, range) in ClipKind::ALL
-            .into_iter()
-            .flat_map(|kind| RANGES.map(|range| (kind, range)))
-        {
+        for (kind, range) in ClipKind::ALL.into_iter().flat_map(|kind| RANGES.map(|range| (kind, range))) {
             let triangle = labelled(random_triangle(&mut rng, kind));
             for (v, varyings) in clipped(&triangle, range).iter().flatten() {
                 let case = format!("seed {seed} {kind:?} {range:?}: {v:?}");
@@ -101,10 +86,7 @@ fn clipped_vertices_lie_inside_of_all_planes() {
                 // Each later cut rounds w by a unit, and so the guard band by 64.
                 let band = 64 * i128::from(v.w) + 256;
                 assert!(i128::from(v.x).abs() <= band && i128::from(v.y).abs() <= band, "{case}");
-                assert!(
-                    varyings.iter().all(|k| (0..=1 << 30).contains(k)),
-                    "{case}: {varyings:?}"
-                );
+                assert!(varyings.iter().all(|k| (0..=1 << 30).contains(k)), "{case}: {varyings:?}");
             }
         }
     }
@@ -116,8 +98,7 @@ fn on_edge(polygons: &[Polygon], corners: [usize; 2]) -> BTreeSet<[i64; 6]> {
         let other = 3 - corners[0] - corners[1];
         part[other] == 0
     });
-    on.map(|(v, part)| [v.x, v.y, v.z, v.w, part[corners[0]].into(), part[corners[1]].into()])
-        .collect()
+    on.map(|(v, part)| [v.x, v.y, v.z, v.w, part[corners[0]].into(), part[corners[1]].into()]).collect()
 }
 
 #[test]
@@ -125,12 +106,7 @@ fn edge_is_cut_alike_in_both_directions_and_in_both_triangles() {
     let mut cuts = 0;
     for seed in 0..600 {
         let mut rng = Rng::new(seed);
-        for kind in [
-            ClipKind::CrossingNear,
-            ClipKind::CrossingFar,
-            ClipKind::Huge,
-            ClipKind::ZeroW,
-        ] {
+        for kind in [ClipKind::CrossingNear, ClipKind::CrossingFar, ClipKind::Huge, ClipKind::ZeroW] {
             let [a, b, c] = random_triangle(&mut rng, kind);
             let [d, ..] = random_triangle(&mut rng, ClipKind::Visible);
             let range = rng.pick(&RANGES);
@@ -138,17 +114,11 @@ fn edge_is_cut_alike_in_both_directions_and_in_both_triangles() {
             // The same triangle with its corners in another order, and a neighbour.
             for (other, edge) in [([b, a, c], [1, 0]), ([c, b, a], [2, 1]), ([b, c, a], [2, 0])] {
                 let back = on_edge(&clipped(&labelled(other), range), edge);
-                assert_eq!(
-                    there, back,
-                    "seed {seed} {kind:?} {range:?}: {a:?} {b:?} {c:?} as {other:?}"
-                );
+                assert_eq!(there, back, "seed {seed} {kind:?} {range:?}: {a:?} {b:?} {c:?} as {other:?}");
             }
             if range == DepthRange::Clip {
                 let neighbour = on_edge(&clipped(&labelled([b, a, d]), range), [1, 0]);
-                assert_eq!(
-                    there, neighbour,
-                    "seed {seed} {kind:?}: {a:?} {b:?}, beside {c:?} and {d:?}"
-                );
+                assert_eq!(there, neighbour, "seed {seed} {kind:?}: {a:?} {b:?}, beside {c:?} and {d:?}");
             }
             cuts += there.len();
         }
@@ -163,15 +133,9 @@ fn edge_is_cut_alike_in_both_directions_and_in_both_triangles() {
 fn planes_come_in_one_order() {
     let one = 1 << 16;
     for (left, at_near, at_band) in [(-200, 0, 2), (-100, 2, 0)] {
-        let triangle = labelled([
-            [0, 0, one / 2, one],
-            [one, one, one / 2, one],
-            [left * one, one, -one, one],
-        ]);
+        let triangle = labelled([[0, 0, one / 2, one], [one, one, one / 2, one], [left * one, one, -one, one]]);
         let polygons = clipped(&triangle, DepthRange::Clip);
-        let [polygon] = &polygons[..] else {
-            panic!("{polygons:?}")
-        };
+        let [polygon] = &polygons[..] else { panic!("{polygons:?}") };
         let near = polygon.iter().filter(|(v, _)| v.z == 0).count();
         let band = polygon.iter().filter(|(v, _)| v.x < -63 * v.w).count();
         assert_eq!((near, band, polygon.len()), (at_near, at_band, 4), "{polygon:?}");
@@ -181,10 +145,7 @@ fn planes_come_in_one_order() {
 /// Two triangles of a parallelogram in space, which any plane may cut: no pixel twice, none left out.
 #[test]
 fn shared_edge_of_clipped_triangles_has_no_crack_and_no_overlap() {
-    let viewport = homogeneous::Viewport {
-        clip_y_down: true,
-        ..homogeneous::Viewport::new(64, 64)
-    };
+    let viewport = homogeneous::Viewport { clip_y_down: true, ..homogeneous::Viewport::new(64, 64) };
     let (mut pixels, mut clipped) = (0, 0);
     for seed in 0..250 {
         let mut rng = Rng::new(seed);
@@ -198,30 +159,18 @@ fn shared_edge_of_clipped_triangles_has_no_crack_and_no_overlap() {
         let [a, b, c] = random_triangle(&mut rng, kind).map(|v| v.map(|c| c / 4));
         let d: [i32; 4] = core::array::from_fn(|k| a[k] + b[k] - c[k]);
         let mut hits = vec![0; 64 * 64];
-        let mut subject = Subject {
-            strip_rows: 16,
-            records: 300,
-        };
-        subject.clip_triangles(64, 64, &[[a, b, c], [b, a, d]], &mut |_, x, y| {
-            hits[(64 * y + x) as usize] += 1
-        });
+        let mut subject = Subject { strip_rows: 16, records: 300 };
+        subject.clip_triangles(64, 64, &[[a, b, c], [b, a, d]], &mut |_, x, y| hits[(64 * y + x) as usize] += 1);
         let twice = hits.iter().filter(|n| **n > 1).count();
         assert_eq!(twice, 0, "seed {seed} {kind:?}: {a:?} {b:?} {c:?} {d:?} overlap");
         // Inside by a margin, of the parallelogram cut along one diagonal or the other.
         for tri in [[a, b, c], [b, a, d], [c, d, a], [d, c, b]] {
-            let tri = tri.map(|v| Vertex {
-                position: v.map(f64::from),
-                attributes: [],
-            });
+            let tri = tri.map(|v| Vertex { position: v.map(f64::from), attributes: [] });
             for_each_sample(&viewport, (64, 64), &tri, |s| {
                 if s.covered && s.margin > 1.0 / 64.0 {
                     pixels += 1;
                     let count = hits[(64 * s.y + s.x) as usize];
-                    assert_eq!(
-                        count, 1,
-                        "seed {seed} {kind:?}: {a:?} {b:?} {c:?} {d:?}, pixel ({}, {})",
-                        s.x, s.y
-                    );
+                    assert_eq!(count, 1, "seed {seed} {kind:?}: {a:?} {b:?} {c:?} {d:?}, pixel ({}, {})", s.x, s.y);
                 }
             });
         }
@@ -251,35 +200,18 @@ fn clamped_reference(
     let viewport = homogeneous::Viewport::new(size.0.into(), size.1.into());
     for_each_sample(&viewport, (size.0.into(), size.1.into()), &tri, |s| {
         let depth = s.perspective[0] * s.inv_w;
-        visit(
-            s.y as usize * usize::from(size.0) + s.x as usize,
-            s.covered,
-            s.margin,
-            depth,
-        );
+        visit(s.y as usize * usize::from(size.0) + s.x as usize, s.covered, s.margin, depth);
     });
 }
 
 #[test]
 fn depth_is_cut_or_clamped_pixel_by_pixel() {
     let size = (48, 32);
-    let state = |range| State {
-        depth: DepthState {
-            compare: Compare::Always,
-            write: true,
-        },
-        range,
-        ..NO_CULLING
-    };
+    let state = |range| State { depth: DepthState { compare: Compare::Always, write: true }, range, ..NO_CULLING };
     let mut counts = [[0_usize; 3]; 3];
     for seed in 0..300 {
         let mut rng = Rng::new(seed);
-        let kind = rng.pick(&[
-            ClipKind::CrossingNear,
-            ClipKind::CrossingFar,
-            ClipKind::Huge,
-            ClipKind::Visible,
-        ]);
+        let kind = rng.pick(&[ClipKind::CrossingNear, ClipKind::CrossingFar, ClipKind::Huge, ClipKind::Visible]);
         let triangle = random_triangle(&mut rng, kind).map(|v| v.map(Scalar::from_bits));
         let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(&triangle))).expect("a triangle");
         for (k, range) in RANGES.into_iter().enumerate() {
@@ -306,17 +238,11 @@ fn depth_is_cut_or_clamped_pixel_by_pixel() {
                 }
                 // Snapping moves a steep plane by its change over 1/64 px; clamped parts are flat.
                 let beside = [i.wrapping_sub(1), i + 1, i.wrapping_sub(48), i + 48];
-                let step = beside
-                    .iter()
-                    .filter_map(|&n| samples.get(n).copied().flatten())
-                    .map(|s| (s.2 - depth).abs());
+                let step =
+                    beside.iter().filter_map(|&n| samples.get(n).copied().flatten()).map(|s| (s.2 - depth).abs());
                 let slack = 2.0 / 65_535.0 + step.fold(0.0, f64::max) / 32.0;
                 let error = (f64::from(depths[i]) / 65_535.0 - depth.clamp(0.0, 1.0)).abs();
-                assert!(
-                    error <= slack,
-                    "{case}: {} is off by {error}, more than {slack}",
-                    depths[i]
-                );
+                assert!(error <= slack, "{case}: {} is off by {error}, more than {slack}", depths[i]);
                 counts[k][usize::from(depth >= 0.0) + usize::from(depth > 1.0)] += 1;
                 if depth > 1.0 + slack {
                     assert_eq!(depths[i], 65_535, "{case}");
@@ -342,10 +268,7 @@ fn no_input_panics_in_any_state() {
         let mesh = soup.mesh();
         let state = State {
             cull: rng.pick(&[Cull::Back, Cull::Front, Cull::None]),
-            depth: DepthState {
-                compare: COMPARES[seed as usize % 8],
-                write: seed / 8 % 2 == 0,
-            },
+            depth: DepthState { compare: COMPARES[seed as usize % 8], write: seed / 8 % 2 == 0 },
             range: RANGES[seed as usize % 3],
         };
         let stats = strips::<Rgb565>(
@@ -388,23 +311,16 @@ fn extreme_matrix(rng: &mut Rng) -> Projective {
 fn extreme_positions_and_matrices_never_panic() {
     for seed in 0..500 {
         let mut rng = Rng::new(seed);
-        let exact: Vec<_> = (0..9)
-            .map(|_| Vec3::new(extreme(&mut rng), extreme(&mut rng), extreme(&mut rng)))
-            .collect();
-        let fractions: Vec<_> = (0..9)
-            .map(|_| [(); 3].map(|()| rng.pick(&[i16::MIN, i16::MAX, 0, 1, -1, 12_345])))
-            .collect();
+        let exact: Vec<_> =
+            (0..9).map(|_| Vec3::new(extreme(&mut rng), extreme(&mut rng), extreme(&mut rng))).collect();
+        let fractions: Vec<_> =
+            (0..9).map(|_| [(); 3].map(|()| rng.pick(&[i16::MIN, i16::MAX, 0, 1, -1, 12_345]))).collect();
         let homogeneous: Vec<_> = (0..9).map(|_| [(); 4].map(|()| extreme(&mut rng))).collect();
-        let normals: Vec<_> = (0..9)
-            .map(|_| [(); 3].map(|()| rng.pick(&[i16::MIN, i16::MAX, 0, 16_384, -16_384])))
-            .collect();
+        let normals: Vec<_> =
+            (0..9).map(|_| [(); 3].map(|()| rng.pick(&[i16::MIN, i16::MAX, 0, 16_384, -16_384]))).collect();
         let scale = Scalar::from_bits(rng.pick(&[1, 1 << 16, i32::MAX]));
         let offset = Vec3::new(extreme(&mut rng), extreme(&mut rng), extreme(&mut rng));
-        let mvp = if rng.one_in(3) {
-            Projective::IDENTITY
-        } else {
-            extreme_matrix(&mut rng)
-        };
+        let mvp = if rng.one_in(3) { Projective::IDENTITY } else { extreme_matrix(&mut rng) };
         let light = Light::new(vector(&mut rng, 9.0), Rgb888::WHITE, Rgb888::WHITE)
             .to_object(&Affine::rotation_x(angle(&mut rng)));
         let corner = [(); 2].map(|()| rng.pick(&[-8192_i16, 8192, 0, 3]));
@@ -413,18 +329,10 @@ fn extreme_positions_and_matrices_never_panic() {
         for positions in [
             Positions::Exact(&exact),
             Positions::Homogeneous(&homogeneous),
-            Positions::Quantized {
-                points: &fractions,
-                scale,
-                offset,
-            },
+            Positions::Quantized { points: &fractions, scale, offset },
         ] {
             for topology in [Topology::Triangles, Topology::Strip, Topology::Fan] {
-                let mesh = Mesh::new(MeshData {
-                    topology,
-                    normals: Some(&normals),
-                    ..MeshData::new(positions)
-                });
+                let mesh = Mesh::new(MeshData { topology, normals: Some(&normals), ..MeshData::new(positions) });
                 let mesh = mesh.unwrap_or_else(|error| panic!("seed {seed}: {error}"));
                 strips::<Gray8>((20, 15), 6, rng.pick(&[0, 500]), Gray8::new(0), |scene| {
                     scene.set_viewport(viewport);
@@ -441,30 +349,14 @@ fn extreme_positions_and_matrices_never_panic() {
 fn flat_triangles(corners: &[[i32; 2]], z: u16) -> Vec<[Scalar; 4]> {
     let clip = |c: i32| Scalar::from_bits((c - 8) * 8192);
     let z = Scalar::from_bits(((i64::from(z) * 65_536 + 32_767) / 65_535) as i32);
-    corners
-        .iter()
-        .map(|&[x, y]| [clip(x), -clip(y), z, Scalar::ONE])
-        .collect()
+    corners.iter().map(|&[x, y]| [clip(x), -clip(y), z, Scalar::ONE]).collect()
 }
 
 #[test]
 fn degenerate_and_tiny_triangles_are_counted() {
     let point = [5, 5];
     let vertices = flat_triangles(
-        &[
-            point,
-            point,
-            point,
-            [1, 1],
-            [4, 4],
-            [9, 9],
-            [2, 2],
-            [2, 2],
-            [7, 3],
-            [0, 0],
-            [0, 8],
-            [8, 0],
-        ],
+        &[point, point, point, [1, 1], [4, 4], [9, 9], [2, 2], [2, 2], [7, 3], [0, 0], [0, 8], [8, 0]],
         100,
     );
     // And one that lies between pixel centres.
@@ -477,11 +369,7 @@ fn degenerate_and_tiny_triangles_are_counted() {
     let (picture, _, stats) = whole::<Gray8>((16, 16), Gray8::new(0), |scene| {
         scene.draw_with(NO_CULLING, &mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE))
     });
-    assert_eq!(
-        (stats.triangles, stats.degenerate, stats.empty, stats.drawn),
-        (5, 3, 1, 1),
-        "{stats:?}"
-    );
+    assert_eq!((stats.triangles, stats.degenerate, stats.empty, stats.drawn), (5, 3, 1, 1), "{stats:?}");
     // Half of 8 × 8 pixels; the centres on the hypotenuse are on a right edge.
     assert_eq!(picture.iter().filter(|p| **p == 255).count(), 28);
 }
@@ -504,10 +392,7 @@ fn depth_functions_and_write_mask_work_as_the_model_does() {
         let layers: Vec<_> = (1..=8_u8)
             .map(|grey| {
                 let z = rng.pick(&[0_u16, 1, 2, 30_000, 30_001, 65_534, 65_535]);
-                let depth = DepthState {
-                    compare: rng.pick(&COMPARES),
-                    write: rng.one_in(2),
-                };
+                let depth = DepthState { compare: rng.pick(&COMPARES), write: rng.one_in(2) };
                 (grey, z, depth, flat_triangles(&[[-40, -40], [160, -40], [-40, 160]], z))
             })
             .collect();
@@ -521,29 +406,13 @@ fn depth_functions_and_write_mask_work_as_the_model_does() {
         let (picture, depths, _) = whole::<Rgb888>((16, 16), Rgb888::BLACK, |scene| {
             for (grey, _, depth, vertices) in &layers {
                 let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(vertices))).expect("a triangle");
-                let state = State {
-                    depth: *depth,
-                    ..NO_CULLING
-                };
-                scene.draw_with(
-                    state,
-                    &mesh,
-                    &Projective::IDENTITY,
-                    &Flat::unlit(Rgb888::new(*grey, 0, 0)),
-                );
+                let state = State { depth: *depth, ..NO_CULLING };
+                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::new(*grey, 0, 0)));
             }
         });
         let layers: Vec<_> = layers.iter().map(|l| (l.0, l.1, l.2)).collect();
-        assert!(
-            picture.iter().all(|p| p[0] == color),
-            "seed {seed}: {layers:?} give {:?}, not {color}",
-            picture[0]
-        );
-        assert!(
-            depths.iter().all(|d| *d == stored),
-            "seed {seed}: {layers:?} leave {}, not {stored}",
-            depths[0]
-        );
+        assert!(picture.iter().all(|p| p[0] == color), "seed {seed}: {layers:?} give {:?}, not {color}", picture[0]);
+        assert!(depths.iter().all(|d| *d == stored), "seed {seed}: {layers:?} leave {}, not {stored}", depths[0]);
     }
 }
 
@@ -566,11 +435,7 @@ fn culling_goes_by_winding_on_the_screen() {
             scene.draw_with(state, &mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE))
         });
         assert_eq!(picture[8 * 16 + 8] == 255, shows, "{cull:?}");
-        assert_eq!(
-            (stats.back_facing, stats.drawn),
-            (u32::from(!shows), u32::from(shows)),
-            "{cull:?}"
-        );
+        assert_eq!((stats.back_facing, stats.drawn), (u32::from(!shows), u32::from(shows)), "{cull:?}");
     }
 }
 
@@ -579,24 +444,14 @@ fn culling_goes_by_winding_on_the_screen() {
 fn strips_fans_and_quads_keep_their_facing() {
     let corners = flat_triangles(&[[2, 14], [14, 14], [2, 2], [14, 2]], 5);
     let around = [corners[0], corners[1], corners[3], corners[2]];
-    for (topology, vertices) in [
-        (Topology::Strip, &corners[..]),
-        (Topology::Fan, &around),
-        (Topology::Quads, &around),
-    ] {
-        let mesh = Mesh::new(MeshData {
-            topology,
-            ..MeshData::new(Positions::Homogeneous(vertices))
-        })
-        .expect("a square");
+    for (topology, vertices) in [(Topology::Strip, &corners[..]), (Topology::Fan, &around), (Topology::Quads, &around)]
+    {
+        let mesh =
+            Mesh::new(MeshData { topology, ..MeshData::new(Positions::Homogeneous(vertices)) }).expect("a square");
         let (picture, _, stats) = whole::<Gray8>((16, 16), Gray8::new(0), |scene| {
             scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE))
         });
-        assert_eq!(
-            (stats.triangles, stats.drawn, stats.back_facing),
-            (2, 2, 0),
-            "{topology:?}"
-        );
+        assert_eq!((stats.triangles, stats.drawn, stats.back_facing), (2, 2, 0), "{topology:?}");
         assert_eq!(picture.iter().filter(|p| **p == 255).count(), 144, "{topology:?}");
     }
 }

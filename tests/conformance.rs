@@ -7,16 +7,8 @@ use reference::subject::Subject;
 use std::path::PathBuf;
 
 /// Files whose records a depth buffer of one strip is enough for.
-const COVERAGE: [&str; 8] = [
-    "tri_random",
-    "tri_sliver",
-    "tri_special",
-    "tri_far",
-    "tri_bulk_hash",
-    "mesh_once",
-    "nearclip",
-    "nearclip_pairs",
-];
+const COVERAGE: [&str; 8] =
+    ["tri_random", "tri_sliver", "tri_special", "tri_far", "tri_bulk_hash", "mesh_once", "nearclip", "nearclip_pairs"];
 
 /// The folder with the data: the public sample, or the one named by `CONFORMANCE_DIR`.
 fn data(stem: &str) -> PathBuf {
@@ -26,10 +18,7 @@ fn data(stem: &str) -> PathBuf {
 }
 
 fn assert_right(stem: &str, mut subject: Subject) {
-    let case = format!(
-        "{stem}, strips of {} rows, {} records",
-        subject.strip_rows, subject.records
-    );
+    let case = format!("{stem}, strips of {} rows, {} records", subject.strip_rows, subject.records);
     let outcome = check_file(&data(stem), &mut subject).unwrap_or_else(|error| panic!("{case}: {error}"));
     assert!(outcome.is_right(), "{case}: {outcome:?}");
     println!("{case}: {outcome:?}");
@@ -44,30 +33,15 @@ fn every_file_is_right_in_whole_frames() {
 
 #[test]
 fn coverage_is_right_in_strips_of_1_7_and_16_rows() {
-    for (strip_rows, stem) in [1, 7, 16]
-        .into_iter()
-        .flat_map(|rows| COVERAGE.map(|stem| (rows, stem)))
-    {
-        assert_right(
-            stem,
-            Subject {
-                strip_rows,
-                records: 2000,
-            },
-        );
+    for (strip_rows, stem) in [1, 7, 16].into_iter().flat_map(|rows| COVERAGE.map(|stem| (rows, stem))) {
+        assert_right(stem, Subject { strip_rows, records: 2000 });
     }
 }
 
 #[test]
 fn coverage_is_right_without_records() {
     for stem in COVERAGE {
-        assert_right(
-            stem,
-            Subject {
-                strip_rows: 16,
-                records: 0,
-            },
-        );
+        assert_right(stem, Subject { strip_rows: 16, records: 0 });
     }
 }
 

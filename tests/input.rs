@@ -25,20 +25,14 @@ use zstrip::output::{
 
 /// The error, and that it says more than nothing.
 fn told<T, E: Error>(result: Result<T, E>) -> E {
-    let Err(error) = result else {
-        panic!("there is no error")
-    };
+    let Err(error) = result else { panic!("there is no error") };
     let text = error.to_string();
     assert!(text.len() > 10, "{error:?} is shown as `{text}`");
     println!("{text}");
     error
 }
 
-const TRIANGLE: [Vec3; 3] = [
-    Vec3::from_ints(-1, -1, 0),
-    Vec3::from_ints(1, -1, 0),
-    Vec3::from_ints(0, 1, 0),
-];
+const TRIANGLE: [Vec3; 3] = [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(0, 1, 0)];
 
 fn data(points: &[Vec3]) -> MeshData<'_> {
     MeshData::new(Positions::Exact(points))
@@ -48,31 +42,12 @@ fn data(points: &[Vec3]) -> MeshData<'_> {
 fn wrong_meshes_are_refused_with_the_offending_number() {
     use MeshError::*;
     let four = [Vec3::ZERO; 4];
-    let with = |indices: &[u16], topology| {
-        told(Mesh::new(MeshData {
-            indices: Some(indices),
-            topology,
-            ..data(&four)
-        }))
-    };
+    let with =
+        |indices: &[u16], topology| told(Mesh::new(MeshData { indices: Some(indices), topology, ..data(&four) }));
     let past = with(&[0, 1, 2, 3, 4, 0], Topology::Triangles);
-    assert_eq!(
-        past,
-        Index {
-            at: 4,
-            index: 4,
-            vertices: 4
-        }
-    );
+    assert_eq!(past, Index { at: 4, index: 4, vertices: 4 });
     assert!(past.to_string().contains("index 4 at position 4"), "{past}");
-    assert_eq!(
-        with(&[65_535, 0, 0], Topology::Fan),
-        Index {
-            at: 0,
-            index: 65_535,
-            vertices: 4
-        }
-    );
+    assert_eq!(with(&[65_535, 0, 0], Topology::Fan), Index { at: 0, index: 65_535, vertices: 4 });
     assert_eq!(with(&[0, 1], Topology::Triangles), Incomplete(2));
     assert_eq!(with(&[0, 1], Topology::Strip), Incomplete(2));
     assert_eq!(with(&[0], Topology::Fan), Incomplete(1));
@@ -82,49 +57,17 @@ fn wrong_meshes_are_refused_with_the_offending_number() {
     let many = vec![Vec3::ZERO; 65_536];
     assert_eq!(told(Mesh::new(data(&many))), TooManyVertices(65_536));
     let long = vec![0; 65_538];
-    let strip = MeshData {
-        indices: Some(&long),
-        topology: Topology::Strip,
-        ..data(&four)
-    };
+    let strip = MeshData { indices: Some(&long), topology: Topology::Strip, ..data(&four) };
     assert_eq!(told(Mesh::new(strip)), TooManyTriangles(65_536));
 
     let three = data(&TRIANGLE);
-    assert_eq!(
-        told(Mesh::new(MeshData {
-            normals: Some(&[[0; 3]; 2]),
-            ..three
-        })),
-        Normals(2)
-    );
-    assert_eq!(
-        told(Mesh::new(MeshData {
-            face_normals: Some(&[[0; 3]; 2]),
-            ..three
-        })),
-        FaceNormals(2)
-    );
-    assert_eq!(
-        told(Mesh::new(MeshData {
-            colors: Some(&[[0; 3]; 4]),
-            ..three
-        })),
-        Colors(4)
-    );
-    assert_eq!(
-        told(Mesh::new(MeshData {
-            uvs: Some(&[]),
-            ..three
-        })),
-        Uvs(0)
-    );
+    assert_eq!(told(Mesh::new(MeshData { normals: Some(&[[0; 3]; 2]), ..three })), Normals(2));
+    assert_eq!(told(Mesh::new(MeshData { face_normals: Some(&[[0; 3]; 2]), ..three })), FaceNormals(2));
+    assert_eq!(told(Mesh::new(MeshData { colors: Some(&[[0; 3]; 4]), ..three })), Colors(4));
+    assert_eq!(told(Mesh::new(MeshData { uvs: Some(&[]), ..three })), Uvs(0));
     for bits in [0, -1, i32::MIN] {
         let points = [[0; 3]; 3];
-        let quantized = Positions::Quantized {
-            points: &points,
-            scale: Scalar::from_bits(bits),
-            offset: Vec3::ZERO,
-        };
+        let quantized = Positions::Quantized { points: &points, scale: Scalar::from_bits(bits), offset: Vec3::ZERO };
         assert_eq!(told(Mesh::new(MeshData::new(quantized))), Scale(bits));
     }
 }
@@ -132,12 +75,7 @@ fn wrong_meshes_are_refused_with_the_offending_number() {
 #[test]
 fn wrong_hierarchies_are_refused_with_the_offending_node() {
     let bounds: Bounds = *Mesh::new(data(&TRIANGLE)).expect("a triangle").bounds();
-    let node = |skip, first_triangle, triangles| BoundsNode {
-        bounds,
-        skip,
-        first_triangle,
-        triangles,
-    };
+    let node = |skip, first_triangle, triangles| BoundsNode { bounds, skip, first_triangle, triangles };
     for (nodes, wrong) in [
         ([node(2, 0, 0), node(1, 0, 1)], 1),
         ([node(0, 0, 0), node(2, 0, 1)], 0),
@@ -146,17 +84,11 @@ fn wrong_hierarchies_are_refused_with_the_offending_node() {
         ([node(2, 2, 0), node(2, 0, 1)], 0),
         ([node(2, 65_535, 65_535), node(2, 0, 1)], 0),
     ] {
-        let mesh = Mesh::new(MeshData {
-            hierarchy: Some(&nodes),
-            ..data(&TRIANGLE)
-        });
+        let mesh = Mesh::new(MeshData { hierarchy: Some(&nodes), ..data(&TRIANGLE) });
         assert_eq!(told(mesh), MeshError::Hierarchy(wrong), "{nodes:?}");
     }
     let nodes = [node(2, 0, 0), node(2, 0, 1)];
-    let good = MeshData {
-        hierarchy: Some(&nodes),
-        ..data(&TRIANGLE)
-    };
+    let good = MeshData { hierarchy: Some(&nodes), ..data(&TRIANGLE) };
     assert!(Mesh::new(good).is_ok());
 }
 
@@ -167,36 +99,20 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
     assert_eq!(told(Viewport::full(4097, 1)), ViewportError::TooLarge(4097, 1));
     assert_eq!(told(Viewport::full(1, 65_535)), ViewportError::TooLarge(1, 65_535));
     assert_eq!(told(Viewport::new(8193, 0, 1, 1)), ViewportError::TooFar(8193, 0));
-    assert_eq!(
-        told(Viewport::new(0, i16::MIN, 1, 1)),
-        ViewportError::TooFar(0, i16::MIN)
-    );
+    assert_eq!(told(Viewport::new(0, i16::MIN, 1, 1)), ViewportError::TooFar(0, i16::MIN));
     assert!(Viewport::new(-8192, 8192, 4096, 4096).is_ok());
 
     let build = |screen, color: usize, depth: usize| {
         let (mut color, mut depth) = (vec![0; color], vec![0; depth]);
-        let buffers = Buffers {
-            color: &mut color,
-            depth: &mut depth,
-            records: &mut [],
-        };
+        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
         Renderer::<Rgb565>::new(screen, buffers).map(|r| r.strip_rows())
     };
-    assert_eq!(
-        told(build((320, 240), 319, 320)),
-        RendererError::ColorTooShort(319, 320)
-    );
-    assert_eq!(
-        told(build((320, 240), 320, 319)),
-        RendererError::DepthTooShort(319, 320)
-    );
+    assert_eq!(told(build((320, 240), 319, 320)), RendererError::ColorTooShort(319, 320));
+    assert_eq!(told(build((320, 240), 320, 319)), RendererError::DepthTooShort(319, 320));
     assert_eq!(told(build((320, 240), 0, 0)), RendererError::ColorTooShort(0, 320));
     let empty = RendererError::Screen(ViewportError::Empty(0, 240));
     assert_eq!(told(build((0, 240), 100, 100)), empty);
-    assert_eq!(
-        told(build((320, 0), 400, 400)),
-        RendererError::Screen(ViewportError::Empty(320, 0))
-    );
+    assert_eq!(told(build((320, 0), 400, 400)), RendererError::Screen(ViewportError::Empty(320, 0)));
     let large = RendererError::Screen(ViewportError::TooLarge(5000, 1));
     assert_eq!(told(build((5000, 1), 5000, 5000)), large);
     // The smaller buffer decides, and no strip is higher than the screen.
@@ -209,10 +125,7 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
     assert_eq!(told(short), RendererError::DepthTooShort(100, 320));
 
     let mut pixels = [0_u16; 100];
-    assert_eq!(
-        told(FrameSlice::<Rgb565>::new(&mut pixels, 10, 11)),
-        FramebufferError::TooShort(100, 110)
-    );
+    assert_eq!(told(FrameSlice::<Rgb565>::new(&mut pixels, 10, 11)), FramebufferError::TooShort(100, 110));
     let strided = FrameSlice::<Rgb565>::with_stride(&mut pixels, 10, 4, 9);
     assert_eq!(told(strided), FramebufferError::Stride(9, 10));
     let strided = FrameSlice::<Rgb565>::with_stride(&mut pixels, 10, 4, 31);
@@ -239,15 +152,10 @@ fn wrong_cameras_are_refused_with_the_offending_numbers() {
     let box_of = |x, y, z| told(Projective::orthographic(x, y, z));
     assert_eq!(box_of((one, one), (one, two), (one, two)), EmptyBox(65_536, 65_536));
     assert_eq!(box_of((one, two), (two, two), (one, two)), EmptyBox(131_072, 131_072));
-    assert_eq!(
-        box_of((one, two), (one, two), (two, one)),
-        NearNotBeforeFar(131_072, 65_536)
-    );
-    for (eye, target, up) in [
-        (Vec3::X, Vec3::X, Vec3::Y),
-        (Vec3::X, Vec3::Y, Vec3::ZERO),
-        (Vec3::Y, Vec3::ZERO, Vec3::Y),
-    ] {
+    assert_eq!(box_of((one, two), (one, two), (two, one)), NearNotBeforeFar(131_072, 65_536));
+    for (eye, target, up) in
+        [(Vec3::X, Vec3::X, Vec3::Y), (Vec3::X, Vec3::Y, Vec3::ZERO), (Vec3::Y, Vec3::ZERO, Vec3::Y)]
+    {
         assert_eq!(told(Affine::look_at(eye, target, up)), DegenerateView);
     }
 }
@@ -256,21 +164,13 @@ fn wrong_cameras_are_refused_with_the_offending_numbers() {
 fn empty_mesh_draws_nothing() {
     for topology in [Topology::Triangles, Topology::Strip, Topology::Fan, Topology::Quads] {
         for indices in [None, Some(&[][..])] {
-            let mesh = Mesh::new(MeshData {
-                topology,
-                indices,
-                ..data(&[])
-            });
+            let mesh = Mesh::new(MeshData { topology, indices, ..data(&[]) });
             let mesh = mesh.expect("an empty mesh is a mesh");
             for records in [0, 100] {
                 let (picture, stats) = strips::<Gray8>((8, 8), 3, records, Gray8::new(9), |scene| {
                     scene.draw(&mesh, &Projective::IDENTITY, &Gouraud::unlit());
                 });
-                assert_eq!(
-                    (stats.triangles, stats.vertices, stats.drawn),
-                    (0, 0, 0),
-                    "{topology:?}"
-                );
+                assert_eq!((stats.triangles, stats.vertices, stats.drawn), (0, 0, 0), "{topology:?}");
                 assert!(picture.iter().all(|p| *p == 9));
             }
         }
@@ -282,11 +182,7 @@ const SIZE: (u16, u16) = (64, 48);
 /// Calls `test` with a renderer of strips of 8 rows.
 fn with_renderer<T>(records: usize, test: impl FnOnce(&mut Renderer<'_, Rgb565>) -> T) -> T {
     let (mut color, mut depth, mut records) = (vec![0; 64 * 8], vec![0; 64 * 8], vec![0; records]);
-    let buffers = Buffers {
-        color: &mut color,
-        depth: &mut depth,
-        records: &mut records,
-    };
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
     test(&mut Renderer::<Rgb565>::new(SIZE, buffers).expect("a renderer"))
 }
 
@@ -353,16 +249,9 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
                     }
                 },
             );
-            assert_eq!(
-                changed,
-                Err(FrameError::SceneChanged(differs)),
-                "{first} draws, then {later}"
-            );
+            assert_eq!(changed, Err(FrameError::SceneChanged(differs)), "{first} draws, then {later}");
             assert!(told(changed).to_string().contains(&differs.to_string()));
-            assert_eq!(
-                difference(&next_frame(renderer, Angle(9)), &first_frame(Angle(9)), 64),
-                None
-            );
+            assert_eq!(difference(&next_frame(renderer, Angle(9)), &first_frame(Angle(9)), 64), None);
         });
     }
     // Another matrix, another state, another mesh.
@@ -379,11 +268,7 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
                     scene.draw(&mesh, &Projective::IDENTITY, &shader);
                     let turned = Projective::from(Affine::rotation_z(Angle(calls)));
                     let state = zstrip::State {
-                        cull: if which == 1 {
-                            zstrip::Cull::None
-                        } else {
-                            zstrip::Cull::Back
-                        },
+                        cull: if which == 1 { zstrip::Cull::None } else { zstrip::Cull::Back },
                         ..zstrip::State::default()
                     };
                     let mvp = if which == 0 { turned } else { Projective::IDENTITY };
@@ -391,10 +276,7 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
                 },
             );
             assert_eq!(changed, Err(FrameError::SceneChanged(1)), "change {change}");
-            assert_eq!(
-                difference(&next_frame(renderer, Angle(9)), &first_frame(Angle(9)), 64),
-                None
-            );
+            assert_eq!(difference(&next_frame(renderer, Angle(9)), &first_frame(Angle(9)), 64), None);
         });
     }
 }
@@ -414,32 +296,19 @@ fn ram_of_a_frame_is_what_the_constants_say() {
 
     let pixels = usize::from(WIDTH) * usize::from(ROWS);
     let (mut color, mut depth, mut records) = (vec![0_u16; pixels], vec![0_u16; pixels], vec![0_u32; RECORDS]);
-    let bytes = [
-        size_of_val(&color[..]),
-        size_of_val(&depth[..]),
-        size_of_val(&records[..]),
-    ];
+    let bytes = [size_of_val(&color[..]), size_of_val(&depth[..]), size_of_val(&records[..])];
     assert_eq!(bytes, [RAM.color, RAM.depth, RAM.records]);
     assert_eq!(bytes.iter().sum::<usize>(), RAM.total());
     assert_eq!(BARE.total(), RAM.color + RAM.depth);
 
-    let buffers = Buffers {
-        color: &mut color,
-        depth: &mut depth,
-        records: &mut records,
-    };
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
     let mut renderer = Renderer::<Rgb565>::new((WIDTH, 240), buffers).expect("a renderer");
     assert_eq!(renderer.strip_rows(), ROWS);
     let handle = size_of_val(&renderer);
     let sink = |_: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(());
-    let stats = renderer
-        .frame_to(sink, Rgb565::BLACK, |scene| scenes::torus_gouraud(scene, Angle(0)))
-        .expect("a frame");
-    assert_eq!(
-        (stats.overflows, stats.direct_strips),
-        (0, 0),
-        "the records suffice: {stats:?}"
-    );
+    let stats =
+        renderer.frame_to(sink, Rgb565::BLACK, |scene| scenes::torus_gouraud(scene, Angle(0))).expect("a frame");
+    assert_eq!((stats.overflows, stats.direct_strips), (0, 0), "the records suffice: {stats:?}");
     println!(
         "320x240 in 16-row strips: colour {} + depth {} + records {} = {} bytes; renderer {handle} bytes; without records {}",
         RAM.color,
@@ -448,10 +317,7 @@ fn ram_of_a_frame_is_what_the_constants_say() {
         RAM.total(),
         BARE.total()
     );
-    println!(
-        "a whole frame with depth would take {} bytes",
-        RamBudget::new::<Rgb565>(WIDTH, 240).total()
-    );
+    println!("a whole frame with depth would take {} bytes", RamBudget::new::<Rgb565>(WIDTH, 240).total());
     assert!(handle < 160);
 
     assert_eq!(RamBudget::new::<Rgb888>(10, 3).color, 90);
@@ -467,11 +333,7 @@ struct Display<C> {
 
 impl<C: PixelColor> Display<C> {
     fn new() -> Self {
-        Self {
-            pixels: vec![None; 20 * 16],
-            fills: 0,
-            fails_at: usize::MAX,
-        }
+        Self { pixels: vec![None; 20 * 16], fills: 0, fails_at: usize::MAX }
     }
 }
 
@@ -488,11 +350,7 @@ impl<C: PixelColor> DrawTarget for Display<C> {
     fn draw_iter<I: IntoIterator<Item = Pixel<C>>>(&mut self, pixels: I) -> Result<(), Self::Error> {
         for Pixel(at, color) in pixels {
             let index = usize::try_from(20 * at.y + at.x).map_err(|_| "a pixel outside of the display")?;
-            let old = self
-                .pixels
-                .get_mut(index)
-                .ok_or("a pixel outside of the display")?
-                .replace(color);
+            let old = self.pixels.get_mut(index).ok_or("a pixel outside of the display")?.replace(color);
             assert!(old.is_none(), "pixel {at:?} is drawn twice");
         }
         Ok(())
@@ -504,11 +362,7 @@ impl<C: PixelColor> DrawTarget for Display<C> {
         }
         self.fills += 1;
         let colors: Vec<C> = colors.into_iter().collect();
-        assert_eq!(
-            colors.len() as u32,
-            area.size.width * area.size.height,
-            "as many colours as pixels"
-        );
+        assert_eq!(colors.len() as u32, area.size.width * area.size.height, "as many colours as pixels");
         let points = (area.top_left.y..).take(area.size.height as usize).flat_map(|y| {
             (area.top_left.x..)
                 .take(area.size.width as usize)
@@ -519,11 +373,7 @@ impl<C: PixelColor> DrawTarget for Display<C> {
 }
 
 /// The upper left half of the screen, in a colour with distinct channels.
-const CORNER: [Vec3; 3] = [
-    Vec3::from_ints(-1, 1, 0),
-    Vec3::from_ints(-1, -1, 0),
-    Vec3::from_ints(1, 1, 0),
-];
+const CORNER: [Vec3; 3] = [Vec3::from_ints(-1, 1, 0), Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, 1, 0)];
 const COLOR: Rgb888 = Rgb888::new(0x12, 0x9A, 0xF0);
 
 fn on_display<P: PixelFormat>(background: P::Color) -> Vec<P::Color>
@@ -532,34 +382,19 @@ where
 {
     let mesh = Mesh::new(data(&CORNER)).expect("a triangle");
     let (mut color, mut depth) = (vec![P::pack([0; 3]); 20 * 5], vec![0; 20 * 5]);
-    let buffers = Buffers {
-        color: &mut color,
-        depth: &mut depth,
-        records: &mut [],
-    };
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
     let mut renderer = Renderer::<P>::new((20, 16), buffers).expect("a renderer");
     let mut display = Display::new();
     let draw = |scene: &mut zstrip::Scene<'_, zstrip::output::Strip<'_, P>>| {
         scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(COLOR));
     };
-    renderer
-        .frame(&mut display, background, draw)
-        .expect("a display that works");
+    renderer.frame(&mut display, background, draw).expect("a display that works");
     assert_eq!(display.fills, 4, "a strip is one call");
 
-    let mut broken = Display {
-        fails_at: 2,
-        ..Display::new()
-    };
-    let error = renderer
-        .frame(&mut broken, background, draw)
-        .expect_err("a display that fails");
+    let mut broken = Display { fails_at: 2, ..Display::new() };
+    let error = renderer.frame(&mut broken, background, draw).expect_err("a display that fails");
     assert_eq!(error, FrameError::Sink("no answer on the bus"));
-    display
-        .pixels
-        .into_iter()
-        .map(|p| p.expect("every pixel is drawn"))
-        .collect()
+    display.pixels.into_iter().map(|p| p.expect("every pixel is drawn")).collect()
 }
 
 #[test]
@@ -585,20 +420,13 @@ fn pixels_arrive_on_a_display_in_the_right_places() {
     check("Rgb888", &seen.iter().map(|c| *c == COLOR).collect::<Vec<_>>());
     let seen = on_display::<Gray8>(Gray8::new(1));
     let luma = (0x12 * 77 + 0x9A * 150 + 0xF0 * 29) / 256;
-    check(
-        "Gray8",
-        &seen.iter().map(|c| c.luma() == luma as u8).collect::<Vec<_>>(),
-    );
+    check("Gray8", &seen.iter().map(|c| c.luma() == luma as u8).collect::<Vec<_>>());
 }
 
 /// The bytes of a strip in one colour, from left to right.
 fn bytes_of<P: PixelFormat>(background: P::Color) -> Vec<u8> {
     let (mut color, mut depth) = (vec![P::pack([0; 3]); 2], vec![0; 2]);
-    let buffers = Buffers {
-        color: &mut color,
-        depth: &mut depth,
-        records: &mut [],
-    };
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
     let mut renderer = Renderer::<P>::new((2, 1), buffers).expect("a renderer");
     let mut frame = renderer.begin(background);
     let strip = frame.next_strip(|_| ()).expect("an empty scene").expect("one strip");
@@ -619,26 +447,13 @@ fn formats_have_their_bytes_in_order() {
 
 #[test]
 fn formats_pack_and_unpack_alike() {
-    for rgb in [
-        [0; 3],
-        [255; 3],
-        [255, 0, 0],
-        [0, 255, 0],
-        [0, 0, 255],
-        [0x12, 0x9A, 0xF0],
-        [7, 3, 7],
-        [8, 4, 8],
-    ] {
+    for rgb in [[0; 3], [255; 3], [255, 0, 0], [0, 255, 0], [0, 0, 255], [0x12, 0x9A, 0xF0], [7, 3, 7], [8, 4, 8]] {
         let [r, g, b] = rgb;
         let to565 = Rgb565::new(r >> 3, g >> 2, b >> 3);
         assert_eq!(Rgb565::to_color(Rgb565::pack(rgb)), to565, "{rgb:?}");
         assert_eq!(Rgb565Be::to_color(Rgb565Be::pack(rgb)), to565, "{rgb:?}");
         assert_eq!(Rgb565Be::from_color(to565), Rgb565Be::pack(rgb), "{rgb:?}");
-        assert_eq!(
-            Rgb565Be::pack(rgb).to_ne_bytes(),
-            Rgb565::pack(rgb).to_be_bytes(),
-            "{rgb:?}"
-        );
+        assert_eq!(Rgb565Be::pack(rgb).to_ne_bytes(), Rgb565::pack(rgb).to_be_bytes(), "{rgb:?}");
         assert_eq!(Rgb888::to_color(Rgb888::pack(rgb)), Rgb888::new(r, g, b), "{rgb:?}");
         let luma = (f64::from(r) * 77.0 + f64::from(g) * 150.0 + f64::from(b) * 29.0) / 256.0;
         assert_eq!(Gray8::pack(rgb), luma as u8, "{rgb:?}");

@@ -44,11 +44,7 @@ impl Cloud {
 
     fn positions(&self) -> Positions<'_> {
         match self {
-            Cloud::Quantized(points, scale, offset) => Positions::Quantized {
-                points,
-                scale: *scale,
-                offset: *offset,
-            },
+            Cloud::Quantized(points, scale, offset) => Positions::Quantized { points, scale: *scale, offset: *offset },
             Cloud::Exact(points) => Positions::Exact(points),
         }
     }
@@ -56,14 +52,13 @@ impl Cloud {
 
 fn random_viewport(rng: &mut Rng) -> Viewport {
     let [width, height] = [(); 2].map(|()| rng.between(1, 1024) as u16);
-    let [x, y] = [(); 2].map(|()| {
-        if rng.one_in(2) {
-            0
-        } else {
-            rng.between(-600, 600) as i16
-        }
-    });
+    let [x, y] = [(); 2].map(|()| if rng.one_in(2) { 0 } else { rng.between(-600, 600) as i16 });
     Viewport::new(x, y, width, height).expect("a viewport")
+}
+
+/// A mesh of just vertices.
+fn points<'a>(positions: &Positions<'a>) -> Mesh<'a> {
+    Mesh::new(MeshData { indices: Some(&[]), ..MeshData::new(*positions) }).expect("a mesh")
 }
 
 /// Measures the vertices of which the promise speaks: in front of the near plane, w at least 1/1024 of `extent`,
@@ -76,7 +71,7 @@ fn measure(
     extent: f64,
     case: &str,
 ) {
-    let transform = Transform::new(mvp, viewport, positions, false);
+    let transform = Transform::new(mvp, viewport, &points(positions), false);
     let m = matrix(mvp);
     let count = match positions {
         Positions::Quantized { points, .. } => points.len(),
@@ -92,9 +87,7 @@ fn measure(
         }
         let vertex = transform.vertex(positions, index);
         let snapped = project(&vertex).unwrap_or_else(|| panic!("{case}: vertex {index} has w = {w}"));
-        let error = (f64::from(snapped.x) - 256.0 * x)
-            .abs()
-            .max((f64::from(snapped.y) - 256.0 * y).abs());
+        let error = (f64::from(snapped.x) - 256.0 * x).abs().max((f64::from(snapped.y) - 256.0 * y).abs());
         let depth_error = (f64::from(snapped.z) - 65_535.0 * depth).abs();
         worst.vertices += 1;
         worst.position = worst.position.max(error);
@@ -123,11 +116,7 @@ fn objects(
         let size = (viewport.width(), viewport.height());
         // Sizes over several powers of two, in the object and through the model matrix.
         let extent = (rng.unit() * 10.0 - 4.0).exp2();
-        let factor = if rng.one_in(2) {
-            1.0
-        } else {
-            (rng.unit() * 6.0 - 3.0).exp2()
-        };
+        let factor = if rng.one_in(2) { 1.0 } else { (rng.unit() * 6.0 - 3.0).exp2() };
         let scale = Affine::scale(Scalar::from_num(factor));
         let reach = extent * factor;
         let distance = reach * (distances[0] + rng.unit() * (distances[1] - distances[0]));
@@ -148,15 +137,8 @@ fn objects(
         let cloud = Cloud::new(&mut rng, quantized, extent);
         let positions = cloud.positions();
         let mvp = camera * model;
-        let short = Transform::new(&mvp, &viewport, &positions, false).is_short();
-        measure(
-            &mut worst[usize::from(!short)],
-            &mvp,
-            &viewport,
-            &positions,
-            reach,
-            &case,
-        );
+        let short = Transform::new(&mvp, &viewport, &points(&positions), false).is_short();
+        measure(&mut worst[usize::from(!short)], &mvp, &viewport, &positions, reach, &case);
     }
     for (worst, path) in worst.iter().zip(["short", "long"]) {
         println!(
@@ -192,24 +174,12 @@ fn homogeneous_positions_are_within_a_256th_of_a_pixel_of_f64() {
             .map(|_| {
                 let w = rng.unit() * extent;
                 let side = extent.min(8.0 * w);
-                [
-                    scalar(&mut rng, side),
-                    scalar(&mut rng, side),
-                    Scalar::from_num(w * rng.unit()),
-                    Scalar::from_num(w),
-                ]
+                [scalar(&mut rng, side), scalar(&mut rng, side), Scalar::from_num(w * rng.unit()), Scalar::from_num(w)]
             })
             .collect();
         let turn = Projective::from(Affine::rotation_z(support::angle(&mut rng)));
         let mvp = if rng.one_in(2) { Projective::IDENTITY } else { turn };
-        measure(
-            &mut worst,
-            &mvp,
-            &viewport,
-            &Positions::Homogeneous(&points),
-            extent,
-            &format!("seed {seed}"),
-        );
+        measure(&mut worst, &mvp, &viewport, &Positions::Homogeneous(&points), extent, &format!("seed {seed}"));
     }
     println!("homogeneous: {worst:?}");
     assert!(worst.vertices > 10_000);
@@ -220,12 +190,7 @@ fn any_triangle(rng: &mut Rng, width: u32, height: u32) -> [[i32; 2]; 3] {
     let tri = match rng.below(3) {
         0 => sliver(rng, width, height),
         1 => screen_triangle(rng, width, height),
-        _ => [(); 3].map(|()| {
-            [
-                rng.between(-64, 256 * width as i32),
-                rng.between(-64, 256 * height as i32),
-            ]
-        }),
+        _ => [(); 3].map(|()| [rng.between(-64, 256 * width as i32), rng.between(-64, 256 * height as i32)]),
     };
     // 16.16 clip coordinates divide a large screen more coarsely than into 1/256 px.
     let on_grid = |c: i32, size: u32| c - c % (size as i32 / 512).max(1);
@@ -254,12 +219,9 @@ fn any_depths(rng: &mut Rng) -> [u16; 3] {
 fn depth_is_within_one_step_of_the_exact_plane() {
     let mut worst = (0.0, String::new());
     let mut pixels = 0;
-    for (seed, count, (width, height)) in [
-        (1, 2500, (64, 64)),
-        (2, 300, (1024, 8)),
-        (3, 120, (8, 1024)),
-        (4, 150, (4096, 4)),
-    ] {
+    for (seed, count, (width, height)) in
+        [(1, 2500, (64, 64)), (2, 300, (1024, 8)), (3, 120, (8, 1024)), (4, 150, (4096, 4))]
+    {
         let mut rng = Rng::new(seed);
         for case in 0..count {
             let (v, z) = (any_triangle(&mut rng, width, height), any_depths(&mut rng));
@@ -271,18 +233,13 @@ fn depth_is_within_one_step_of_the_exact_plane() {
                 let i = (y * width + x) as usize;
                 covered += 1;
                 let exact = exact::to_f64(exact::depth_at(tri, z.map(i64::from), x.into(), y.into()));
-                let case = format!(
-                    "seed {seed} case {case}: {v:?} depths {z:?}, pixel ({x}, {y}): {} for {exact}",
-                    depths[i]
-                );
+                let case =
+                    format!("seed {seed} case {case}: {v:?} depths {z:?}, pixel ({x}, {y}): {} for {exact}", depths[i]);
                 // What rounds to the clear value does not pass the test.
                 let error = (f64::from(depths[i]) - exact).abs();
                 assert!(error <= 1.0, "{case}");
                 assert!(winners[i] == 1 || exact > 65_534.0, "{case}");
-                assert!(
-                    (low..=high).contains(&depths[i]) || winners[i] == 0,
-                    "{case}: outside of the vertices' range"
-                );
+                assert!((low..=high).contains(&depths[i]) || winners[i] == 0, "{case}: outside of the vertices' range");
                 if error > worst.0 {
                     worst = (error, case);
                 }
@@ -292,32 +249,23 @@ fn depth_is_within_one_step_of_the_exact_plane() {
             assert!(drawn <= covered, "seed {seed} case {case}: {v:?} {z:?}");
         }
     }
-    println!(
-        "{pixels} pixels; worst depth is off by {:.4} steps: {}",
-        worst.0, worst.1
-    );
+    println!("{pixels} pixels; worst depth is off by {:.4} steps: {}", worst.0, worst.1);
     assert!(pixels > 100_000);
 }
 
 #[test]
 fn gouraud_channels_are_within_1_of_255_of_the_exact_plane() {
     let (mut worst, mut pixels) = ((0.0, String::new()), 0);
-    let state = State {
-        cull: Cull::None,
-        depth: DepthState::OFF,
-        ..State::default()
-    };
+    let state = State { cull: Cull::None, depth: DepthState::OFF, ..State::default() };
     for (seed, count, (width, height)) in [(11, 1500, (64_u32, 64_u32)), (12, 150, (1024, 8)), (13, 60, (4096, 4))] {
         let mut rng = Rng::new(seed);
         for case in 0..count {
             let snaps = any_triangle(&mut rng, width, height);
             let colors = [(); 3].map(|()| [(); 3].map(|()| rng.pick(&[0, 255, 77, 128]) as u8));
             let vertices = snaps.map(|[x, y]| [clip(x, width), -clip(y, height), Scalar::ZERO, Scalar::ONE]);
-            let mesh = Mesh::new(MeshData {
-                colors: Some(&colors),
-                ..MeshData::new(Positions::Homogeneous(&vertices))
-            })
-            .expect("a triangle");
+            let mesh =
+                Mesh::new(MeshData { colors: Some(&colors), ..MeshData::new(Positions::Homogeneous(&vertices)) })
+                    .expect("a triangle");
             let size = (width as u16, height as u16);
             let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| {
                 scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::unlit())
@@ -344,9 +292,6 @@ fn gouraud_channels_are_within_1_of_255_of_the_exact_plane() {
             });
         }
     }
-    println!(
-        "{pixels} pixels; worst channel is off by {:.4} of 255: {}",
-        worst.0, worst.1
-    );
+    println!("{pixels} pixels; worst channel is off by {:.4} of 255: {}", worst.0, worst.1);
     assert!(pixels > 50_000);
 }

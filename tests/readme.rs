@@ -19,13 +19,7 @@ fn the_table_of_ram_is_right() {
         let strip = RamBudget::new::<Rgb565>(320, rows);
         // One draw with one word of varyings: the torus, Gouraud shaded.
         let ample = strip.with_records(1, 240, 512, 1, 512);
-        let figures = [
-            strip.color,
-            strip.depth,
-            strip.total(),
-            strip.total() + 4 * 2000,
-            ample.total(),
-        ];
+        let figures = [strip.color, strip.depth, strip.total(), strip.total() + 4 * 2000, ample.total()];
         let plural = if rows == 1 { "" } else { "s" };
         format!("| {rows} row{plural} | {} |\n", figures.map(grouped).join(" | "))
     });

@@ -52,11 +52,7 @@ fn scene_parts(name: &str, size: (u16, u16), turn: Angle) -> Vec<Part> {
             let room = scenes::room_camera(size, turn);
             let pillar = Affine::translation(Vec3::from_milli(800, 0, -600));
             let ring = Affine::translation(Vec3::from_milli(-800, -600, -1200)) * Affine::rotation_x(turn);
-            let meshes = [
-                (&polygons::ROOM, room),
-                (&polygons::PILLAR, room * pillar),
-                (&torus::MESH, room * ring),
-            ];
+            let meshes = [(&polygons::ROOM, room), (&polygons::PILLAR, room * pillar), (&torus::MESH, room * ring)];
             parts(&meshes, Cull::Back)
         }
         "intersections" => {
@@ -124,11 +120,7 @@ impl Shader<Rgb888> for Ids {
 }
 
 fn state(part: &Part, depth: DepthState) -> State {
-    State {
-        cull: part.cull,
-        depth,
-        range: DepthRange::Clip,
-    }
+    State { cull: part.cull, depth, range: DepthRange::Clip }
 }
 
 /// Ids and depths of a frame by the crate.
@@ -138,13 +130,7 @@ fn draw_ids(size: (u16, u16), parts: &[Part], depth: DepthState) -> (Vec<u32>, V
             scene.draw_with(state(part, depth), part.mesh, &part.mvp, &Ids(part.first));
         }
     });
-    (
-        color
-            .into_iter()
-            .map(|[r, g, b]| u32::from_be_bytes([0, r, g, b]))
-            .collect(),
-        depths,
-    )
+    (color.into_iter().map(|[r, g, b]| u32::from_be_bytes([0, r, g, b])).collect(), depths)
 }
 
 fn reference_cull(cull: Cull) -> ReferenceCull {
@@ -169,9 +155,7 @@ fn snapped_parts(size: (u16, u16), parts: &[Part]) -> Vec<([SnappedVertex; 3], u
     let viewport = Viewport::full(size.0, size.1).expect("a viewport");
     let mut triangles = Vec::new();
     for part in parts {
-        let all = support::snapped(part.mesh, &part.mvp, &viewport, DepthRange::Clip, |k| {
-            colors(part.mesh, k)
-        });
+        let all = support::snapped(part.mesh, &part.mvp, &viewport, DepthRange::Clip, |k| colors(part.mesh, k));
         for (corners, number) in all {
             let tri = corners.map(|(v, color)| SnappedVertex {
                 position: [v.x, v.y],
@@ -184,25 +168,12 @@ fn snapped_parts(size: (u16, u16), parts: &[Part]) -> Vec<([SnappedVertex; 3], u
     triangles
 }
 
-const SNAPPED: [&str; 9] = [
-    "torus",
-    "room",
-    "intersections",
-    "cycle",
-    "slivers",
-    "far",
-    "soup",
-    "near",
-    "field",
-];
+const SNAPPED: [&str; 9] = ["torus", "room", "intersections", "cycle", "slivers", "far", "soup", "near", "field"];
 
 #[test]
 fn coverage_is_exact_given_the_snapped_vertices() {
     let size = (120, 90);
-    for (name, turn) in SNAPPED
-        .into_iter()
-        .flat_map(|name| [(name, Angle(0)), (name, Angle(11_111))])
-    {
+    for (name, turn) in SNAPPED.into_iter().flat_map(|name| [(name, Angle(0)), (name, Angle(11_111))]) {
         let parts = scene_parts(name, size, turn);
         // Without depth, the last triangle of those that cover a pixel shows.
         let (ids, _) = draw_ids(size, &parts, DepthState::OFF);
@@ -251,21 +222,12 @@ fn depth_and_colours_agree_with_the_snapped_reference() {
             worst_depth = worst_depth.max(error);
             for (found, exact) in picture[i].iter().zip(frame.color[i]) {
                 let error = (f64::from(*found) - 255.0 * exact).abs();
-                assert!(
-                    error <= 1.0,
-                    "{case}: colour {:?} instead of {:?}",
-                    picture[i],
-                    frame.color[i]
-                );
+                assert!(error <= 1.0, "{case}: colour {:?} instead of {:?}", picture[i], frame.color[i]);
                 worst_color = worst_color.max(error);
             }
         }
         println!("{name}: {excluded} of {} pixels left out for a near tie", ids.len());
-        assert!(
-            excluded * 50 <= ids.len(),
-            "{name}: {excluded} of {} left out",
-            ids.len()
-        );
+        assert!(excluded * 50 <= ids.len(), "{name}: {excluded} of {} left out", ids.len());
     }
     println!("worst: depth {worst_depth} step, colours {worst_color:.3} of 255");
 }
@@ -327,10 +289,7 @@ fn frames_agree_with_homogeneous_rasterization() {
                 result.depth_error * 65_535.0
             );
             assert_eq!(result.other_id, 0, "{name} at {turn:?}: {result:?}");
-            assert!(
-                excluded <= share,
-                "{name} at {turn:?}: {excluded} % of the pixels are left out"
-            );
+            assert!(excluded <= share, "{name} at {turn:?}: {excluded} % of the pixels are left out");
         }
     }
 }
@@ -348,11 +307,7 @@ fn colours_agree_with_homogeneous_rasterization() {
                 scene.draw_with(state(part, DepthState::LESS), part.mesh, &part.mvp, &Gouraud::unlit());
             }
         });
-        for (i, found) in picture
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| reference.is_clear_cut(*i, MARGIN, GAP))
-        {
+        for (i, found) in picture.iter().enumerate().filter(|(i, _)| reference.is_clear_cut(*i, MARGIN, GAP)) {
             for (found, exact) in found.iter().zip(reference.color[i]) {
                 let error = (f64::from(*found) - 255.0 * exact).abs();
                 assert!(error <= 1.0, "{name}, pixel {i}: {found} instead of {}", 255.0 * exact);
@@ -386,26 +341,13 @@ fn lit_torus_agrees_with_light_in_f64() {
     let mut reference = Frame::new(size.0.into(), size.1.into(), [0.0; 3]);
     for number in 0..torus::MESH.triangle_count() {
         let corners = torus::MESH.triangle(number).expect("a triangle").map(usize::from);
-        let tri = corners.map(|k| Vertex {
-            position: apply(&m, position(&torus::MESH.data().positions, k)),
-            attributes: lit(k),
-        });
-        homogeneous::draw(
-            &mut reference,
-            &viewport,
-            ReferenceCull::Back,
-            &tri,
-            number as u32 + 1,
-            |s| s.linear,
-        );
+        let tri = corners
+            .map(|k| Vertex { position: apply(&m, position(&torus::MESH.data().positions, k)), attributes: lit(k) });
+        homogeneous::draw(&mut reference, &viewport, ReferenceCull::Back, &tri, number as u32 + 1, |s| s.linear);
     }
     let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| scenes::torus_gouraud(scene, turn));
     let (mut worst, mut pixels) = (0_f64, 0);
-    for (i, found) in picture
-        .iter()
-        .enumerate()
-        .filter(|(i, _)| reference.is_clear_cut(*i, MARGIN, GAP))
-    {
+    for (i, found) in picture.iter().enumerate().filter(|(i, _)| reference.is_clear_cut(*i, MARGIN, GAP)) {
         pixels += usize::from(reference.id[i] != 0);
         for (found, exact) in found.iter().zip(reference.color[i]) {
             worst = worst.max((f64::from(*found) - exact).abs());
@@ -427,10 +369,7 @@ fn frames_agree_with_rays() {
     let (width, height) = (64_u16, 48_u16);
     for seed in 0..12 {
         let mut rng = Rng::new(seed);
-        let lens = rng.pick(&[
-            Lens::Perspective { tan_half_fov: 0.5 },
-            Lens::Orthographic { half_height: 2.5 },
-        ]);
+        let lens = rng.pick(&[Lens::Perspective { tan_half_fov: 0.5 }, Lens::Orthographic { half_height: 2.5 }]);
         let cull = rng.pick(&[Cull::None, Cull::Back, Cull::Front]);
         let mut camera = Camera::look_at([1.0, 2.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0], lens, 64.0 / 48.0);
         (camera.near, camera.far) = (2.0, 9.0);
@@ -442,16 +381,9 @@ fn frames_agree_with_rays() {
                 id,
             })
             .collect();
-        let vertices: Vec<_> = triangles
-            .iter()
-            .flat_map(|t| t.corners)
-            .map(|p| clip_of(&camera, p))
-            .collect();
+        let vertices: Vec<_> = triangles.iter().flat_map(|t| t.corners).map(|p| clip_of(&camera, p)).collect();
         let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(&vertices))).expect("a mesh");
-        let state = State {
-            cull,
-            ..State::default()
-        };
+        let state = State { cull, ..State::default() };
         let (color, depths, _) = whole::<Rgb888>((width, height), Rgb888::BLACK, |scene| {
             scene.draw_with(state, &mesh, &Projective::IDENTITY, &Ids(0))
         });
@@ -460,11 +392,7 @@ fn frames_agree_with_rays() {
         let scene = ray::Scene {
             triangles,
             quadrics: Vec::new(),
-            light: ray::Light {
-                ambient: 1.0,
-                diffuse: 0.0,
-                direction: [0.0, 0.0, 1.0],
-            },
+            light: ray::Light { ambient: 1.0, diffuse: 0.0, direction: [0.0, 0.0, 1.0] },
             background: [0.0; 3],
             cull: reference_cull(cull),
         };
@@ -472,10 +400,7 @@ fn frames_agree_with_rays() {
         let result = reference.compare(&frame, 1.0 / 50.0, 20.0 / 65_535.0);
         println!("seed {seed} {lens:?} {cull:?}: {result:?}");
         assert_eq!(result.other_id, 0, "seed {seed} {lens:?} {cull:?}: {result:?}");
-        assert!(
-            result.excluded * 12 < result.compared,
-            "seed {seed} {lens:?} {cull:?}: {result:?}"
-        );
+        assert!(result.excluded * 12 < result.compared, "seed {seed} {lens:?} {cull:?}: {result:?}");
     }
 }
 
@@ -500,11 +425,8 @@ fn sphere_error(around: u16, across: u16) -> (usize, f64) {
     let lens = Lens::Perspective { tan_half_fov: 0.4 };
     let mut camera = Camera::look_at([0.6, 1.2, 3.0], [0.0; 3], [0.0, 1.0, 0.0], lens, 1.0);
     (camera.near, camera.far) = (1.0, 6.0);
-    let light = ray::Light {
-        ambient: 51.0 / 256.0,
-        diffuse: 205.0 / 256.0,
-        direction: ray::normalize([1.0, 2.0, 2.0]),
-    };
+    let light =
+        ray::Light { ambient: 51.0 / 256.0, diffuse: 205.0 / 256.0, direction: ray::normalize([1.0, 2.0, 2.0]) };
     let scene = ray::Scene {
         triangles: Vec::new(),
         quadrics: vec![ray::Quadric::sphere([0.0; 3], 1.0, [1.0; 3], 1)],
@@ -516,10 +438,7 @@ fn sphere_error(around: u16, across: u16) -> (usize, f64) {
 
     let (points, indices) = sphere(around, across);
     let vertices: Vec<_> = points.iter().map(|p| clip_of(&camera, *p)).collect();
-    let normals: Vec<_> = points
-        .iter()
-        .map(|p| p.map(|c| (c * f64::from(NORMAL_ONE)).round() as i16))
-        .collect();
+    let normals: Vec<_> = points.iter().map(|p| p.map(|c| (c * f64::from(NORMAL_ONE)).round() as i16)).collect();
     let mesh = Mesh::new(MeshData {
         topology: Topology::Quads,
         indices: Some(&indices),
@@ -529,9 +448,8 @@ fn sphere_error(around: u16, across: u16) -> (usize, f64) {
     .expect("a mesh");
     let grey = |level: u8| Rgb888::new(level, level, level);
     let shader = Gouraud::new(Light::new(Vec3::from_ints(1, 2, 2), grey(204), grey(51)), Rgb888::WHITE);
-    let (picture, depths, _) = whole::<Rgb888>((128, 128), Rgb888::BLACK, |scene| {
-        scene.draw(&mesh, &Projective::IDENTITY, &shader)
-    });
+    let (picture, depths, _) =
+        whole::<Rgb888>((128, 128), Rgb888::BLACK, |scene| scene.draw(&mesh, &Projective::IDENTITY, &shader));
     let (mut silhouette, mut sum, mut both) = (0, 0.0, 0);
     for i in 0..picture.len() {
         let (mesh, sphere) = (depths[i] != u16::MAX, reference.id[i] != 0);
@@ -554,8 +472,5 @@ fn sphere_meshes_converge_to_the_quadric() {
     }
     let (silhouette, shade) = errors[3];
     assert!(silhouette <= 30, "{silhouette} px of the silhouette differ");
-    assert!(
-        shade <= 0.6,
-        "mean brightness is off by {shade} of 255, half a step of which is rounding"
-    );
+    assert!(shade <= 0.6, "mean brightness is off by {shade} of 255, half a step of which is rounding");
 }

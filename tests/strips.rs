@@ -19,11 +19,8 @@ use zstrip::{Cull, Scene, State};
 
 const SCREEN: (u16, u16) = (320, 240);
 const AMPLE: usize = 40_000;
-const BOTH_SIDES: State = State {
-    cull: Cull::None,
-    depth: DepthState::LESS,
-    range: zstrip::geometry::DepthRange::Clip,
-};
+const BOTH_SIDES: State =
+    State { cull: Cull::None, depth: DepthState::LESS, range: zstrip::geometry::DepthRange::Clip };
 
 fn draw_scene(name: &str) -> impl Fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle) + use<> {
     let info = scenes::SCENES.iter().find(|info| info.name == name);
@@ -41,10 +38,7 @@ fn assert_strips_do_not_matter(name: &str, turn: Angle, heights: &[usize], capac
     for (&rows, &records) in heights.iter().flat_map(|h| capacities.iter().map(move |c| (h, c))) {
         let (picture, stats) = strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| draw(s, turn));
         let found = difference(&picture, &expected, SCREEN.0);
-        assert_eq!(
-            found, None,
-            "{name} at {turn:?}, strips of {rows} rows, {records} records"
-        );
+        assert_eq!(found, None, "{name} at {turn:?}, strips of {rows} rows, {records} records");
         assert_eq!(stats.strips as usize, 240_usize.div_ceil(rows));
         match records {
             0 => assert_eq!(stats.direct_strips, stats.strips, "{name}: {stats:?}"),
@@ -104,13 +98,7 @@ fn random_state(rng: &mut Rng) -> State {
     State {
         cull: rng.pick(&[Cull::Back, Cull::Front, Cull::None]),
         depth: DepthState {
-            compare: rng.pick(&[
-                Compare::Less,
-                Compare::LessEqual,
-                Compare::Always,
-                Compare::NotEqual,
-                Compare::Less,
-            ]),
+            compare: rng.pick(&[Compare::Less, Compare::LessEqual, Compare::Always, Compare::NotEqual, Compare::Less]),
             write: !rng.one_in(4),
         },
         range: rng.pick(&[DepthRange::Clip, DepthRange::ClampFar, DepthRange::Clamp]),
@@ -129,15 +117,12 @@ fn check_soup(seed: u64) {
     let size = [(); 2].map(|()| rng.between(1, 100) as u16);
     let part = Viewport::new(corner[0], corner[1], size[0], size[1]).expect("a viewport");
     let height = usize::from(screen.1);
-    let (expected, _) = strips::<Rgb565>(screen, height, 20_000, Rgb565::BLUE, |s| {
-        draw_soup(s, &mesh, state, part)
-    });
+    let (expected, _) = strips::<Rgb565>(screen, height, 20_000, Rgb565::BLUE, |s| draw_soup(s, &mesh, state, part));
     for _ in 0..3 {
         let rows = rng.between(1, i32::from(screen.1)) as usize;
         let records = rng.pick(&[0, rng_capacity(seed), 20_000]);
-        let (picture, stats) = strips::<Rgb565>(screen, rows, records, Rgb565::BLUE, |s| {
-            draw_soup(s, &mesh, state, part)
-        });
+        let (picture, stats) =
+            strips::<Rgb565>(screen, rows, records, Rgb565::BLUE, |s| draw_soup(s, &mesh, state, part));
         let found = difference(&picture, &expected, screen.0);
         assert_eq!(
             found, None,
@@ -188,9 +173,8 @@ fn framebuffer_and_strips_hold_the_same_pixels() {
         let mesh = soup.mesh();
         let part = Viewport::full(width, height).expect("a viewport");
         let state = random_state(&mut rng);
-        let (expected, _) = strips::<Rgb888>((width, height), 5, 700, Rgb888::GREEN, |s| {
-            draw_soup(s, &mesh, state, part)
-        });
+        let (expected, _) =
+            strips::<Rgb888>((width, height), 5, 700, Rgb888::GREEN, |s| draw_soup(s, &mesh, state, part));
 
         // Whole depth, a strip of depth, and rows with a gap between them.
         let stride = usize::from(width) + rng.between(0, 9) as usize;
@@ -205,37 +189,24 @@ fn framebuffer_and_strips_hold_the_same_pixels() {
             renderer
                 .frame(&mut frame, Some(Rgb888::GREEN), |s| draw_soup(s, &mesh, state, part))
                 .expect("the same scene");
-            let inside: Vec<_> = pixels
-                .chunks(stride)
-                .flat_map(|row| &row[..usize::from(width)])
-                .copied()
-                .collect();
+            let inside: Vec<_> = pixels.chunks(stride).flat_map(|row| &row[..usize::from(width)]).copied().collect();
             assert_eq!(difference(&inside, &expected, width), None, "{case}");
             let gaps = pixels.chunks(stride).flat_map(|row| &row[usize::from(width)..]);
-            assert!(
-                gaps.copied().all(|p| p == [7, 7, 7]),
-                "{case}: the gap between rows was written"
-            );
+            assert!(gaps.copied().all(|p| p == [7, 7, 7]), "{case}: the gap between rows was written");
         }
     }
 }
 
 #[test]
 fn framebuffer_without_a_background_is_drawn_over() {
-    let triangle = [
-        Vec3::from_ints(-1, -1, 0),
-        Vec3::from_ints(1, -1, 0),
-        Vec3::from_ints(0, 1, 0),
-    ];
+    let triangle = [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(0, 1, 0)];
     let mesh = Mesh::new(MeshData::new(Positions::Exact(&triangle))).expect("a triangle");
     let mut pixels: Vec<u16> = (0..20 * 20).collect();
     let (mut depth, mut records) = (vec![0; 20 * 4], vec![0; 64]);
     let mut frame = FrameSlice::<Rgb565>::new(&mut pixels, 20, 20).expect("a framebuffer");
     FramebufferRenderer::new((20, 20), &mut depth, &mut records)
         .expect("a renderer")
-        .frame(&mut frame, None, |scene| {
-            scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE))
-        })
+        .frame(&mut frame, None, |scene| scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE)))
         .expect("the same scene");
     let covered = pixels.iter().filter(|p| **p == 0xFFFF).count();
     let kept = (0..400).filter(|&i| pixels[usize::from(i)] == i).count();
@@ -262,18 +233,13 @@ fn framebuffer_of_ones_own_gets_the_rows_it_hands_out() {
     let soup = Soup::new(&mut rng, 20);
     let mesh = soup.mesh();
     let part = Viewport::full(32, 24).expect("a viewport");
-    let (expected, _) = strips::<Rgb565Be>((32, 24), 24, 5000, Rgb565::BLACK, |s| {
-        draw_soup(s, &mesh, BOTH_SIDES, part)
-    });
-    let mut frame = Mirrored {
-        rows: vec![[1; 32]; 24],
-    };
+    let (expected, _) =
+        strips::<Rgb565Be>((32, 24), 24, 5000, Rgb565::BLACK, |s| draw_soup(s, &mesh, BOTH_SIDES, part));
+    let mut frame = Mirrored { rows: vec![[1; 32]; 24] };
     let (mut depth, mut records) = (vec![0; 32 * 5], vec![0; 300]);
     FramebufferRenderer::new((32, 24), &mut depth, &mut records)
         .expect("a renderer")
-        .frame(&mut frame, Some(Rgb565::BLACK), |s| {
-            draw_soup(s, &mesh, BOTH_SIDES, part)
-        })
+        .frame(&mut frame, Some(Rgb565::BLACK), |s| draw_soup(s, &mesh, BOTH_SIDES, part))
         .expect("the same scene");
     let found: Vec<u16> = frame.rows.iter().rev().flatten().copied().collect();
     assert_eq!(difference(&found, &expected, 32), None);
@@ -285,11 +251,7 @@ fn pulled_strips_are_those_that_are_sent() {
     let (expected, _) = strips::<Rgb565>((80, 60), 60, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle(3)));
     for records in [0, 700, AMPLE] {
         let (mut color, mut depth, mut records) = (vec![9; 80 * 7], vec![9; 80 * 7], vec![9; records]);
-        let buffers = Buffers {
-            color: &mut color,
-            depth: &mut depth,
-            records: &mut records,
-        };
+        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
         let mut renderer = Renderer::<Rgb565>::new((80, 60), buffers).expect("a renderer");
 
         let mut frame = renderer.begin(scenes::BACKGROUND);
@@ -309,10 +271,7 @@ fn pulled_strips_are_those_that_are_sent() {
         let mut frame = renderer.begin(scenes::BACKGROUND);
         let (mut drawn, mut sent) = (vec![1; 80 * 7], vec![2; 80 * 7]);
         let (mut picture, mut rows) = (Vec::new(), 0);
-        while let Some(strip) = frame
-            .next_strip_in(&mut drawn, |s| draw(s, Angle(3)))
-            .expect("the same scene")
-        {
+        while let Some(strip) = frame.next_strip_in(&mut drawn, |s| draw(s, Angle(3))).expect("the same scene") {
             rows = strip.area().size.height as usize;
             assert_eq!(strip.pixels().len(), 80 * rows);
             std::mem::swap(&mut drawn, &mut sent);
@@ -327,20 +286,11 @@ fn pulled_strips_are_those_that_are_sent() {
 fn frame_that_is_not_finished_does_not_disturb_the_next() {
     let draw = draw_scene("torus_flat");
     let (mut color, mut depth, mut records) = (vec![0; 64 * 8], vec![0; 64 * 8], vec![0; 3000]);
-    let buffers = Buffers {
-        color: &mut color,
-        depth: &mut depth,
-        records: &mut records,
-    };
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
     let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers).expect("a renderer");
     let mut frame = renderer.begin(Rgb565::BLACK);
     for _ in 0..3 {
-        assert!(
-            frame
-                .next_strip(|s| draw(s, Angle(100)))
-                .expect("the same scene")
-                .is_some()
-        );
+        assert!(frame.next_strip(|s| draw(s, Angle(100))).expect("the same scene").is_some());
     }
     let mut picture = Vec::new();
     let mut frame = renderer.begin(Rgb565::BLACK);
@@ -360,14 +310,9 @@ fn layer(z: i32) -> [Vec3; 3] {
 #[test]
 fn painted_layers_stay_in_the_order_they_were_drawn() {
     let layers: Vec<_> = (0..9).map(|k| layer(20 * (9 - k))).collect();
-    let meshes: Vec<_> = layers
-        .iter()
-        .map(|l| Mesh::new(MeshData::new(Positions::Exact(l))).expect("a mesh"))
-        .collect();
-    let paint = State {
-        depth: DepthState::OFF,
-        ..BOTH_SIDES
-    };
+    let meshes: Vec<_> =
+        layers.iter().map(|l| Mesh::new(MeshData::new(Positions::Exact(l))).expect("a mesh")).collect();
+    let paint = State { depth: DepthState::OFF, ..BOTH_SIDES };
     for (rows, records) in [(1, 0), (1, 60), (3, 90), (3, 200), (16, 1000)] {
         // Nearest last and nearest first: the last one painted shows either way.
         for backwards in [false, true] {
@@ -378,11 +323,7 @@ fn painted_layers_stay_in_the_order_they_were_drawn() {
                     scene.draw_with(paint, &meshes[which], &Projective::IDENTITY, &Flat::unlit(grey));
                 }
             });
-            assert_eq!(
-                picture[8 * 16 + 8],
-                90,
-                "{rows} rows, {records} records, backwards: {backwards}"
-            );
+            assert_eq!(picture[8 * 16 + 8], 90, "{rows} rows, {records} records, backwards: {backwards}");
         }
         // With the depth test, the nearest shows.
         let (picture, _) = strips::<Gray8>((16, 16), rows, records, Gray8::new(0), |scene| {
@@ -418,11 +359,7 @@ fn frame_is_the_same_at_every_capacity_about_the_overflow_points() {
         let (mut low, mut high) = (0, AMPLE);
         while low + 1 < high {
             let middle = (low + high) / 2;
-            if good(&records_at(middle)) {
-                high = middle
-            } else {
-                low = middle
-            }
+            if good(&records_at(middle)) { high = middle } else { low = middle }
         }
         high
     };
@@ -435,12 +372,7 @@ fn frame_is_the_same_at_every_capacity_about_the_overflow_points() {
     }
     // What the const function promises is enough, as nothing is clipped here.
     assert_eq!(ample.clipped, 0);
-    let meshes = [
-        &scenes::polygons::GRID,
-        &scenes::polygons::STRIP,
-        &scenes::polygons::FAN,
-        &scenes::polygons::QUADS,
-    ];
+    let meshes = [&scenes::polygons::GRID, &scenes::polygons::STRIP, &scenes::polygons::FAN, &scenes::polygons::QUADS];
     let vertices = meshes.iter().map(|m| m.vertex_count()).sum();
     let stated = records_len(10, 4, vertices, 1, ample.drawn as usize);
     assert_eq!(stated, whole, "records_len says what is needed");
@@ -451,17 +383,9 @@ fn stats_tell_how_the_frame_was_made() {
     let draw = draw_scene("torus_flat");
     let frame = |rows, records| strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| draw(s, Angle(0))).1;
     let ample = frame(16, AMPLE);
-    assert_eq!(
-        (ample.strips, ample.walks, ample.draws),
-        (15, 16, 16),
-        "one walk records, fifteen replay"
-    );
+    assert_eq!((ample.strips, ample.walks, ample.draws), (15, 16, 16), "one walk records, fifteen replay");
     assert_eq!((ample.overflows, ample.direct_strips), (0, 0));
-    assert_eq!(
-        (ample.triangles, ample.vertices),
-        (1024, 512),
-        "each vertex is shaded once"
-    );
+    assert_eq!((ample.triangles, ample.vertices), (1024, 512), "each vertex is shaded once");
     assert_eq!(
         ample.triangles,
         ample.back_facing + ample.degenerate + ample.outside + ample.empty + ample.drawn,

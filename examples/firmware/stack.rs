@@ -30,9 +30,7 @@ pub fn peak_of(work: impl FnOnce()) -> usize {
     }
     on_its_own_frame(work);
     // SAFETY: as above.
-    let unused = (0..words)
-        .take_while(|&i| unsafe { bottom.add(i).read_volatile() } == PAINT)
-        .count();
+    let unused = (0..words).take_while(|&i| unsafe { bottom.add(i).read_volatile() } == PAINT).count();
     (words - unused) * 4
 }
 

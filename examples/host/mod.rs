@@ -18,11 +18,7 @@ pub struct Picture {
 /// RGB565 to eight bits a channel, so that the brightest becomes 255.
 fn rgb888(pixel: u16) -> [u8; 3] {
     let (r, g, b) = (pixel >> 11, pixel >> 5 & 63, pixel & 31);
-    [
-        (r << 3 | r >> 2) as u8,
-        (g << 2 | g >> 4) as u8,
-        (b << 3 | b >> 2) as u8,
-    ]
+    [(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8]
 }
 
 impl Picture {

@@ -24,50 +24,17 @@ pub struct SceneInfo {
 
 /// All scenes; the first two are a torus flat and Gouraud shaded.
 pub const SCENES: &[SceneInfo] = &[
-    SceneInfo {
-        name: "torus_flat",
-        draw: |scene, turn| torus_flat(scene, turn),
-    },
-    SceneInfo {
-        name: "torus_gouraud",
-        draw: |scene, turn| torus_gouraud(scene, turn),
-    },
-    SceneInfo {
-        name: "room",
-        draw: |scene, turn| room(scene, turn),
-    },
-    SceneInfo {
-        name: "intersections",
-        draw: |scene, turn| intersections(scene, turn),
-    },
-    SceneInfo {
-        name: "soup",
-        draw: |scene, turn| soup(scene, turn),
-    },
-    SceneInfo {
-        name: "far",
-        draw: |scene, turn| far(scene, turn),
-    },
-    SceneInfo {
-        name: "near",
-        draw: |scene, turn| near(scene, turn),
-    },
-    SceneInfo {
-        name: "tiny",
-        draw: |scene, turn| tiny(scene, turn),
-    },
-    SceneInfo {
-        name: "cycle",
-        draw: |scene, turn| cycle(scene, turn),
-    },
-    SceneInfo {
-        name: "slivers",
-        draw: |scene, turn| slivers(scene, turn),
-    },
-    SceneInfo {
-        name: "field",
-        draw: |scene, turn| field(scene, turn),
-    },
+    SceneInfo { name: "torus_flat", draw: |scene, turn| torus_flat(scene, turn) },
+    SceneInfo { name: "torus_gouraud", draw: |scene, turn| torus_gouraud(scene, turn) },
+    SceneInfo { name: "room", draw: |scene, turn| room(scene, turn) },
+    SceneInfo { name: "intersections", draw: |scene, turn| intersections(scene, turn) },
+    SceneInfo { name: "soup", draw: |scene, turn| soup(scene, turn) },
+    SceneInfo { name: "far", draw: |scene, turn| far(scene, turn) },
+    SceneInfo { name: "near", draw: |scene, turn| near(scene, turn) },
+    SceneInfo { name: "tiny", draw: |scene, turn| tiny(scene, turn) },
+    SceneInfo { name: "cycle", draw: |scene, turn| cycle(scene, turn) },
+    SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
+    SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
 ];
 
 /// Dark blue-grey.
@@ -84,11 +51,7 @@ fn standard_camera<F: Framebuffer>(scene: &Scene<'_, F>) -> Projective {
 
 /// White light from the upper right, behind the viewer, beside a dim ambient one; in eye space.
 pub fn light() -> Light {
-    Light::new(
-        Vec3::from_milli(400, 700, 600),
-        Rgb888::new(217, 217, 217),
-        Rgb888::new(38, 38, 38),
-    )
+    Light::new(Vec3::from_milli(400, 700, 600), Rgb888::new(217, 217, 217), Rgb888::new(38, 38, 38))
 }
 
 /// Where the torus is: tumbling, since a turn about its axis would not show.
@@ -145,15 +108,9 @@ pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     );
 }
 
-const BOTH_SIDES: State = State {
-    cull: Cull::None,
-    ..DEFAULT
-};
-const DEFAULT: State = State {
-    cull: Cull::Back,
-    depth: zstrip::fragment::DepthState::LESS,
-    range: zstrip::geometry::DepthRange::Clip,
-};
+const BOTH_SIDES: State = State { cull: Cull::None, ..DEFAULT };
+const DEFAULT: State =
+    State { cull: Cull::Back, depth: zstrip::fragment::DepthState::LESS, range: zstrip::geometry::DepthRange::Clip };
 
 /// Three squares through one another.
 pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
@@ -244,14 +201,7 @@ pub fn draw(
     let Some(info) = SCENES.get(index) else {
         return Stats::default();
     };
-    frame(
-        [width, height],
-        color,
-        depth,
-        records,
-        |scene| (info.draw)(scene, Angle(turn)),
-        &mut sink,
-    )
+    frame([width, height], color, depth, records, |scene| (info.draw)(scene, Angle(turn)), &mut sink)
 }
 
 /// Renders what a closure draws.

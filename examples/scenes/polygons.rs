@@ -54,24 +54,14 @@ pub static ROOM: Mesh<'static> = Mesh::constant(MeshData {
 });
 
 const fn wall_colors() -> [Rgb; 20] {
-    let walls = [
-        [196, 96, 80],
-        [90, 120, 190],
-        [180, 150, 80],
-        [90, 160, 110],
-        [225, 222, 210],
-    ];
+    let walls = [[196, 96, 80], [90, 120, 190], [180, 150, 80], [90, 160, 110], [225, 222, 210]];
     let mut colors = [[0; 3]; 20];
     let mut k = 0;
     while k < 20 {
         let [r, g, b] = walls[k / 4];
         // The two lower corners of a wall: five eighths as bright.
         let eighths = if k < 16 && k % 4 < 2 { 5 } else { 8 };
-        colors[k] = [
-            (r * eighths / 8) as u8,
-            (g * eighths / 8) as u8,
-            (b * eighths / 8) as u8,
-        ];
+        colors[k] = [(r * eighths / 8) as u8, (g * eighths / 8) as u8, (b * eighths / 8) as u8];
         k += 1;
     }
     colors
@@ -223,11 +213,7 @@ const fn grid_positions(x0: i32, y0: i32) -> [Vec3; SIDE * SIDE] {
     while k < SIDE * SIDE {
         let (i, j) = ((k % SIDE) as i32, (k / SIDE) as i32);
         // A little uneven, so that no edge is straight through.
-        points[k] = at(
-            x0 + 130 * i + 37 * (j % 3),
-            y0 + 110 * j + 29 * (i % 4),
-            40 * ((i + j) % 5),
-        );
+        points[k] = at(x0 + 130 * i + 37 * (j % 3), y0 + 110 * j + 29 * (i % 4), 40 * ((i + j) % 5));
         k += 1;
     }
     points
@@ -237,11 +223,7 @@ const fn speckled<const N: usize>() -> [Rgb; N] {
     let mut colors = [[0; 3]; N];
     let mut k = 0;
     while k < N {
-        colors[k] = [
-            (60 + 47 * k % 190) as u8,
-            (70 + 83 * k % 180) as u8,
-            (80 + 131 * k % 170) as u8,
-        ];
+        colors[k] = [(60 + 47 * k % 190) as u8, (70 + 83 * k % 180) as u8, (80 + 131 * k % 170) as u8];
         k += 1;
     }
     colors
@@ -264,12 +246,8 @@ const fn grid_indices() -> [u16; 6 * (SIDE - 1) * (SIDE - 1)] {
 }
 
 /// An indexed list of triangles.
-pub static GRID: Mesh<'static> = colored(
-    &grid_positions(-1500, 100),
-    &grid_indices(),
-    &speckled::<{ SIDE * SIDE }>(),
-    Topology::Triangles,
-);
+pub static GRID: Mesh<'static> =
+    colored(&grid_positions(-1500, 100), &grid_indices(), &speckled::<{ SIDE * SIDE }>(), Topology::Triangles);
 
 const STRIP_LENGTH: usize = 24;
 

@@ -58,19 +58,14 @@ const fn around<const N: usize>(seed: u32, low: [i32; 3], high: [i32; 3], sizes:
 }
 
 const fn list(positions: &'static [Vec3], colors: &'static [[u8; 3]]) -> Mesh<'static> {
-    Mesh::constant(MeshData {
-        colors: Some(colors),
-        ..MeshData::new(Positions::Exact(positions))
-    })
+    Mesh::constant(MeshData { colors: Some(colors), ..MeshData::new(Positions::Exact(positions)) })
 }
 
 const SOUP_CORNERS: usize = 3 * 120;
 
 /// Triangles of all sizes in a cube around the eye.
-pub static SOUP: Mesh<'static> = list(
-    &around::<SOUP_CORNERS>(1, [-5000; 3], [5000; 3], [100, 4000]),
-    &colors::<SOUP_CORNERS>(2),
-);
+pub static SOUP: Mesh<'static> =
+    list(&around::<SOUP_CORNERS>(1, [-5000; 3], [5000; 3], [100, 4000]), &colors::<SOUP_CORNERS>(2));
 
 const FAR_CORNERS: usize = 3 * 40;
 
@@ -95,10 +90,8 @@ const fn flat_giants() -> [Vec3; FAR_CORNERS] {
 const TINY_CORNERS: usize = 3 * 1500;
 
 /// Triangles of about 2 px: 0.04 units at distance 4.
-pub static TINY: Mesh<'static> = list(
-    &around::<TINY_CORNERS>(5, [-2900, -2200, -1000], [2900, 2200, 1000], [10, 40]),
-    &colors::<TINY_CORNERS>(6),
-);
+pub static TINY: Mesh<'static> =
+    list(&around::<TINY_CORNERS>(5, [-2900, -2200, -1000], [2900, 2200, 1000], [10, 40]), &colors::<TINY_CORNERS>(6));
 
 const SLIVER_CORNERS: usize = 3 * 100;
 

@@ -25,11 +25,7 @@ const fn positions() -> [[i16; 3]; VERTICES] {
         let (sv, cv) = unit(k % ACROSS, ACROSS);
         // Distance from the axis in 16.32.
         let ring = (1 << 32) + 26_214 * cv;
-        points[k] = [
-            fraction(ring / 65_536 * cu),
-            fraction(26_214 * sv),
-            fraction(ring / 65_536 * su),
-        ];
+        points[k] = [fraction(ring / 65_536 * cu), fraction(26_214 * sv), fraction(ring / 65_536 * su)];
         k += 1;
     }
     points

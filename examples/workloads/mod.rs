@@ -81,10 +81,7 @@ pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
     let mvp = CAMERA * MIRROR;
     let [r, g, b] = QUAD_COLOR;
     let shader = Flat::unlit(Rgb888::new(r, g, b));
-    let state = State {
-        depth: DepthState::OFF,
-        ..State::default()
-    };
+    let state = State { depth: DepthState::OFF, ..State::default() };
     frame(buffers, sink, |scene| scene.draw_with(state, &QUAD, &mvp, &shader))
 }
 
@@ -130,12 +127,8 @@ fn light() -> Light {
     }
     const DIRECTION: Vec3 = vector([LIGHT[0], LIGHT[1], -LIGHT[2]]);
     let [ambient, diffuse] = const { [level(AMBIENT), level(DIFFUSE)] };
-    Light::new(
-        DIRECTION,
-        Rgb888::new(diffuse, diffuse, diffuse),
-        Rgb888::new(ambient, ambient, ambient),
-    )
-    .to_object(&MODEL)
+    Light::new(DIRECTION, Rgb888::new(diffuse, diffuse, diffuse), Rgb888::new(ambient, ambient, ambient))
+        .to_object(&MODEL)
 }
 
 fn torus_color() -> Rgb888 {
@@ -208,11 +201,7 @@ const fn nearest(x: f64) -> i64 {
 }
 
 const fn vector(v: [f64; 3]) -> Vec3 {
-    Vec3::from_bits([
-        nearest(v[0] * 65_536.0) as i32,
-        nearest(v[1] * 65_536.0) as i32,
-        nearest(v[2] * 65_536.0) as i32,
-    ])
+    Vec3::from_bits([nearest(v[0] * 65_536.0) as i32, nearest(v[1] * 65_536.0) as i32, nearest(v[2] * 65_536.0) as i32])
 }
 
 /// A point as fractions of a cube: its middle, and half its side.
@@ -225,19 +214,11 @@ const fn quantized(v: [f64; 3], middle: [f64; 3], half: f64) -> [i16; 3] {
 }
 
 const fn quantities<'a>(points: &'a [[i16; 3]], middle: [f64; 3], half: f64) -> Positions<'a> {
-    Positions::Quantized {
-        points,
-        scale: Scalar::from_bits(nearest(half * 65_536.0) as i32),
-        offset: vector(middle),
-    }
+    Positions::Quantized { points, scale: Scalar::from_bits(nearest(half * 65_536.0) as i32), offset: vector(middle) }
 }
 
 const fn normal(n: [f64; 3]) -> [i16; 3] {
-    [
-        nearest(n[0] * 16_384.0) as i16,
-        nearest(n[1] * 16_384.0) as i16,
-        nearest(n[2] * 16_384.0) as i16,
-    ]
+    [nearest(n[0] * 16_384.0) as i16, nearest(n[1] * 16_384.0) as i16, nearest(n[2] * 16_384.0) as i16]
 }
 
 const fn normalized(v: [f64; 3]) -> [f64; 3] {
@@ -254,11 +235,7 @@ const fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 }
 
 const fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 /// View space as the workloads have it → view space as the camera has it.
@@ -268,12 +245,8 @@ const MIRROR: Affine = Affine::from_rows(Vec3::X, Vec3::Y, Vec3::from_ints(0, 0,
 
 const QUAD_X: f64 = 160.0 / FOCAL * 2.0;
 const QUAD_Y: f64 = 120.0 / FOCAL * 2.0;
-pub const QUAD_POSITIONS: [[f64; 3]; 4] = [
-    [-QUAD_X, QUAD_Y, 2.0],
-    [QUAD_X, QUAD_Y, 2.0],
-    [-QUAD_X, -QUAD_Y, 2.0],
-    [QUAD_X, -QUAD_Y, 2.0],
-];
+pub const QUAD_POSITIONS: [[f64; 3]; 4] =
+    [[-QUAD_X, QUAD_Y, 2.0], [QUAD_X, QUAD_Y, 2.0], [-QUAD_X, -QUAD_Y, 2.0], [QUAD_X, -QUAD_Y, 2.0]];
 pub const QUAD_INDICES: [u16; 6] = [0, 2, 1, 1, 2, 3];
 pub const QUAD_COLORS: [[u8; 3]; 4] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
 /// Orange, when it has one colour.
@@ -322,12 +295,7 @@ pub const TORUS_COLOR: [u8; 3] = [255, 160, 64];
 /// Object space → view space as the camera has it.
 const MODEL: Affine = {
     let [x, y, [zx, zy, zz]] = ROTATION;
-    Affine::from_rows(
-        vector(x),
-        vector(y),
-        vector([-zx, -zy, -zz]),
-        vector([0.0, 0.0, -DISTANCE]),
-    )
+    Affine::from_rows(vector(x), vector(y), vector([-zx, -zy, -zz]), vector([0.0, 0.0, -DISTANCE]))
 };
 
 pub const TORUS_POSITIONS: [[f64; 3]; VERTICES] = torus().0;
@@ -363,16 +331,8 @@ const fn torus_faces() -> ([u16; 3 * TRIANGLES], [[f64; 3]; TRIANGLES]) {
         let (i1, j1) = ((i + 1) % AROUND, (j + 1) % ACROSS);
         let a = i * ACROSS + j;
         let c = i1 * ACROSS + j1;
-        let corners = if triangle % 2 == 0 {
-            [a, i1 * ACROSS + j, c]
-        } else {
-            [a, c, i * ACROSS + j1]
-        };
-        let p = [
-            TORUS_POSITIONS[corners[0]],
-            TORUS_POSITIONS[corners[1]],
-            TORUS_POSITIONS[corners[2]],
-        ];
+        let corners = if triangle % 2 == 0 { [a, i1 * ACROSS + j, c] } else { [a, c, i * ACROSS + j1] };
+        let p = [TORUS_POSITIONS[corners[0]], TORUS_POSITIONS[corners[1]], TORUS_POSITIONS[corners[2]]];
         let n = normalized(cross(minus(p[1], p[0]), minus(p[2], p[0])));
         let inwards =
             dot(n, TORUS_NORMALS[corners[0]]) + dot(n, TORUS_NORMALS[corners[1]]) + dot(n, TORUS_NORMALS[corners[2]])
@@ -451,11 +411,7 @@ pub const fn tiny_triangle(k: usize, state: u32) -> ([[f64; 3]; 3], [u8; 3], u32
         corners[c] = [(sx - 160.0) * z / FOCAL, (120.0 - sy) * z / FOCAL, z];
         c += 1;
     }
-    let color = [
-        128 + (r * 127.0) as u8,
-        128 + (g * 127.0) as u8,
-        128 + (b * 127.0) as u8,
-    ];
+    let color = [128 + (r * 127.0) as u8, 128 + (g * 127.0) as u8, 128 + (b * 127.0) as u8];
     (corners, color, state)
 }
 

@@ -20,10 +20,7 @@ pub struct Picture {
 
 /// Draws a workload.
 pub fn draw(workload: Workload) -> Picture {
-    let mut picture = Picture {
-        colors: vec![None; WIDTH * HEIGHT],
-        inv_z: vec![0.0; WIDTH * HEIGHT],
-    };
+    let mut picture = Picture { colors: vec![None; WIDTH * HEIGHT], inv_z: vec![0.0; WIDTH * HEIGHT] };
     match workload {
         Workload::Empty => {}
         Workload::Quad => picture.quad(|_| super::QUAD_COLOR),
@@ -40,10 +37,7 @@ impl Picture {
         for corners in super::QUAD_INDICES.chunks(3) {
             self.triangle(&[0, 1, 2].map(|c: usize| {
                 let k = usize::from(corners[c]);
-                Vertex {
-                    position: super::QUAD_POSITIONS[k],
-                    color: color(k).map(f64::from),
-                }
+                Vertex { position: super::QUAD_POSITIONS[k], color: color(k).map(f64::from) }
             }));
         }
     }
@@ -57,10 +51,7 @@ impl Picture {
                 let k = usize::from(corners[c]);
                 let [x, y, z] = super::ROTATION.map(|row| super::dot(row, positions[k]));
                 let lit = super::AMBIENT + super::DIFFUSE * super::dot(normal(triangle, k), light).max(0.0);
-                Vertex {
-                    position: [x, y, z + super::DISTANCE],
-                    color: super::TORUS_COLOR.map(|c| f64::from(c) * lit),
-                }
+                Vertex { position: [x, y, z + super::DISTANCE], color: super::TORUS_COLOR.map(|c| f64::from(c) * lit) }
             }));
         }
     }
@@ -70,10 +61,7 @@ impl Picture {
         for k in 0..super::TINY_TRIANGLES {
             let (corners, color, next) = super::tiny_triangle(k, state);
             state = next;
-            self.triangle(&corners.map(|position| Vertex {
-                position,
-                color: color.map(f64::from),
-            }));
+            self.triangle(&corners.map(|position| Vertex { position, color: color.map(f64::from) }));
         }
     }
 

@@ -35,15 +35,9 @@ pub struct DepthState {
 
 impl DepthState {
     /// Nearer fragments pass and leave their depth.
-    pub const LESS: Self = Self {
-        compare: Compare::Less,
-        write: true,
-    };
+    pub const LESS: Self = Self { compare: Compare::Less, write: true };
     /// Depth is neither tested nor written: the painter's way.
-    pub const OFF: Self = Self {
-        compare: Compare::Always,
-        write: false,
-    };
+    pub const OFF: Self = Self { compare: Compare::Always, write: false };
 }
 
 impl Default for DepthState {

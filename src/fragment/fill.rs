@@ -54,7 +54,9 @@ mod tests {
             for end in start..90 {
                 let mut halves = vec![1_u16; 100];
                 fill(&mut halves[start..end], 0xABCD);
-                assert!(halves.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 0xABCD } else { 1 }));
+                assert!(
+                    halves.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 0xABCD } else { 1 })
+                );
                 let mut bytes = vec![1_u8; 100];
                 fill(&mut bytes[start..end], 7);
                 assert!(bytes.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 7 } else { 1 }));

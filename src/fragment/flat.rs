@@ -19,29 +19,17 @@ impl Flat {
     /// A colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
         let color = channels(color.into());
-        Self {
-            light: Some(light),
-            lit: Some(light.on(color)),
-            color,
-        }
+        Self { light: Some(light), lit: Some(light.on(color)), color }
     }
 
     /// A colour without light.
     pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self {
-            light: None,
-            lit: None,
-            color: channels(color.into()),
-        }
+        Self { light: None, lit: None, color: channels(color.into()) }
     }
 
     /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
     pub const fn colors(light: Light) -> Self {
-        Self {
-            light: Some(light),
-            lit: None,
-            color: [255; 3],
-        }
+        Self { light: Some(light), lit: None, color: [255; 3] }
     }
 }
 
@@ -84,13 +72,7 @@ impl<P: PixelFormat> Shader<P> for Flat {
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
-        let Fragments {
-            color,
-            depth,
-            mut z,
-            dz_dx,
-            ..
-        } = span;
+        let Fragments { color, depth, mut z, dz_dx, .. } = span;
         let value = Shader::<P>::fragment(self, face, &[]);
         if !D::ENABLED {
             return fill(color, value);

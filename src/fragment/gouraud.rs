@@ -17,18 +17,12 @@ pub struct Gouraud {
 impl Gouraud {
     /// One colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<Rgb888>) -> Self {
-        Self {
-            light: Some(light),
-            lit: Some(light.on(channels(color.into()))),
-        }
+        Self { light: Some(light), lit: Some(light.on(channels(color.into()))) }
     }
 
     /// The colours of the mesh's vertices under a light.
     pub const fn colors(light: Light) -> Self {
-        Self {
-            light: Some(light),
-            lit: None,
-        }
+        Self { light: Some(light), lit: None }
     }
 
     /// The colours of the mesh's vertices as they are.
@@ -81,11 +75,7 @@ impl VertexShader for Gouraud {
     fn load(words: &[u32]) -> [i32; 3] {
         let word = words.first().copied().unwrap_or(0);
         let channel = |bits: u32| (bits << 13) as i32;
-        [
-            channel(word >> 22 << 1),
-            channel((word >> 11) & 0x7FF),
-            channel(word & 0x7FF),
-        ]
+        [channel(word >> 22 << 1), channel((word >> 11) & 0x7FF), channel(word & 0x7FF)]
     }
 }
 

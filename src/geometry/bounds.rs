@@ -62,10 +62,7 @@ pub(super) struct Extent {
 
 impl Extent {
     pub(super) const fn empty() -> Self {
-        Self {
-            min: [i64::MAX; 3],
-            max: [i64::MIN; 3],
-        }
+        Self { min: [i64::MAX; 3], max: [i64::MIN; 3] }
     }
 
     pub(super) const fn with(mut self, point: [i64; 3]) -> Self {
@@ -97,10 +94,7 @@ impl Extent {
             }
             k += 1;
         }
-        BoundingBox {
-            center: Vec3::from_bits(center),
-            half: Vec3::from_bits(half),
-        }
+        BoundingBox { center: Vec3::from_bits(center), half: Vec3::from_bits(half) }
     }
 }
 
@@ -131,13 +125,6 @@ pub(super) const fn distance_squared(point: [i64; 3], center: Vec3) -> u128 {
 pub(super) const fn sphere(center: Vec3, squared: u128) -> BoundingSphere {
     let root = squared.isqrt();
     let radius = if root * root < squared { root + 1 } else { root };
-    let radius = if radius > i32::MAX as u128 {
-        i32::MAX
-    } else {
-        radius as i32
-    };
-    BoundingSphere {
-        center,
-        radius: Scalar::from_bits(radius),
-    }
+    let radius = if radius > i32::MAX as u128 { i32::MAX } else { radius as i32 };
+    BoundingSphere { center, radius: Scalar::from_bits(radius) }
 }

@@ -181,12 +181,8 @@ fn intersection<V: Varyings>(
 ) -> (ClipVertex, V) {
     let t = fraction(da as u64, da.abs_diff(db));
     let along = |a: i64, b: i64| a + ((i128::from(b - a) * i128::from(t)) >> 64) as i64;
-    let mut v = ClipVertex {
-        x: along(a.0.x, b.0.x),
-        y: along(a.0.y, b.0.y),
-        z: along(a.0.z, b.0.z),
-        w: along(a.0.w, b.0.w),
-    };
+    let mut v =
+        ClipVertex { x: along(a.0.x, b.0.x), y: along(a.0.y, b.0.y), z: along(a.0.z, b.0.z), w: along(a.0.w, b.0.w) };
     match plane {
         NEAR => v.z = 0,
         FAR => v.z = v.w,
@@ -224,9 +220,7 @@ mod tests {
         let triangle = triangle.map(|[x, y, z, w]| (ClipVertex { x, y, z, w }, [0; 0]));
         let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
         let mut corners = 0;
-        clip_triangle(&triangle, Outcode(codes), DepthRange::Clip, |polygon| {
-            corners += polygon.len()
-        });
+        clip_triangle(&triangle, Outcode(codes), DepthRange::Clip, |polygon| corners += polygon.len());
         corners
     }
 
@@ -247,9 +241,7 @@ mod tests {
         let project = |v: &ClipVertex| [v.x, v.y].map(|c| c as f64 / v.w as f64 * 131_072.0);
         let [x, y] = project(&triangle[0].0);
         let nearest = |polygon: &[(ClipVertex, [i32; 0])]| {
-            let off = polygon
-                .iter()
-                .map(|(v, _)| (project(v)[0] - x).hypot(project(v)[1] - y));
+            let off = polygon.iter().map(|(v, _)| (project(v)[0] - x).hypot(project(v)[1] - y));
             // Both ends of what is left of the edge.
             assert!(off.filter(|d| *d < 0.5).count() >= 2, "{polygon:?}");
         };

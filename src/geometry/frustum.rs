@@ -55,21 +55,13 @@ impl Plane {
         let normal_bits = bits(row[0]).max(bits(row[1])).max(bits(row[2]));
         let shift = (normal_bits - 28).max(bits(row[3]) + 16 - 60);
         let scaled = |v: i64, shift: i32| if shift >= 0 { v >> shift.min(63) } else { v << -shift };
-        let normal = [
-            scaled(row[0], shift) as i32,
-            scaled(row[1], shift) as i32,
-            scaled(row[2], shift) as i32,
-        ];
+        let normal = [scaled(row[0], shift) as i32, scaled(row[1], shift) as i32, scaled(row[2], shift) as i32];
         // The largest component, half the second and a third of the smallest are never shorter than the vector, and at
         // most 1/6 longer.
         let mut sizes = normal.map(i32::abs);
         sizes.sort_unstable();
         let length = sizes[2] + sizes[1] / 2 + sizes[0] / 3 + 2;
-        Self {
-            normal,
-            offset: scaled(row[3], shift - 16),
-            length,
-        }
+        Self { normal, offset: scaled(row[3], shift - 16), length }
     }
 
     /// Value of the plane at a point in raw 16.16: positive inside, off by less than [`SLACK`].
@@ -106,10 +98,7 @@ impl Frustum {
     pub fn through(matrix: &Projective, viewport: &Viewport, x: (i32, i32), y: (i32, i32)) -> Self {
         // X = cx + hw x / w >= x0  <=>  W x + 2 (cx - x0) w >= 0, all times two; likewise the others, y downwards.
         let (width, height) = (i32::from(viewport.width()), i32::from(viewport.height()));
-        let (cx2, cy2) = (
-            2 * i32::from(viewport.x()) + width,
-            2 * i32::from(viewport.y()) + height,
-        );
+        let (cx2, cy2) = (2 * i32::from(viewport.x()) + width, 2 * i32::from(viewport.y()) + height);
         let sides = [
             [width, 0, 0, cx2 - 2 * x.0],
             [-width, 0, 0, 2 * x.1 - cx2],

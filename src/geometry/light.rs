@@ -35,11 +35,7 @@ impl Light {
     /// A zero vector leaves the ambient light alone.
     pub fn new(direction: Vec3, diffuse: Rgb888, ambient: Rgb888) -> Self {
         let unit = direction.normalized().unwrap_or(Vec3::ZERO).to_bits();
-        Self {
-            direction: unit.map(|c| ((c + 2) >> 2) as i16),
-            diffuse: levels(diffuse),
-            ambient: levels(ambient),
-        }
+        Self { direction: unit.map(|c| ((c + 2) >> 2) as i16), diffuse: levels(diffuse), ambient: levels(ambient) }
     }
 
     /// The same light, given in world (or eye) space, as seen from object space: what a shader needs, as normals are in
@@ -48,27 +44,16 @@ impl Light {
         let direction = Vec3::from_bits(self.direction.map(|c| i32::from(c) << 2));
         let turned = model.inverse_rigid().transform_vector(direction);
         let unit = turned.normalized().unwrap_or(Vec3::ZERO).to_bits();
-        Self {
-            direction: unit.map(|c| ((c + 2) >> 2) as i16),
-            ..*self
-        }
+        Self { direction: unit.map(|c| ((c + 2) >> 2) as i16), ..*self }
     }
 
     /// Light on a surface of a colour: what is the same for all its normals, worked out once.
     pub fn on(&self, color: [u8; 3]) -> Lit {
         let times = |level: [u16; 3]| {
             let [r, g, b] = color.map(i32::from);
-            [
-                r * i32::from(level[0]),
-                g * i32::from(level[1]),
-                b * i32::from(level[2]),
-            ]
+            [r * i32::from(level[0]), g * i32::from(level[1]), b * i32::from(level[2])]
         };
-        Lit {
-            direction: self.direction.map(i32::from),
-            ambient: times(self.ambient),
-            diffuse: times(self.diffuse),
-        }
+        Lit { direction: self.direction.map(i32::from), ambient: times(self.ambient), diffuse: times(self.diffuse) }
     }
 }
 

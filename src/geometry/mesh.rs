@@ -139,10 +139,7 @@ impl fmt::Display for MeshError {
             Self::TooManyTriangles(n) => write!(f, "{n} triangles, at most 65535 are possible"),
             Self::Incomplete(n) => write!(f, "{n} indices leave the last primitive incomplete"),
             Self::Index { at, index, vertices } => {
-                write!(
-                    f,
-                    "index {index} at position {at} is out of range: there are {vertices} vertices"
-                )
+                write!(f, "index {index} at position {at} is out of range: there are {vertices} vertices")
             }
             Self::Normals(n) => write!(f, "{n} normals do not match the number of vertices"),
             Self::FaceNormals(n) => write!(f, "{n} face normals do not match the number of triangles"),
@@ -191,11 +188,7 @@ impl<'a> Mesh<'a> {
                 let mut at = 0;
                 while at < indices.len() {
                     if indices[at] as usize >= vertices {
-                        return Err(MeshError::Index {
-                            at,
-                            index: indices[at],
-                            vertices,
-                        });
+                        return Err(MeshError::Index { at, index: indices[at], vertices });
                     }
                     at += 1;
                 }
@@ -233,11 +226,7 @@ impl<'a> Mesh<'a> {
             Some(bounds) => bounds,
             None => find_bounds(&data.positions),
         };
-        Ok(Self {
-            data,
-            bounds,
-            triangles: triangles as u16,
-        })
+        Ok(Self { data, bounds, triangles: triangles as u16 })
     }
 
     /// [`new`](Self::new) for `const` and `static` meshes: one that is wrong does not compile.
@@ -352,9 +341,7 @@ const fn find_bounds(positions: &Positions<'_>) -> Bounds {
     let mut extent = Extent::empty();
     let mut k = 0;
     while k < vertices {
-        extent = extent
-            .with(raw_position(positions, k, false))
-            .with(raw_position(positions, k, true));
+        extent = extent.with(raw_position(positions, k, false)).with(raw_position(positions, k, true));
         k += 1;
     }
     let aabb = extent.aabb();
@@ -372,11 +359,5 @@ const fn find_bounds(positions: &Positions<'_>) -> Bounds {
     }
     let tight = sphere(aabb.center, farthest);
     let radius = tight.radius.to_bits().saturating_add(if vertices > 0 { 2 } else { 0 });
-    Bounds {
-        aabb,
-        sphere: super::BoundingSphere {
-            center: aabb.center,
-            radius: Scalar::from_bits(radius),
-        },
-    }
+    Bounds { aabb, sphere: super::BoundingSphere { center: aabb.center, radius: Scalar::from_bits(radius) } }
 }

@@ -61,22 +61,14 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     let inv_w = reciprocal(w);
     // w' = w 2^shift / 2³². x' keeps 7 bits of headroom for the guard band: x 2^shift / 2³⁹, below 2³¹.
     let position = |c: i64| {
-        let c = if shift >= 39 {
-            c << (shift - 39)
-        } else {
-            c >> (39 - shift)
-        };
+        let c = if shift >= 39 { c << (shift - 39) } else { c >> (39 - shift) };
         // Rounded in two shifts, as far outside of the guard band the sum would not fit.
         ((mul_high_signed(c.clamp(-0x7FFF_FFFF, 0x7FFF_FFFF) as i32, inv_w) >> 6) + 1) >> 1
     };
     let z = v.z.clamp(0, v.w);
     let z = (((z << (shift - 1)) as u64) >> 31) as u32;
     let z = depth(z, inv_w);
-    Some(ScreenVertex {
-        x: position(v.x).clamp(-LIMIT, LIMIT),
-        y: position(v.y).clamp(-LIMIT, LIMIT),
-        z,
-    })
+    Some(ScreenVertex { x: position(v.x).clamp(-LIMIT, LIMIT), y: position(v.y).clamp(-LIMIT, LIMIT), z })
 }
 
 /// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.
@@ -86,11 +78,7 @@ pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
     let zeros = 2 + u32::from(w < 1 << 29) + u32::from(w < 1 << 28) + u32::from(w < 1 << 27);
     let inv_w = reciprocal((w as u32) << zeros);
     let position = |c: i32| (mul_high_signed(c >> (7 - zeros), inv_w) + 64) >> 7;
-    ScreenVertex {
-        x: position(x),
-        y: position(y),
-        z: depth((z as u32) << zeros, inv_w),
-    }
+    ScreenVertex { x: position(x), y: position(y), z: depth((z as u32) << zeros, inv_w) }
 }
 
 /// 65,535 z / w rounded to nearest, from z and 2⁶³ / w in the scale that puts w into 2³¹..2³².
@@ -112,21 +100,14 @@ mod tests {
     fn short_projection_is_the_same() {
         let mut state = 3_u64;
         let mut next = |bound: i32| {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             ((u128::from(state >> 16) * bound as u128) >> 48) as i32
         };
         for _ in 0..100_000 {
             let w = (1 << 26) + next((1 << 30) - (1 << 26));
             let w = if next(10) == 0 { 1 << (26 + next(4)) } else { w };
             let (x, y, z) = (next(i32::MAX) - (1 << 30), next(i32::MAX) - (1 << 30), next(w));
-            let long = ClipVertex {
-                x: x.into(),
-                y: y.into(),
-                z: z.into(),
-                w: w.into(),
-            };
+            let long = ClipVertex { x: x.into(), y: y.into(), z: z.into(), w: w.into() };
             assert_eq!(Some(project_short([x, y, z, w])), project(&long), "{x} {y} {z} {w}");
         }
     }
@@ -136,12 +117,7 @@ mod tests {
     fn positions_far_outside_of_the_guard_band_stop_at_the_limit() {
         for w in [1, 3, 1 << 20, (1 << 49) - 1] {
             for far in [64 * w, 65 * w, 128 * w - 1, 128 * w] {
-                let placed = project(&ClipVertex {
-                    x: far,
-                    y: -far,
-                    z: w,
-                    w,
-                });
+                let placed = project(&ClipVertex { x: far, y: -far, z: w, w });
                 assert_eq!(placed, Some(ScreenVertex::new(LIMIT, -LIMIT, 65_535)), "w {w}, x {far}");
             }
         }

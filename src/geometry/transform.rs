@@ -92,10 +92,7 @@ impl Transform {
         let shift = excess(r.iter().flatten(), 44).max(0);
         // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
         let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
-        let (cx2, cy2) = (
-            2 * i64::from(viewport.x()) + width,
-            2 * i64::from(viewport.y()) + height,
-        );
+        let (cx2, cy2) = (2 * i64::from(viewport.x()) + width, 2 * i64::from(viewport.y()) + height);
         for j in 0..4 {
             let [x, y, z, w] = [0, 1, 2, 3].map(|i: usize| scale(r[i][j], shift));
             r[0][j] = width * x + cx2 * w;
@@ -134,18 +131,10 @@ impl Transform {
         // 4. One shift for all, so that the largest reachable value is just below 2⁵⁵; a quarter of it is summed up here.
         let mut reach = [0_i64; 4];
         for (reach, (e, t)) in reach.iter_mut().zip(e.iter().zip(t)) {
-            *reach = e
-                .iter()
-                .chain([&t])
-                .fold(0, |sum, v| sum + (v.unsigned_abs() >> 2) as i64 + 1);
+            *reach = e.iter().chain([&t]).fold(0, |sum, v| sum + (v.unsigned_abs() >> 2) as i64 + 1);
         }
         let shift = excess(reach.iter(), 53);
-        let mut result = Self {
-            whole: [[0; 4]; 4],
-            fraction: [[0; 4]; 4],
-            translation: [0; 4],
-            short: None,
-        };
+        let mut result = Self { whole: [[0; 4]; 4], fraction: [[0; 4]; 4], translation: [0; 4], short: None };
         for i in 0..4 {
             for j in 0..4 {
                 // 16 fractional bits: e / 2³¹ · 2¹⁶.
@@ -229,12 +218,7 @@ impl Transform {
             }
             whole + (fraction >> 16)
         };
-        ClipVertex {
-            x: row(0),
-            y: row(1),
-            z: row(2),
-            w: row(3),
-        }
+        ClipVertex { x: row(0), y: row(1), z: row(2), w: row(3) }
     }
 }
 
@@ -250,12 +234,7 @@ impl Short {
         if least_w < 1 << 51 {
             return None;
         }
-        let mut short = Self {
-            high: [[0; 3]; 4],
-            low: [[0; 3]; 4],
-            translation_high: [0; 4],
-            translation_low: [0; 4],
-        };
+        let mut short = Self { high: [[0; 3]; 4], low: [[0; 3]; 4], translation_high: [0; 4], translation_low: [0; 4] };
         for i in 0..4 {
             for j in 0..3 {
                 // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.

@@ -45,34 +45,19 @@ impl<'a> Corner<'a> {
     /// Normal in object space, 2.14.
     #[inline]
     pub fn normal(&self) -> [i16; 3] {
-        self.mesh
-            .data()
-            .normals
-            .and_then(|n| n.get(self.index))
-            .copied()
-            .unwrap_or_default()
+        self.mesh.data().normals.and_then(|n| n.get(self.index)).copied().unwrap_or_default()
     }
 
     /// Colour: red, green, blue.
     #[inline]
     pub fn color(&self) -> [u8; 3] {
-        self.mesh
-            .data()
-            .colors
-            .and_then(|c| c.get(self.index))
-            .copied()
-            .unwrap_or([255; 3])
+        self.mesh.data().colors.and_then(|c| c.get(self.index)).copied().unwrap_or([255; 3])
     }
 
     /// Texture coordinates.
     #[inline]
     pub fn uv(&self) -> [crate::math::Scalar; 2] {
-        self.mesh
-            .data()
-            .uvs
-            .and_then(|c| c.get(self.index))
-            .copied()
-            .unwrap_or_default()
+        self.mesh.data().uvs.and_then(|c| c.get(self.index)).copied().unwrap_or_default()
     }
 }
 
@@ -86,11 +71,7 @@ pub struct Face<'a> {
 
 impl<'a> Face<'a> {
     pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3]) -> Self {
-        Self {
-            mesh,
-            triangle,
-            corners,
-        }
+        Self { mesh, triangle, corners }
     }
 
     /// Number of the triangle in its mesh.

@@ -32,11 +32,7 @@ impl fmt::Display for ViewportError {
             Self::TooLarge(w, h) => {
                 write!(f, "viewport of {w}x{h} px is larger than {0}x{0}", Viewport::MAX_SIZE)
             }
-            Self::TooFar(x, y) => write!(
-                f,
-                "viewport at ({x}, {y}) is more than {} px away",
-                Viewport::MAX_OFFSET
-            ),
+            Self::TooFar(x, y) => write!(f, "viewport at ({x}, {y}) is more than {} px away", Viewport::MAX_OFFSET),
         }
     }
 }

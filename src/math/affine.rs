@@ -23,21 +23,13 @@ const ONE: i32 = 1 << 16;
 
 impl Affine {
     /// Leaves everything where it is.
-    pub const IDENTITY: Self = Self {
-        rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0]],
-    };
+    pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0]] };
 
     /// From the three rows of the matrix and the translation.
     pub const fn from_rows(x: Vec3, y: Vec3, z: Vec3, translation: Vec3) -> Self {
         let t = translation.to_bits();
         let (x, y, z) = (x.to_bits(), y.to_bits(), z.to_bits());
-        Self {
-            rows: [
-                [x[0], x[1], x[2], t[0]],
-                [y[0], y[1], y[2], t[1]],
-                [z[0], z[1], z[2], t[2]],
-            ],
-        }
+        Self { rows: [[x[0], x[1], x[2], t[0]], [y[0], y[1], y[2], t[1]], [z[0], z[1], z[2], t[2]]] }
     }
 
     /// Moves by `offset`.
@@ -53,33 +45,25 @@ impl Affine {
     /// Scales about the origin by a factor an axis.
     pub const fn scale_axes(factors: Vec3) -> Self {
         let f = factors.to_bits();
-        Self {
-            rows: [[f[0], 0, 0, 0], [0, f[1], 0, 0], [0, 0, f[2], 0]],
-        }
+        Self { rows: [[f[0], 0, 0, 0], [0, f[1], 0, 0], [0, 0, f[2], 0]] }
     }
 
     /// Rotates about the x axis, y towards z.
     pub const fn rotation_x(angle: Angle) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
-        Self {
-            rows: [[ONE, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0]],
-        }
+        Self { rows: [[ONE, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0]] }
     }
 
     /// Rotates about the y axis, z towards x.
     pub const fn rotation_y(angle: Angle) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
-        Self {
-            rows: [[c, 0, s, 0], [0, ONE, 0, 0], [-s, 0, c, 0]],
-        }
+        Self { rows: [[c, 0, s, 0], [0, ONE, 0, 0], [-s, 0, c, 0]] }
     }
 
     /// Rotates about the z axis, x towards y.
     pub const fn rotation_z(angle: Angle) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
-        Self {
-            rows: [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, ONE, 0]],
-        }
+        Self { rows: [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, ONE, 0]] }
     }
 
     /// Rotates counter-clockwise about `axis` as seen from its tip; the identity when the axis is zero.
@@ -134,11 +118,7 @@ impl Affine {
         let y = z.cross(x);
         let rotation = Self::from_rows(x, y, z, Vec3::ZERO);
         let moved = rotation.transform_vector(eye).to_bits();
-        let t = Vec3::new(
-            saturate(-(moved[0] as i64)),
-            saturate(-(moved[1] as i64)),
-            saturate(-(moved[2] as i64)),
-        );
+        let t = Vec3::new(saturate(-(moved[0] as i64)), saturate(-(moved[1] as i64)), saturate(-(moved[2] as i64)));
         Ok(Self::from_rows(x, y, z, t))
     }
 
@@ -165,11 +145,7 @@ impl Affine {
         let r = &self.rows;
         let t = Vec3::from_bits([r[0][3], r[1][3], r[2][3]]);
         let transposed = Self {
-            rows: [
-                [r[0][0], r[1][0], r[2][0], 0],
-                [r[0][1], r[1][1], r[2][1], 0],
-                [r[0][2], r[1][2], r[2][2], 0],
-            ],
+            rows: [[r[0][0], r[1][0], r[2][0], 0], [r[0][1], r[1][1], r[2][1], 0], [r[0][2], r[1][2], r[2][2], 0]],
         };
         let back = transposed.transform_vector(t).to_bits();
         let mut rows = transposed.rows;

@@ -72,11 +72,7 @@ impl Parts {
             Some(0)
         } else if shift >= 0 {
             // 24 bits of mantissa.
-            if shift > 63 - 24 {
-                None
-            } else {
-                Some(self.mantissa << shift)
-            }
+            if shift > 63 - 24 { None } else { Some(self.mantissa << shift) }
         } else {
             let down = (-shift).min(40);
             Some((self.mantissa + (1 << (down - 1))) >> down)
@@ -87,16 +83,12 @@ impl Parts {
 /// One component as raw 16.16, to nearest.
 fn scalar(index: usize, value: f32) -> Result<i32, FloatError> {
     let fixed = Parts::of(index, value)?.fixed(16);
-    fixed
-        .and_then(|bits| i32::try_from(bits).ok())
-        .ok_or(FloatError::OutOfRange { index, value })
+    fixed.and_then(|bits| i32::try_from(bits).ok()).ok_or(FloatError::OutOfRange { index, value })
 }
 
 /// One component as raw 32.32, to nearest.
 fn wide(index: usize, value: f32) -> Result<i64, FloatError> {
-    Parts::of(index, value)?
-        .fixed(32)
-        .ok_or(FloatError::OutOfRange { index, value })
+    Parts::of(index, value)?.fixed(32).ok_or(FloatError::OutOfRange { index, value })
 }
 
 /// A vector, each component rounded to the nearest 2⁻¹⁶.
@@ -230,13 +222,7 @@ mod tests {
     fn ends_of_the_ranges() {
         assert_eq!(scalar(0, -32_768.0), Ok(i32::MIN));
         assert_eq!(scalar(0, 32_767.998), Ok(0x7FFF_FF80));
-        assert_eq!(
-            scalar(7, 32_768.0),
-            Err(FloatError::OutOfRange {
-                index: 7,
-                value: 32_768.0
-            })
-        );
+        assert_eq!(scalar(7, 32_768.0), Err(FloatError::OutOfRange { index: 7, value: 32_768.0 }));
         assert!(scalar(0, -32_768.004).is_err());
         assert_eq!(wide(0, 2_147_483_520.0), Ok(0x7FFF_FF80 << 32));
         assert!(wide(0, 2_147_483_648.0).is_err());
@@ -256,17 +242,11 @@ mod tests {
             assert_eq!(Affine::try_from(rows), Err(FloatError::NotFinite { index: 7, value }));
             let mut rows = [[0.0; 4]; 4];
             rows[3][2] = value;
-            assert_eq!(
-                Projective::try_from(rows),
-                Err(FloatError::NotFinite { index: 14, value })
-            );
+            assert_eq!(Projective::try_from(rows), Err(FloatError::NotFinite { index: 14, value }));
             let q = Quaternion::new(1.0, 0.0, 0.0, value);
             assert_eq!(Affine::try_from(q), Err(FloatError::NotFinite { index: 3, value }));
         }
-        assert_eq!(
-            Affine::try_from(Quaternion::new(0.0, -0.0, 0.0, 0.0)),
-            Err(FloatError::ZeroQuaternion)
-        );
+        assert_eq!(Affine::try_from(Quaternion::new(0.0, -0.0, 0.0, 0.0)), Err(FloatError::ZeroQuaternion));
     }
 
     #[test]
@@ -278,10 +258,7 @@ mod tests {
         let value = 1e10;
         let mut rows = [[0.0; 4]; 4];
         rows[2][3] = value;
-        assert_eq!(
-            Projective::try_from(rows),
-            Err(FloatError::OutOfRange { index: 11, value })
-        );
+        assert_eq!(Projective::try_from(rows), Err(FloatError::OutOfRange { index: 11, value }));
     }
 
     #[test]
@@ -299,19 +276,13 @@ mod tests {
         assert_eq!(affine.to_rows(), rows.map(|row| row.map(|v| (v * 65_536.0) as i32)));
         let rows = [rows[0], rows[1], rows[2], [0.0, 0.0, -1.0, 0.0]];
         let projective = Projective::try_from(rows).unwrap();
-        assert_eq!(
-            projective.to_rows(),
-            rows.map(|row| row.map(|v| (f64::from(v) * 2f64.powi(32)) as i64))
-        );
+        assert_eq!(projective.to_rows(), rows.map(|row| row.map(|v| (f64::from(v) * 2f64.powi(32)) as i64)));
     }
 
     #[test]
     fn a_quarter_turn_is_exact() {
         let q = Quaternion::new(1.0, 0.0, 1.0, 0.0);
-        assert_eq!(
-            Affine::try_from(q),
-            Ok(Affine::rotation_y(crate::math::Angle::from_degrees(90)))
-        );
+        assert_eq!(Affine::try_from(q), Ok(Affine::rotation_y(crate::math::Angle::from_degrees(90))));
     }
 
     #[test]

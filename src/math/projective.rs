@@ -52,12 +52,7 @@ impl fmt::Display for ProjectionError {
         match *self {
             Self::NearNotPositive(n) => write!(f, "near plane at {}, must be positive", scalar(n)),
             Self::NearNotBeforeFar(n, m) => {
-                write!(
-                    f,
-                    "near plane at {} is not before the far plane at {}",
-                    scalar(n),
-                    scalar(m)
-                )
+                write!(f, "near plane at {} is not before the far plane at {}", scalar(n), scalar(m))
             }
             Self::FieldOfView(a) => write!(f, "field of view of {}/65536 turns is not within 0..32768", a.0),
             Self::Aspect(w, h) => write!(f, "aspect ratio {w}:{h} has an empty side"),
@@ -92,9 +87,7 @@ const fn ratio(num: i128, den: i128) -> i64 {
 
 impl Projective {
     /// Leaves everything where it is.
-    pub const IDENTITY: Self = Self {
-        rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0], [0, 0, 0, ONE]],
-    };
+    pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0], [0, 0, 0, ONE]] };
 
     /// From rows of raw 32.32 bits.
     pub const fn from_rows(rows: [[i64; 4]; 4]) -> Self {
@@ -144,9 +137,7 @@ impl Projective {
         // z = far (-ze - near) / (far - near), w = -ze: 0 on the near plane, w on the far one.
         let a = ratio(f, n - f);
         let b = ratio(f * n, (n - f) << 16);
-        Ok(Self {
-            rows: [[x, 0, 0, 0], [0, y, 0, 0], [0, 0, a, b], [0, 0, -ONE, 0]],
-        })
+        Ok(Self { rows: [[x, 0, 0, 0], [0, y, 0, 0], [0, 0, a, b], [0, 0, -ONE, 0]] })
     }
 
     /// An orthographic camera that looks along -z: the box `left..right`, `bottom..top`, `-far..-near` fills clip space.

@@ -7,21 +7,13 @@ const NARROW: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")
 /// High word of a 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high(a: u32, b: u32) -> u32 {
-    if NARROW {
-        mul_high_by_halves(a, b)
-    } else {
-        ((a as u64 * b as u64) >> 32) as u32
-    }
+    if NARROW { mul_high_by_halves(a, b) } else { ((a as u64 * b as u64) >> 32) as u32 }
 }
 
 /// High word of a signed by unsigned 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
-    if NARROW {
-        mul_high_signed_by_halves(a, b)
-    } else {
-        ((a as i64 * b as i64) >> 32) as i32
-    }
+    if NARROW { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
 }
 
 /// [`mul_high`] from four products of 16 bits.
@@ -108,12 +100,7 @@ mod tests {
         let strided = (0..(1_u32 << 31) / 4093).map(|i| (1 << 31) + i * 4093);
         let ends = (0..256_u32).flat_map(|i| {
             let start = (1_u32 << 31) + (i << 23);
-            (0..256).flat_map(move |k| {
-                [
-                    start.wrapping_add(k * 32_768),
-                    start.wrapping_add((1 << 23) - 1 - k * 32_768),
-                ]
-            })
+            (0..256).flat_map(move |k| [start.wrapping_add(k * 32_768), start.wrapping_add((1 << 23) - 1 - k * 32_768)])
         });
         let found = worst(strided.chain(ends).filter(|x| *x >= 1 << 31));
         assert!(found < 2f64.powi(-29), "worst relative error 2^{}", found.log2());
@@ -121,18 +108,7 @@ mod tests {
 
     #[test]
     fn products_by_halves_are_the_same() {
-        let corners = [
-            0,
-            1,
-            0x7FFF,
-            0x8000,
-            0xFFFF,
-            0x1_0000,
-            0x7FFF_FFFF,
-            0x8000_0000,
-            0x8000_FFFF,
-            u32::MAX,
-        ];
+        let corners = [0, 1, 0x7FFF, 0x8000, 0xFFFF, 0x1_0000, 0x7FFF_FFFF, 0x8000_0000, 0x8000_FFFF, u32::MAX];
         let mut state = 1_u32;
         let random = core::iter::repeat_with(|| {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
@@ -140,17 +116,9 @@ mod tests {
         });
         for a in corners.into_iter().chain(random.take(1000)) {
             for b in corners.into_iter().chain([a.rotate_left(7), !a]) {
-                assert_eq!(
-                    u64::from(mul_high_by_halves(a, b)),
-                    (u64::from(a) * u64::from(b)) >> 32,
-                    "{a} {b}"
-                );
+                assert_eq!(u64::from(mul_high_by_halves(a, b)), (u64::from(a) * u64::from(b)) >> 32, "{a} {b}");
                 let signed = i64::from(a as i32) * i64::from(b);
-                assert_eq!(
-                    i64::from(mul_high_signed_by_halves(a as i32, b)),
-                    signed >> 32,
-                    "{a} {b}"
-                );
+                assert_eq!(i64::from(mul_high_signed_by_halves(a as i32, b)), signed >> 32, "{a} {b}");
             }
         }
     }

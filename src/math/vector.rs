@@ -56,11 +56,7 @@ impl Vec3 {
 
     /// From raw 16.16 bits.
     pub const fn from_bits(bits: [i32; 3]) -> Self {
-        Self::new(
-            Scalar::from_bits(bits[0]),
-            Scalar::from_bits(bits[1]),
-            Scalar::from_bits(bits[2]),
-        )
+        Self::new(Scalar::from_bits(bits[0]), Scalar::from_bits(bits[1]), Scalar::from_bits(bits[2]))
     }
 
     /// Raw 16.16 bits.
@@ -81,21 +77,13 @@ impl Vec3 {
     /// Cross product, right-handed, rounded down to 2⁻¹⁶.
     pub const fn cross(self, other: Self) -> Self {
         let (a, b) = (self.to_bits(), other.to_bits());
-        Self::new(
-            minor(a[1], b[2], a[2], b[1]),
-            minor(a[2], b[0], a[0], b[2]),
-            minor(a[0], b[1], a[1], b[0]),
-        )
+        Self::new(minor(a[1], b[2], a[2], b[1]), minor(a[2], b[0], a[0], b[2]), minor(a[0], b[1], a[1], b[0]))
     }
 
     /// Length, rounded down to 2⁻¹⁶; saturates.
     pub const fn length(self) -> Scalar {
         let root = self.length_bits();
-        if root > i32::MAX as u64 {
-            Scalar::MAX
-        } else {
-            Scalar::from_bits(root as i32)
-        }
+        if root > i32::MAX as u64 { Scalar::MAX } else { Scalar::from_bits(root as i32) }
     }
 
     /// The vector of length 1 in the same direction, each component within 2⁻¹⁵; `None` for the zero vector.
@@ -107,11 +95,7 @@ impl Vec3 {
             return None;
         }
         let shift = widest.leading_zeros();
-        let a = [
-            (bits[0] as i64) << shift,
-            (bits[1] as i64) << shift,
-            (bits[2] as i64) << shift,
-        ];
+        let a = [(bits[0] as i64) << shift, (bits[1] as i64) << shift, (bits[2] as i64) << shift];
         // |a| <= 2³², so the squares are taken of a / 4.
         let b = [a[0] >> 2, a[1] >> 2, a[2] >> 2];
         let length = ((b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) as u64).isqrt() as i64;
@@ -140,43 +124,27 @@ const fn minor(a: i32, b: i32, c: i32, d: i32) -> Scalar {
 impl Add for Vec3 {
     type Output = Self;
     fn add(self, other: Self) -> Self {
-        Self::new(
-            self.x.saturating_add(other.x),
-            self.y.saturating_add(other.y),
-            self.z.saturating_add(other.z),
-        )
+        Self::new(self.x.saturating_add(other.x), self.y.saturating_add(other.y), self.z.saturating_add(other.z))
     }
 }
 
 impl Sub for Vec3 {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
-        Self::new(
-            self.x.saturating_sub(other.x),
-            self.y.saturating_sub(other.y),
-            self.z.saturating_sub(other.z),
-        )
+        Self::new(self.x.saturating_sub(other.x), self.y.saturating_sub(other.y), self.z.saturating_sub(other.z))
     }
 }
 
 impl Neg for Vec3 {
     type Output = Self;
     fn neg(self) -> Self {
-        Self::new(
-            self.x.saturating_neg(),
-            self.y.saturating_neg(),
-            self.z.saturating_neg(),
-        )
+        Self::new(self.x.saturating_neg(), self.y.saturating_neg(), self.z.saturating_neg())
     }
 }
 
 impl Mul<Scalar> for Vec3 {
     type Output = Self;
     fn mul(self, factor: Scalar) -> Self {
-        Self::new(
-            self.x.saturating_mul(factor),
-            self.y.saturating_mul(factor),
-            self.z.saturating_mul(factor),
-        )
+        Self::new(self.x.saturating_mul(factor), self.y.saturating_mul(factor), self.z.saturating_mul(factor))
     }
 }

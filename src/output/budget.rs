@@ -27,12 +27,7 @@ impl RamBudget {
     /// A strip of `rows` rows of a screen `width` px wide, without records.
     pub const fn new<P: PixelFormat>(width: u16, rows: u16) -> Self {
         let pixels = width as usize * rows as usize;
-        Self {
-            color: pixels * size_of::<P::Raw>(),
-            depth: pixels * 2,
-            records: 0,
-            rows,
-        }
+        Self { color: pixels * size_of::<P::Raw>(), depth: pixels * 2, records: 0, rows }
     }
 
     /// With room for the records of a scene; see [`records_len`](super::records_len).
@@ -45,10 +40,7 @@ impl RamBudget {
         triangles: usize,
     ) -> Self {
         let strips = (height as usize).div_ceil(if self.rows == 0 { 1 } else { self.rows as usize });
-        Self {
-            records: 4 * records_len(strips, draws, vertices, varying_words, triangles),
-            ..self
-        }
+        Self { records: 4 * records_len(strips, draws, vertices, varying_words, triangles), ..self }
     }
 
     /// All of them.

@@ -89,12 +89,7 @@ impl<'b> Engine<'b> {
             return Err(RendererError::DepthTooShort(depth.len(), screen.0));
         };
         let strip_rows = rows.min(depth_rows).min(usize::from(screen.1)) as u16;
-        Ok(Self {
-            viewport,
-            strip_rows,
-            depth,
-            records,
-        })
+        Ok(Self { viewport, strip_rows, depth, records })
     }
 
     fn screen(&self) -> (u16, u16) {
@@ -118,14 +113,7 @@ struct Progress {
 
 impl Progress {
     fn new() -> Self {
-        Self {
-            row: 0,
-            band: (0, 0),
-            strips: u16::MAX,
-            layout: Layout::default(),
-            draws: 0,
-            stats: Stats::default(),
-        }
+        Self { row: 0, band: (0, 0), strips: u16::MAX, layout: Layout::default(), draws: 0, stats: Stats::default() }
     }
 }
 
@@ -147,11 +135,7 @@ impl Engine<'_> {
             records: Records::resume(self.records, progress.layout),
             strip_rows: self.strip_rows,
             band: i32::from(band.0)..i32::from(band.1),
-            target: framebuffer.map(|framebuffer| Target {
-                framebuffer,
-                depth: self.depth,
-                rows,
-            }),
+            target: framebuffer.map(|framebuffer| Target { framebuffer, depth: self.depth, rows }),
             stats: progress.stats,
             draws: 0,
             changed: None,
@@ -284,10 +268,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         if rows == 0 {
             return Err(RendererError::ColorTooShort(color.len(), screen.0));
         }
-        Ok(Self {
-            engine: Engine::new(screen, rows, depth, records)?,
-            color,
-        })
+        Ok(Self { engine: Engine::new(screen, rows, depth, records)?, color })
     }
 
     /// Rows of a strip; the last one may have fewer.
@@ -332,11 +313,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
 
     /// Starts a frame whose strips the caller pulls.
     pub fn begin(&mut self, background: P::Color) -> Frame<'_, 'b, P> {
-        Frame {
-            renderer: self,
-            background: P::from_color(background),
-            progress: Progress::new(),
-        }
+        Frame { renderer: self, background: P::from_color(background), progress: Progress::new() }
     }
 }
 
@@ -387,13 +364,7 @@ impl<P: PixelFormat> Frame<'_, '_, P> {
         color: &'c mut [P::Raw],
         mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
     ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
-        strip_into(
-            &mut self.renderer.engine,
-            &mut self.progress,
-            color,
-            self.background,
-            &mut draw,
-        )
+        strip_into(&mut self.renderer.engine, &mut self.progress, color, self.background, &mut draw)
     }
 
     /// What was done so far.
@@ -419,14 +390,9 @@ fn strip_into<'c, P: PixelFormat>(
     let color = color.get_mut(..length).unwrap_or_default();
     fill(color, background);
     let mut strip = Strip::<P>::new(&mut *color, width, u32::from(progress.row));
-    let drawn = engine
-        .next_strip(progress, &mut strip, draw)
-        .map_err(FrameError::SceneChanged)?;
+    let drawn = engine.next_strip(progress, &mut strip, draw).map_err(FrameError::SceneChanged)?;
     Ok(drawn.map(|(row, rows)| {
-        let area = Rectangle::new(
-            Point::new(0, i32::from(row)),
-            Size::new(u32::from(width), u32::from(rows)),
-        );
+        let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
         StripPixels::new(area, color)
     }))
 }
@@ -443,9 +409,7 @@ impl<'b> FramebufferRenderer<'b> {
     /// # Errors
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or `depth` does not hold one row.
     pub fn new(screen: (u16, u16), depth: &'b mut [u16], records: &'b mut [u32]) -> Result<Self, RendererError> {
-        Ok(Self {
-            engine: Engine::new(screen, usize::MAX, depth, records)?,
-        })
+        Ok(Self { engine: Engine::new(screen, usize::MAX, depth, records)? })
     }
 
     /// Draws a frame over `background`, or over what is there.
@@ -467,12 +431,9 @@ impl<'b> FramebufferRenderer<'b> {
             }
         }
         let mut progress = Progress::new();
-        while self
-            .engine
-            .next_strip(&mut progress, framebuffer, &mut draw)
-            .map_err(FrameError::SceneChanged)?
-            .is_some()
-        {}
+        while self.engine.next_strip(&mut progress, framebuffer, &mut draw).map_err(FrameError::SceneChanged)?.is_some()
+        {
+        }
         Ok(progress.stats)
     }
 }

@@ -26,11 +26,7 @@ pub struct Strip<'a, P: PixelFormat> {
 impl<'a, P: PixelFormat> Strip<'a, P> {
     /// Rows of `width` px from `first_row` on, one after the other in `pixels`.
     pub const fn new(pixels: &'a mut [P::Raw], width: u16, first_row: u32) -> Self {
-        Self {
-            pixels,
-            width: width as usize,
-            first_row,
-        }
+        Self { pixels, width: width as usize, first_row }
     }
 }
 
@@ -97,22 +93,12 @@ impl<'a, P: PixelFormat> FrameSlice<'a, P> {
         if stride < width as usize {
             return Err(FramebufferError::Stride(stride, width));
         }
-        let needs = if height == 0 {
-            0
-        } else {
-            (height as usize - 1)
-                .saturating_mul(stride)
-                .saturating_add(width as usize)
-        };
+        let needs =
+            if height == 0 { 0 } else { (height as usize - 1).saturating_mul(stride).saturating_add(width as usize) };
         if pixels.len() < needs {
             return Err(FramebufferError::TooShort(pixels.len(), needs));
         }
-        Ok(Self {
-            pixels,
-            width: width as usize,
-            height: height as u32,
-            stride,
-        })
+        Ok(Self { pixels, width: width as usize, height: height as u32, stride })
     }
 }
 

@@ -50,9 +50,7 @@ impl Slot {
     #[inline]
     pub(crate) const fn new(placed: &Placed) -> Self {
         match placed {
-            Placed::Screen(v) => {
-                Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32])
-            }
+            Placed::Screen(v) => Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32]),
             Placed::Outside(code) => Self([OFF_SCREEN | code.0 as u32, 0]),
         }
     }
@@ -147,11 +145,7 @@ impl<'a> Records<'a> {
 
     /// Empties the records and starts lists for as many strips.
     pub(crate) fn begin_band(&mut self, strips: usize) {
-        self.layout = Layout {
-            front: strips,
-            lists: strips,
-            ..Layout::default()
-        };
+        self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
         match self.words.get_mut(..strips) {
             Some(lists) => lists.fill(u32::from(NONE) << 16 | u32::from(NONE)),
             None => self.layout.overflow = true,
@@ -165,9 +159,7 @@ impl<'a> Records<'a> {
 
     /// Words that are still free.
     fn free(&self) -> usize {
-        self.words
-            .len()
-            .saturating_sub(self.layout.front + TRIANGLE * usize::from(self.layout.triangles))
+        self.words.len().saturating_sub(self.layout.front + TRIANGLE * usize::from(self.layout.triangles))
     }
 
     /// Room for the vertices of a draw, all unshaded; whether there is enough.
@@ -231,9 +223,7 @@ impl<'a> Records<'a> {
     #[inline]
     fn vertex_mut(&mut self, index: usize) -> &mut [u32] {
         let start = self.layout.vertices + index * self.layout.stride;
-        self.words
-            .get_mut(start..start + self.layout.stride)
-            .unwrap_or_default()
+        self.words.get_mut(start..start + self.layout.stride).unwrap_or_default()
     }
 
     /// Packs a vertex of the current draw.
@@ -326,11 +316,7 @@ impl<'a> Records<'a> {
         let at = self.triangle_at(number);
         let (a, b) = (self.get(at), self.get(at + 1));
         self.layout.next = (b >> 16) as u16;
-        Some(TriangleRecord {
-            corners: [a as u16, (a >> 16) as u16, b as u16],
-            face: self.get(at + 2),
-            number,
-        })
+        Some(TriangleRecord { corners: [a as u16, (a >> 16) as u16, b as u16], face: self.get(at + 2), number })
     }
 
     /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
@@ -343,11 +329,7 @@ impl<'a> Records<'a> {
         }
         let list = self.get(strip);
         let mut before = self.layout.moved;
-        let mut after = if before == NONE {
-            list as u16
-        } else {
-            self.linked(before)
-        };
+        let mut after = if before == NONE { list as u16 } else { self.linked(before) };
         while after < triangle.number {
             before = after;
             after = self.linked(after);

@@ -41,13 +41,7 @@ fn wide_divide(num: u64, den: NonZeroU32) -> (u32, u32) {
 
 impl Edge {
     /// An edge with nothing to walk.
-    pub const EMPTY: Self = Self {
-        pixel: 0,
-        error: 0,
-        quotient: 0,
-        remainder: 0,
-        denominator: 0,
-    };
+    pub const EMPTY: Self = Self { pixel: 0, error: 0, quotient: 0, remainder: 0, denominator: 0 };
 
     /// The edge from `a` down to `b`, at pixel row `row`; `EMPTY` unless `b` is below `a`.
     ///
@@ -92,13 +86,7 @@ impl Edge {
             error -= d;
             pixel -= 1;
         }
-        Self {
-            pixel,
-            error: error as u32,
-            quotient,
-            remainder: (r << 8) as u32,
-            denominator: d as u32,
-        }
+        Self { pixel, error: error as u32, quotient, remainder: (r << 8) as u32, denominator: d as u32 }
     }
 
     /// [`new`](Self::new) for any edge.
@@ -124,17 +112,8 @@ impl Edge {
         let whole = a.0 - 128 + p.wrapping_mul(quotient).wrapping_add(k as i32);
         let pixel = (whole + 255 + i32::from(fraction > 0)) >> 8;
         // In 0..D although the terms may wrap: the missing part of a pixel, 0..=256 of 1/256 px, less the fraction.
-        let error = dy
-            .get()
-            .wrapping_mul((256 * pixel - whole) as u32)
-            .wrapping_sub(fraction);
-        Self {
-            pixel,
-            error,
-            quotient,
-            remainder: r << 8,
-            denominator: dy.get() << 8,
-        }
+        let error = dy.get().wrapping_mul((256 * pixel - whole) as u32).wrapping_sub(fraction);
+        Self { pixel, error, quotient, remainder: r << 8, denominator: dy.get() << 8 }
     }
 
     /// The first pixel whose centre is on the edge or to the right of it.

@@ -67,22 +67,10 @@ impl Gradients {
             reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
             // `clamp` would panic on an empty screen.
-            origin = (
-                origin.0.min(i32::from(width) - 1).max(0),
-                origin.1.min(i32::from(height) - 1).max(0),
-            );
+            origin = (origin.0.min(i32::from(width) - 1).max(0), origin.1.min(i32::from(height) - 1).max(0));
         }
         let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
-        Self {
-            x,
-            y,
-            to,
-            area,
-            is_small,
-            reciprocal,
-            shift,
-            origin,
-        }
+        Self { x, y, to, area, is_small, reciprocal, shift, origin }
     }
 
     /// The pixel that [`PlaneEquation::base`] refers to.
@@ -114,11 +102,7 @@ impl Gradients {
             // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
             let limit = 1 << (29 - up.max(0));
             if dx.abs() < limit && dy.abs() < limit {
-                let (dx, dy) = if up >= 0 {
-                    (dx << up, dy << up)
-                } else {
-                    (dx >> -up, dy >> -up)
-                };
+                let (dx, dy) = if up >= 0 { (dx << up, dy << up) } else { (dx >> -up, dy >> -up) };
                 return self.near(base, dx, dy);
             }
         }
@@ -132,11 +116,7 @@ impl Gradients {
     #[inline]
     fn near(&self, base: u32, dx: i32, dy: i32) -> PlaneEquation {
         let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
-        PlaneEquation {
-            dx,
-            dy,
-            base: base.wrapping_add(offset as u32),
-        }
+        PlaneEquation { dx, dy, base: base.wrapping_add(offset as u32) }
     }
 
     /// [`plane`](Self::plane) for any triangle and any values, in 64 bits.
@@ -183,10 +163,7 @@ impl Gradients {
         PlaneEquation {
             dx: divided(Wide::product(a, 1), 8 + scale) as i32,
             dy: divided(Wide::product(b, 1), 8 + scale) as i32,
-            base: base.wrapping_add(divided(
-                Wide::product(a, self.to.0).plus(Wide::product(b, self.to.1)),
-                scale,
-            )),
+            base: base.wrapping_add(divided(Wide::product(a, self.to.0).plus(Wide::product(b, self.to.1)), scale)),
         }
     }
 }
@@ -214,27 +191,18 @@ impl Wide {
     /// |a| < 2⁶⁰, |b| < 2²⁶.
     fn product(a: i64, b: i32) -> Self {
         let low = i64::from(a as u32) * i64::from(b);
-        Self {
-            high: (a >> 32) * i64::from(b) + (low >> 32),
-            low: low as u32,
-        }
+        Self { high: (a >> 32) * i64::from(b) + (low >> 32), low: low as u32 }
     }
 
     fn plus(self, other: Self) -> Self {
         let (low, carry) = self.low.overflowing_add(other.low);
-        Self {
-            high: self.high + other.high + i64::from(carry),
-            low,
-        }
+        Self { high: self.high + other.high + i64::from(carry), low }
     }
 
     /// -n = !n + 1.
     fn negated(self) -> Self {
         let (low, carry) = (!self.low).overflowing_add(1);
-        Self {
-            high: !self.high + i64::from(carry),
-            low,
-        }
+        Self { high: !self.high + i64::from(carry), low }
     }
 }
 
@@ -282,36 +250,20 @@ mod tests {
     fn long_division_is_exact_modulo_2_to_32() {
         let mut state = 5_u64;
         let mut next = || {
-            state = state
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             state ^ state >> 29
         };
         for case in 0..20_000 {
-            let (a, b) = (
-                next() as i64 >> (4 + next() % 58),
-                (next() as i64 >> (38 + next() % 24)) as i32,
-            );
-            let (c, d) = (
-                next() as i64 >> (4 + next() % 58),
-                (next() as i64 >> (38 + next() % 24)) as i32,
-            );
+            let (a, b) = (next() as i64 >> (4 + next() % 58), (next() as i64 >> (38 + next() % 24)) as i32);
+            let (c, d) = (next() as i64 >> (4 + next() % 58), (next() as i64 >> (38 + next() % 24)) as i32);
             let den = (next() >> (13 + next() % 50)).max(1);
             let bits = (next() % 25) as u32;
             let exact = i128::from(a) * i128::from(b) + i128::from(c) * i128::from(d);
             let n = Wide::product(a, b).plus(Wide::product(c, d));
             let expected = (exact << bits).div_euclid(i128::from(den)) as u32;
-            assert_eq!(
-                divide_modulo(n, den, bits),
-                expected,
-                "case {case}: {exact} << {bits} / {den}"
-            );
+            assert_eq!(divide_modulo(n, den, bits), expected, "case {case}: {exact} << {bits} / {den}");
             let expected = (-exact << bits).div_euclid(i128::from(den)) as u32;
-            assert_eq!(
-                divide_modulo(n.negated(), den, bits),
-                expected,
-                "case {case}: -{exact} << {bits} / {den}"
-            );
+            assert_eq!(divide_modulo(n.negated(), den, bits), expected, "case {case}: -{exact} << {bits} / {den}");
         }
     }
 }

@@ -9,11 +9,7 @@ pub fn dot(a: Vec3, b: Vec3) -> f64 {
 }
 
 pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
 }
 
 pub fn sub(a: Vec3, b: Vec3) -> Vec3 {
@@ -73,16 +69,7 @@ impl Camera {
         let right = normalize(cross(forward, up));
         let up = cross(right, forward);
         let (near, far) = (0.1, 100.0);
-        Self {
-            eye,
-            right,
-            up,
-            forward,
-            lens,
-            aspect,
-            near,
-            far,
-        }
+        Self { eye, right, up, forward, lens, aspect, near, far }
     }
 
     /// The ray through the screen position `(x, y)` in px of a `width` x `height` picture, y down.

@@ -51,11 +51,7 @@ pub trait Rasterizer {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// `right` of `total` records (scenes, in the depth file) came out right.
-    Checked {
-        right: usize,
-        total: usize,
-        first_wrong: Option<String>,
-    },
+    Checked { right: usize, total: usize, first_wrong: Option<String> },
     /// The file is known, but there is no check for it yet.
     NotYet,
 }
@@ -119,9 +115,7 @@ pub fn check_file(path: &Path, rasterizer: &mut dyn Rasterizer) -> Result<Outcom
         "nearclip_pairs" => (check_near_clip_pairs, 64),
         "lines" | "points" | "persp" | "msaa4" => return Ok(Outcome::NotYet),
         _ => {
-            return Err(CheckError::UnknownFile {
-                file: path.display().to_string(),
-            });
+            return Err(CheckError::UnknownFile { file: path.display().to_string() });
         }
     };
     let file = path.display().to_string();
@@ -154,10 +148,7 @@ fn check_spans(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(St
         let spans = record.spans(9, (table.width, table.height))?;
         let expected = mask_of(record, table, &spans, record.number(7)?)?;
         let hits = draw_one(table, rasterizer, record.triangle(1)?);
-        Ok((
-            format!("id {}", record.text(0)?),
-            hits.verdict(|i| (expected[i].into(), expected[i].into())),
-        ))
+        Ok((format!("id {}", record.text(0)?), hits.verdict(|i| (expected[i].into(), expected[i].into()))))
     };
     table.records.iter().map(check).collect()
 }
@@ -222,9 +213,7 @@ fn check_depth(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(St
         return Err(first.bad("a scene must start with S"));
     }
     let scenes = table.records.chunk_by(|_, next| !starts_scene(next));
-    scenes
-        .map(|scene| check_depth_scene(table, rasterizer, scene))
-        .collect()
+    scenes.map(|scene| check_depth_scene(table, rasterizer, scene)).collect()
 }
 
 /// One scene: `S`, `T`s, then `W`, `A1`, `A4`, `Z` in any order.
@@ -261,11 +250,7 @@ fn check_depth_scene(
     };
     // Depths are given at x = 1, 5, 9, .. and y = 2, 6, 10, ..
     let rows = (2..table.height as usize).step_by(4);
-    let at = rows.flat_map(|y| {
-        (1..table.width as usize)
-            .step_by(4)
-            .map(move |x| y * table.width as usize + x)
-    });
+    let at = rows.flat_map(|y| (1..table.width as usize).step_by(4).map(move |x| y * table.width as usize + x));
     let at: Vec<usize> = at.collect();
     if tris.len() != header.number::<usize>(2)? || samples.len() != at.len() {
         return Err(header.bad("not as many triangles or depths as announced"));
@@ -276,18 +261,11 @@ fn check_depth_scene(
     let verdict = if got.len() != pixels || depths.len() != pixels {
         Err("the buffers returned do not have the size of the viewport".to_string())
     } else if let Some(i) = (0..pixels).find(|&i| ambiguous[i] == 0 && got[i] != winners[i]) {
-        Err(format!(
-            "pixel {:?} shows {}, expected {}",
-            place(i),
-            got[i],
-            winners[i]
-        ))
+        Err(format!("pixel {:?} shows {}, expected {}", place(i), got[i], winners[i]))
     } else {
         let is_off = |&(i, z): &(usize, u16)| ambiguous[i] == 0 && depths[i].abs_diff(z) > 1;
         let off = at.into_iter().zip(samples).find(is_off);
-        off.map_or(Ok(()), |(i, z)| {
-            Err(format!("depth at {:?} is {}, expected {z} +-1", place(i), depths[i]))
-        })
+        off.map_or(Ok(()), |(i, z)| Err(format!("depth at {:?} is {}, expected {z} +-1", place(i), depths[i])))
     };
     Ok((format!("scene {} ({})", header.text(1)?, header.text(3)?), verdict))
 }
@@ -303,9 +281,7 @@ fn clip_expectation(record: &Record, table: &Table, counts: usize, spans: usize)
     if pixels.clone().any(|(must, may)| *must && *may) {
         return Err(record.bad("a pixel is both certain and ambiguous"));
     }
-    Ok(pixels
-        .map(|(&must, &may)| (must.into(), (must || may).into()))
-        .collect())
+    Ok(pixels.map(|(&must, &may)| (must.into(), (must || may).into())).collect())
 }
 
 fn draw_clipped(table: &Table, rasterizer: &mut dyn Rasterizer, tris: &[ClipTriangle]) -> Hits {

@@ -20,12 +20,7 @@ impl Hits {
     /// Nothing hit yet, in the viewport of `table`.
     pub fn new(table: &Table) -> Self {
         let count = table.width as usize * table.height as usize;
-        Self {
-            width: table.width,
-            counts: vec![0; count],
-            last: vec![0; count],
-            outside: None,
-        }
+        Self { width: table.width, counts: vec![0; count], last: vec![0; count], outside: None }
     }
 
     /// Notes that `triangle` (1-based) hit a pixel.
@@ -51,15 +46,9 @@ impl Hits {
             None => Ok(()),
             Some((i, count)) => {
                 let ((x, y), (low, high)) = (self.position(i), allowed(i));
-                let expected = if low == high {
-                    low.to_string()
-                } else {
-                    format!("{low} to {high}")
-                };
+                let expected = if low == high { low.to_string() } else { format!("{low} to {high}") };
                 let more = wrong.count();
-                Err(format!(
-                    "pixel ({x}, {y}) hit {count} times, expected {expected}; {more} more pixels wrong"
-                ))
+                Err(format!("pixel ({x}, {y}) hit {count} times, expected {expected}; {more} more pixels wrong"))
             }
         }
     }

@@ -42,23 +42,13 @@ pub struct Viewport {
 impl Viewport {
     /// A viewport from (0, 0), with clip-space y up.
     pub fn new(width: u32, height: u32) -> Self {
-        Self {
-            x: 0.0,
-            y: 0.0,
-            width: width.into(),
-            height: height.into(),
-            clip_y_down: false,
-        }
+        Self { x: 0.0, y: 0.0, width: width.into(), height: height.into(), clip_y_down: false }
     }
 
     /// Screen position times w, and w.
     pub fn screen_position(&self, [x, y, _, w]: [f64; 4]) -> [f64; 3] {
         let y = if self.clip_y_down { y } else { -y };
-        [
-            (x + w) * (self.width / 2.0) + self.x * w,
-            (y + w) * (self.height / 2.0) + self.y * w,
-            w,
-        ]
+        [(x + w) * (self.width / 2.0) + self.x * w, (y + w) * (self.height / 2.0) + self.y * w, w]
     }
 }
 
@@ -96,18 +86,12 @@ impl Line {
     fn through(p: [f64; 3], q: [f64; 3]) -> Self {
         let minor = |i: usize, j: usize| (p[i] * q[j] - p[j] * q[i], (p[i] * q[j]).abs() + (p[j] * q[i]).abs());
         let minors = [minor(1, 2), minor(2, 0), minor(0, 1)];
-        Self {
-            coefficients: minors.map(|m| m.0),
-            magnitudes: minors.map(|m| m.1),
-        }
+        Self { coefficients: minors.map(|m| m.0), magnitudes: minors.map(|m| m.1) }
     }
 
     /// `constant + sum(factors[i] * lines[i])`.
     fn sum(lines: &[Line; 3], factors: [f64; 3], constant: f64) -> Self {
-        let mut result = Self {
-            coefficients: [0.0, 0.0, constant],
-            magnitudes: [0.0, 0.0, constant.abs()],
-        };
+        let mut result = Self { coefficients: [0.0, 0.0, constant], magnitudes: [0.0, 0.0, constant.abs()] };
         for (line, factor) in lines.iter().zip(factors) {
             for i in 0..3 {
                 result.coefficients[i] += factor * line.coefficients[i];

@@ -41,18 +41,10 @@ pub fn grid(rng: &mut Rng, columns: u16, rows: u16, width: u32, height: u32, sna
         let cell = 256 * size as i32 / i32::from(count);
         assert!(cell >= 8 * snap_to, "cells too small to be distorted");
         let at = (256 * i64::from(size) * i64::from(i) / i64::from(count)) as i32;
-        let play = if i == 0 || i == count {
-            0
-        } else {
-            (cell - 1) / 4 - snap_to
-        };
+        let play = if i == 0 || i == count { 0 } else { (cell - 1) / 4 - snap_to };
         let moved = at + rng.between(-play, play);
         // The last row or column must not be pulled inside the border.
-        if i == count {
-            at + (snap_to - at % snap_to) % snap_to
-        } else {
-            moved / snap_to * snap_to
-        }
+        if i == count { at + (snap_to - at % snap_to) % snap_to } else { moved / snap_to * snap_to }
     };
     let mut vertices = Vec::new();
     for j in 0..=rows {
@@ -65,11 +57,7 @@ pub fn grid(rng: &mut Rng, columns: u16, rows: u16, width: u32, height: u32, sna
     for (j, i) in (0..rows).flat_map(|j| (0..columns).map(move |i| (j, i))) {
         let at = |i: u16, j: u16| j * (columns + 1) + i;
         let [a, b, c, d] = [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)];
-        let cell = if rng.one_in(2) {
-            [[a, c, b], [b, c, d]]
-        } else {
-            [[a, c, d], [a, d, b]]
-        };
+        let cell = if rng.one_in(2) { [[a, c, b], [b, c, d]] } else { [[a, c, d], [a, d, b]] };
         triangles.extend(cell);
     }
     Mesh { vertices, triangles }
@@ -110,13 +98,7 @@ pub fn strip(rng: &mut Rng, count: u16, width: u32, height: u32) -> Mesh<[i32; 2
         [x, low + rng.between(0, h / 2 - 1)]
     });
     let vertices = vertices.collect();
-    let triangles = (0..count).map(|i| {
-        if i % 2 == 0 {
-            [i, i + 1, i + 2]
-        } else {
-            [i, i + 2, i + 1]
-        }
-    });
+    let triangles = (0..count).map(|i| if i % 2 == 0 { [i, i + 1, i + 2] } else { [i, i + 2, i + 1] });
     let triangles = triangles.collect();
     Mesh { vertices, triangles }
 }

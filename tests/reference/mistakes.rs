@@ -153,10 +153,7 @@ impl Rasterizer for Mistake {
     }
 
     fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32)) {
-        let viewport = Viewport {
-            clip_y_down: true,
-            ..Viewport::new(width, height)
-        };
+        let viewport = Viewport { clip_y_down: true, ..Viewport::new(width, height) };
         for (index, tri) in tris.iter().enumerate() {
             let mut pixels = Vec::new();
             let mut viewport = viewport;
@@ -172,10 +169,7 @@ impl Rasterizer for Mistake {
                 if *self == Mistake::NoNearPlane {
                     position[2] = position[3] / 2.0;
                 }
-                Vertex {
-                    position,
-                    attributes: [],
-                }
+                Vertex { position, attributes: [] }
             });
             for_each_sample(&viewport, (width, height), &vertices, |sample| {
                 if sample.covered && (sample.front || *self != Mistake::Culled) {

@@ -34,15 +34,9 @@ impl Rasterizer for Model {
     }
 
     fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32)) {
-        let viewport = Viewport {
-            clip_y_down: true,
-            ..Viewport::new(width, height)
-        };
+        let viewport = Viewport { clip_y_down: true, ..Viewport::new(width, height) };
         for (index, tri) in tris.iter().enumerate() {
-            let vertices = tri.map(|v| Vertex {
-                position: v.map(f64::from),
-                attributes: [],
-            });
+            let vertices = tri.map(|v| Vertex { position: v.map(f64::from), attributes: [] });
             for_each_sample(&viewport, (width, height), &vertices, |sample| {
                 if sample.covered {
                     hit(index, sample.x, sample.y);

@@ -51,8 +51,7 @@ impl Scene {
     ///
     /// Of two hits at the same distance the first in the scene wins, triangles before quadrics.
     pub fn nearest(&self, ray: &Ray, near: f64, far: f64) -> Option<(Hit, Vec3)> {
-        self.hits(ray, near, far)
-            .reduce(|best, other| if other.0.t < best.0.t { other } else { best })
+        self.hits(ray, near, far).reduce(|best, other| if other.0.t < best.0.t { other } else { best })
     }
 
     /// All hits of `ray` on faces that are not culled, in the order of the scene.

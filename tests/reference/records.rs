@@ -63,10 +63,7 @@ impl Record<'_> {
     /// An error about this record.
     pub fn bad(&self, reason: impl Into<String>) -> BadRecord {
         let reason = reason.into();
-        BadRecord {
-            line: self.line,
-            reason,
-        }
+        BadRecord { line: self.line, reason }
     }
 
     /// Fails unless there are exactly `count` fields.
@@ -107,11 +104,7 @@ impl Record<'_> {
         &self,
         index: usize,
     ) -> Result<[[T; N]; 3], BadRecord> {
-        Ok([
-            self.numbers(index)?,
-            self.numbers(index + N)?,
-            self.numbers(index + 2 * N)?,
-        ])
+        Ok([self.numbers(index)?, self.numbers(index + N)?, self.numbers(index + 2 * N)?])
     }
 
     /// Field `index` as a list of numbers split by spaces.
@@ -141,9 +134,7 @@ impl Record<'_> {
     pub fn spans(&self, index: usize, (width, height): (u32, u32)) -> Result<Vec<SpanRow>, BadRecord> {
         let mut result = Vec::new();
         let mut tokens = self.text(index)?.split_whitespace();
-        let first = tokens
-            .next()
-            .ok_or_else(|| self.bad(format!("field {} is empty", index + 1)))?;
+        let first = tokens.next().ok_or_else(|| self.bad(format!("field {} is empty", index + 1)))?;
         if first == "-" {
             return match tokens.next() {
                 None => Ok(result),

@@ -60,17 +60,7 @@ fn vertex_in_front(rng: &mut Rng, spread: i32) -> ClipVertex {
 /// A number that breaks careless arithmetic.
 fn extreme(rng: &mut Rng) -> i32 {
     match rng.below(4) {
-        0 => rng.pick(&[
-            0,
-            1,
-            -1,
-            i32::MIN,
-            i32::MIN + 1,
-            i32::MAX,
-            i32::MAX - 1,
-            1 << 16,
-            -(1 << 16),
-        ]),
+        0 => rng.pick(&[0, 1, -1, i32::MIN, i32::MIN + 1, i32::MAX, i32::MAX - 1, 1 << 16, -(1 << 16)]),
         _ => rng.any_magnitude(31),
     }
 }

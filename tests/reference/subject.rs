@@ -20,10 +20,7 @@ pub struct Subject {
 
 impl Default for Subject {
     fn default() -> Self {
-        Self {
-            strip_rows: usize::MAX,
-            records: 100_000,
-        }
+        Self { strip_rows: usize::MAX, records: 100_000 }
     }
 }
 
@@ -92,12 +89,7 @@ fn on_screen([x, y]: [i32; 2], z: u16, width: u32, height: u32) -> [Scalar; 4] {
         Scalar::from_bits((scaled / half) as i32)
     };
     let z = (i64::from(z) * 65_536 + 32_767) / 65_535;
-    [
-        clip(x, width),
-        clip(y, height),
-        Scalar::from_bits(z as i32),
-        Scalar::ONE,
-    ]
+    [clip(x, width), clip(y, height), Scalar::from_bits(z as i32), Scalar::ONE]
 }
 
 impl Subject {
@@ -116,15 +108,9 @@ impl Subject {
         let size = (width as u16, height as u16);
         let mut frame = FrameSlice::<Rgb565>::new(&mut color, size.0, size.1).expect("a framebuffer");
         let mut renderer = FramebufferRenderer::new(size, &mut depth, &mut records).expect("a renderer");
-        let state = State {
-            cull: Cull::None,
-            depth: depth_state,
-            ..State::default()
-        };
+        let state = State { cull: Cull::None, depth: depth_state, ..State::default() };
         renderer
-            .frame(&mut frame, None, |scene| {
-                scene.draw_with(state, &mesh, &y_down(), shader)
-            })
+            .frame(&mut frame, None, |scene| scene.draw_with(state, &mesh, &y_down(), shader))
             .expect("the same scene each time");
         (color, depth)
     }
@@ -141,14 +127,9 @@ impl Rasterizer for Subject {
     }
 
     fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>) {
-        assert!(
-            self.strip_rows >= height as usize,
-            "depths are read back from a buffer of the whole screen"
-        );
-        let vertices: Vec<_> = tris
-            .iter()
-            .flat_map(|(v, z)| [0, 1, 2].map(|k| on_screen(v[k], z[k], width, height)))
-            .collect();
+        assert!(self.strip_rows >= height as usize, "depths are read back from a buffer of the whole screen");
+        let vertices: Vec<_> =
+            tris.iter().flat_map(|(v, z)| [0, 1, 2].map(|k| on_screen(v[k], z[k], width, height))).collect();
         let (winners, depth) = self.draw((width, height), &vertices, DepthState::LESS, &Numbered);
         (winners.into_iter().map(u32::from).collect(), depth)
     }

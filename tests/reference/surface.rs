@@ -40,13 +40,7 @@ impl Triangle {
             let normal = normalize(cross(sub(b, a), sub(c, a)));
             let front = dot(normal, ray.direction) < 0.0;
             let normal = if front { normal } else { normal.map(|n| -n) };
-            Hit {
-                t,
-                id: self.id,
-                normal,
-                point: ray.at(t),
-                front,
-            }
+            Hit { t, id: self.id, normal, point: ray.at(t), front }
         })
     }
 
@@ -137,11 +131,7 @@ impl Quadric {
         let (a, b, c) = self.polynomial(ray);
         let root = (b * b - a * c).sqrt();
         let sum = if b < 0.0 { root - b } else { -root - b };
-        let both = if a == 0.0 {
-            [-c / (2.0 * b), f64::NAN]
-        } else {
-            [sum / a, c / sum]
-        };
+        let both = if a == 0.0 { [-c / (2.0 * b), f64::NAN] } else { [sum / a, c / sum] };
         if both[0] > both[1] { [both[1], both[0]] } else { both }
     }
 
@@ -154,10 +144,7 @@ impl Quadric {
     /// The hits within `near..=far`, nearest first.
     pub fn hits(&self, ray: &Ray, near: f64, far: f64) -> impl Iterator<Item = Hit> {
         let seen = |t: f64| (near..=far).contains(&t) && self.slack(ray.at(t)) >= 0.0;
-        self.crossings(ray)
-            .map(|t| seen(t).then(|| self.hit_at(ray, t)))
-            .into_iter()
-            .flatten()
+        self.crossings(ray).map(|t| seen(t).then(|| self.hit_at(ray, t))).into_iter().flatten()
     }
 
     fn hit_at(&self, ray: &Ray, t: f64) -> Hit {
@@ -171,13 +158,7 @@ impl Quadric {
         let normal = normalize(outwards);
         let front = dot(normal, ray.direction) < 0.0;
         let normal = if front { normal } else { normal.map(|n| -n) };
-        Hit {
-            t,
-            id: self.id,
-            normal,
-            point,
-            front,
-        }
+        Hit { t, id: self.id, normal, point, front }
     }
 
     /// First-order distance in px to the silhouette, and to the rims that the box and the near and far planes cut.
@@ -193,9 +174,7 @@ impl Quadric {
                 self.slack(ray.at(t)).min(t - camera.near).min(camera.far - t)
             }
         };
-        distance_px(discriminant, x, y)
-            .min(distance_px(rim(0), x, y))
-            .min(distance_px(rim(1), x, y))
+        distance_px(discriminant, x, y).min(distance_px(rim(0), x, y)).min(distance_px(rim(1), x, y))
     }
 }
 

@@ -56,10 +56,7 @@ fn exact_model_gives_the_multisample_masks() {
         let tri = exact::widen(record.triangle(1).expect("a triangle"));
         for (index, offset) in [[96, 32], [224, 96], [32, 160], [160, 224]].into_iter().enumerate() {
             let spans = record.spans(9 + index, (64, 64)).expect("spans");
-            let expected: Vec<_> = spans
-                .into_iter()
-                .flat_map(|(y, x0, x1)| (x0..=x1).map(move |x| (x, y)))
-                .collect();
+            let expected: Vec<_> = spans.into_iter().flat_map(|(y, x0, x1)| (x0..=x1).map(move |x| (x, y))).collect();
             let all = (0..64).flat_map(|y| (0..64).map(move |x| (x, y)));
             let at = |x: u32, y: u32| [256 * i64::from(x) + offset[0], 256 * i64::from(y) + offset[1]];
             let covered: Vec<_> = all.filter(|&(x, y)| exact::covers_at(tri, at(x, y))).collect();
@@ -79,18 +76,8 @@ fn exact_model_gives_the_perspective_samples() {
         for sample in record.list::<i64>(17).expect("samples").chunks_exact(4) {
             let at = exact::center(sample[0], sample[1]);
             let fixed = |values: [i64; 3]| exact::perspective_at(tri, w, values.map(|value| 4096 * value), at);
-            assert_eq!(
-                exact::round_half_up(fixed(u)),
-                sample[2],
-                "line {}: {sample:?}",
-                record.line
-            );
-            assert_eq!(
-                exact::round_half_up(fixed(v)),
-                sample[3],
-                "line {}: {sample:?}",
-                record.line
-            );
+            assert_eq!(exact::round_half_up(fixed(u)), sample[2], "line {}: {sample:?}", record.line);
+            assert_eq!(exact::round_half_up(fixed(v)), sample[3], "line {}: {sample:?}", record.line);
             count += 1;
         }
     }
@@ -101,16 +88,10 @@ fn exact_model_gives_the_perspective_samples() {
 #[test]
 fn homogeneous_margins_agree_with_the_clipping_data() {
     let text = std::fs::read_to_string(data("nearclip")).expect("the data");
-    let viewport = Viewport {
-        clip_y_down: true,
-        ..Viewport::new(64, 64)
-    };
+    let viewport = Viewport { clip_y_down: true, ..Viewport::new(64, 64) };
     for record in &Table::parse(&text, (64, 64)).records {
         let tri = record.triangle::<f64, 4>(2).expect("a triangle");
-        let tri = tri.map(|position| Vertex {
-            position,
-            attributes: [],
-        });
+        let tri = tri.map(|position| Vertex { position, attributes: [] });
         let must = record.spans(17, (64, 64)).expect("spans");
         let ambiguous = record.spans(18, (64, 64)).expect("spans");
         let holds = |spans: &[(u32, u32, u32)], x, y| {
@@ -144,12 +125,8 @@ fn every_mistake_is_found() {
     let folder = std::env::temp_dir().join(format!("mistakes-{}", std::process::id()));
     std::fs::create_dir_all(&folder).expect("a folder for the test");
     use Mistake::*;
-    let coverage = |m: Mistake| {
-        matches!(
-            m,
-            ShiftedByOne | FirstMissing | TwiceOnce | Culled | LeavesViewport | Nothing
-        )
-    };
+    let coverage =
+        |m: Mistake| matches!(m, ShiftedByOne | FirstMissing | TwiceOnce | Culled | LeavesViewport | Nothing);
     for mistake in Mistake::ALL {
         let must_find: Vec<&str> = match mistake {
             // Depth scenes report one winner per pixel, and so hide what is drawn twice or outside.
@@ -190,10 +167,7 @@ fn unknown_broken_and_empty_files_are_errors() {
     };
     assert!(matches!(error_of("tri_random.txt", ""), CheckError::UnknownFile { .. }));
     assert!(matches!(error_of("triangles.csv", ""), CheckError::UnknownFile { .. }));
-    assert!(matches!(
-        error_of("tri_random.csv", "# only a comment\n"),
-        CheckError::NoRecords { .. }
-    ));
+    assert!(matches!(error_of("tri_random.csv", "# only a comment\n"), CheckError::NoRecords { .. }));
     let missing = check_file(&folder.join("tri_far.csv"), &mut Model);
     assert!(matches!(missing, Err(CheckError::Unreadable { .. })));
     let broken = [

@@ -26,11 +26,7 @@ pub fn strips<P: PixelFormat>(
     let mut color = vec![P::pack([0xA5; 3]); pixels];
     let mut depth = vec![0x1234; pixels];
     let mut records = vec![0xDEAD_BEEF; records];
-    let buffers = Buffers {
-        color: &mut color,
-        depth: &mut depth,
-        records: &mut records,
-    };
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
     let mut renderer = Renderer::<P>::new((width, height), buffers).expect("a renderer");
     let mut picture = Vec::new();
     let sink = |strip: &StripPixels<'_, P>| {
@@ -41,9 +37,7 @@ pub fn strips<P: PixelFormat>(
         picture.extend_from_slice(strip.pixels());
         Ok::<(), core::convert::Infallible>(())
     };
-    let stats = renderer
-        .frame_to(sink, background, draw)
-        .expect("the same scene in each call");
+    let stats = renderer.frame_to(sink, background, draw).expect("the same scene in each call");
     assert_eq!(picture.len(), usize::from(width) * usize::from(height));
     (picture, stats)
 }
@@ -60,9 +54,7 @@ pub fn whole<P: PixelFormat>(
     let mut records = vec![0xDEAD_BEEF; 1 << 17];
     let mut frame = FrameSlice::<P>::new(&mut color, width, height).expect("a framebuffer");
     let mut renderer = FramebufferRenderer::new((width, height), &mut depth, &mut records).expect("a renderer");
-    let stats = renderer
-        .frame(&mut frame, Some(background), draw)
-        .expect("the same scene in each call");
+    let stats = renderer.frame(&mut frame, Some(background), draw).expect("the same scene in each call");
     (color, depth, stats)
 }
 
@@ -73,10 +65,7 @@ pub fn difference<T: PartialEq + core::fmt::Debug>(a: &[T], b: &[T], width: u16)
     let first = places.next()?;
     let (x, y) = (first % usize::from(width), first / usize::from(width));
     let more = places.count();
-    Some(format!(
-        "pixel ({x}, {y}) is {:?}, expected {:?}; {more} more differ",
-        a[first], b[first]
-    ))
+    Some(format!("pixel ({x}, {y}) is {:?}, expected {:?}; {more} more differ", a[first], b[first]))
 }
 
 /// A random soup of clip-space triangles of every unpleasant kind, with colours.
@@ -89,10 +78,7 @@ impl Soup {
     pub fn new(rng: &mut Rng, triangles: usize) -> Self {
         let soup = clip_soup(rng, triangles);
         let positions: Vec<_> = soup.iter().flatten().map(|v| v.map(Scalar::from_bits)).collect();
-        let colors = positions
-            .iter()
-            .map(|_| [(); 3].map(|()| rng.below(256) as u8))
-            .collect();
+        let colors = positions.iter().map(|_| [(); 3].map(|()| rng.below(256) as u8)).collect();
         Self { positions, colors }
     }
 
@@ -173,7 +159,7 @@ pub fn snapped<const K: usize>(
     varyings: impl Fn(usize) -> [i32; K],
 ) -> Vec<([(ScreenVertex, [i32; K]); 3], usize)> {
     let positions = &mesh.data().positions;
-    let transform = Transform::new(mvp, viewport, positions, false);
+    let transform = Transform::new(mvp, viewport, mesh, false);
     let mut triangles = Vec::new();
     for number in 0..mesh.triangle_count() {
         let corners = mesh.triangle(number).expect("a triangle").map(usize::from);
@@ -189,10 +175,7 @@ pub fn snapped<const K: usize>(
         }
         let all = Outcode(codes[0] | codes[1] | codes[2]);
         let mut fan = |polygon: &[(ClipVertex, [i32; K])]| {
-            let placed: Vec<_> = polygon
-                .iter()
-                .filter_map(|(v, varyings)| Some((project(v)?, *varyings)))
-                .collect();
+            let placed: Vec<_> = polygon.iter().filter_map(|(v, varyings)| Some((project(v)?, *varyings))).collect();
             for k in 2..placed.len() {
                 triangles.push(([placed[0], placed[k - 1], placed[k]], number));
             }

@@ -2,11 +2,7 @@ use crate::reference::conformance::hits::*;
 use crate::reference::conformance::records::Table;
 
 fn small() -> Hits {
-    Hits::new(&Table {
-        width: 4,
-        height: 2,
-        records: Vec::new(),
-    })
+    Hits::new(&Table { width: 4, height: 2, records: Vec::new() })
 }
 
 #[test]

@@ -2,25 +2,12 @@ use crate::reference::homogeneous::{self, Vertex, Viewport};
 use crate::reference::ray::*;
 use crate::reference::rng::Rng;
 
-const LIGHT: Light = Light {
-    ambient: 0.2,
-    diffuse: 0.8,
-    direction: [0.0, 0.6, 0.8],
-};
-const LENSES: [Lens; 2] = [
-    Lens::Perspective { tan_half_fov: 0.5 },
-    Lens::Orthographic { half_height: 2.5 },
-];
+const LIGHT: Light = Light { ambient: 0.2, diffuse: 0.8, direction: [0.0, 0.6, 0.8] };
+const LENSES: [Lens; 2] = [Lens::Perspective { tan_half_fov: 0.5 }, Lens::Orthographic { half_height: 2.5 }];
 
 fn scene(triangles: Vec<Triangle>, quadrics: Vec<Quadric>, cull: Cull) -> Scene {
     let background = [0.0; 3];
-    Scene {
-        triangles,
-        quadrics,
-        light: LIGHT,
-        background,
-        cull,
-    }
+    Scene { triangles, quadrics, light: LIGHT, background, cull }
 }
 
 fn camera(lens: Lens) -> Camera {
@@ -36,10 +23,7 @@ fn rasterize(scene: &Scene, camera: &Camera, width: u32, height: u32) -> Frame {
     for t in &scene.triangles {
         let [a, b, c] = t.corners;
         let normal = normalize(cross(sub(b, a), sub(c, a)));
-        let vertices = t.corners.map(|p| Vertex {
-            position: camera.clip_position(p),
-            attributes: p,
-        });
+        let vertices = t.corners.map(|p| Vertex { position: camera.clip_position(p), attributes: p });
         homogeneous::draw(&mut frame, &viewport, scene.cull, &vertices, t.id, |s| {
             let side = if s.front { normal } else { normal.map(|n| -n) };
             // The attributes are the position in the world: the ray through this pixel must pass there.
@@ -91,15 +75,9 @@ fn agrees_with_homogeneous_rasterization() {
 
 #[test]
 fn sphere_is_a_disc_of_the_right_size_and_shade() {
-    let light = Light {
-        direction: [0.0, 0.0, 1.0],
-        ..LIGHT
-    };
+    let light = Light { direction: [0.0, 0.0, 1.0], ..LIGHT };
     let sphere = Quadric::sphere([0.0; 3], 1.0, [1.0; 3], 4);
-    let scene = Scene {
-        light,
-        ..scene(Vec::new(), vec![sphere], Cull::Back)
-    };
+    let scene = Scene { light, ..scene(Vec::new(), vec![sphere], Cull::Back) };
     let lens = Lens::Orthographic { half_height: 1.25 };
     let camera = Camera::look_at([0.0, 0.0, 5.0], [0.0; 3], [0.0, 1.0, 0.0], lens, 1.0);
     let frame = scene.render(&camera, 80, 80);
@@ -126,20 +104,14 @@ fn sphere_is_a_disc_of_the_right_size_and_shade() {
 #[test]
 fn cylinder_shows_its_inside_unless_culled() {
     let cylinder = Quadric::cylinder([0.0; 3], 1.0, 0.5, [1.0; 3], 1);
-    let from_above = Ray {
-        origin: [0.0, 2.0, 3.0],
-        direction: [0.0, -0.5, -1.0],
-    };
+    let from_above = Ray { origin: [0.0, 2.0, 3.0], direction: [0.0, -0.5, -1.0] };
     let open = scene(Vec::new(), vec![cylinder], Cull::None);
     // Over the front rim (y = 1 at z = 1), down to the inside of the back (y = 0 at z = -1).
     let (hit, _) = open.nearest(&from_above, 0.0, 9.0).expect("the inside");
     assert_eq!((hit.t, hit.front, hit.normal), (4.0, false, [0.0, 0.0, 1.0]));
     let culled = scene(Vec::new(), vec![cylinder], Cull::Back);
     assert_eq!(culled.nearest(&from_above, 0.0, 9.0), None);
-    let level = Ray {
-        origin: [0.0, 0.0, 3.0],
-        direction: [0.0, 0.0, -1.0],
-    };
+    let level = Ray { origin: [0.0, 0.0, 3.0], direction: [0.0, 0.0, -1.0] };
     let (hit, _) = culled.nearest(&level, 0.0, 9.0).expect("the outside");
     assert_eq!((hit.t, hit.point), (2.0, [0.0, 0.0, 1.0]));
     assert!(hit.front);
@@ -159,11 +131,7 @@ fn mesh_of_a_sphere_tends_to_the_sphere() {
         let [a, b] = [corner(i, j), corner(i + 1, j)];
         let [c, d] = [corner(i, j + 1), corner(i + 1, j + 1)];
         for corners in [[a, b, d], [a, d, c]] {
-            triangles.push(Triangle {
-                corners,
-                color: [1.0; 3],
-                id: 1,
-            });
+            triangles.push(Triangle { corners, color: [1.0; 3], id: 1 });
         }
     }
     let mesh = scene(triangles, Vec::new(), Cull::Back);
@@ -174,10 +142,7 @@ fn mesh_of_a_sphere_tends_to_the_sphere() {
         let mesh = rasterize(&mesh, &camera, 48, 32);
         let exact = quadric.render(&camera, 48, 32);
         // The mesh's inner edges say nothing about its silhouette: take the margin of the quadric alone.
-        let mesh = Frame {
-            margin: vec![9.0; 48 * 32],
-            ..mesh
-        };
+        let mesh = Frame { margin: vec![9.0; 48 * 32], ..mesh };
         let result = exact.compare(&mesh, 0.1, 0.0);
         assert_eq!(result.other_id, 0, "{lens:?} {result:?}");
         assert!(result.compared > 1450, "{lens:?} {result:?}");

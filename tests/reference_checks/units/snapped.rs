@@ -15,10 +15,7 @@ fn random(rng: &mut Rng) -> [SnappedVertex; 3] {
 fn unsnap(tri: &[SnappedVertex; 3]) -> [homogeneous::Vertex<3>; 3] {
     tri.map(|v| {
         let [x, y] = v.position.map(|c| f64::from(c) / 4096.0 - 1.0);
-        homogeneous::Vertex {
-            position: [x, -y, f64::from(v.depth) / 65535.0, 1.0],
-            attributes: v.color,
-        }
+        homogeneous::Vertex { position: [x, -y, f64::from(v.depth) / 65535.0, 1.0], attributes: v.color }
     })
 }
 
