@@ -51,13 +51,20 @@ fn scene_parts(name: &str, size: (u16, u16), turn: Angle) -> Vec<Part> {
         "room" => {
             let room = scenes::room_camera(size, turn);
             let pillar = Affine::translation(Vec3::from_milli(800, 0, -600));
-            let ring = Affine::translation(Vec3::from_milli(-800, -600, -1200)) * Affine::rotation_x(turn);
-            let meshes = [(&polygons::ROOM, room), (&polygons::PILLAR, room * pillar), (&torus::MESH, room * ring)];
+            let ring = Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
+            let half = Affine::scale(Scalar::from_bits(1 << 15));
+            let meshes = [
+                (&polygons::ROOM, room),
+                (&polygons::FLOOR, room),
+                (&polygons::PILLAR, room * pillar),
+                (&torus::MESH, room * (ring * half)),
+            ];
             parts(&meshes, Cull::Back)
         }
         "intersections" => {
-            let model = scenes::torus_model(turn + Angle::from_degrees(25));
-            parts(&[(&polygons::CROSSING, camera * model)], Cull::None)
+            let turned = Affine::rotation_y(turn + Angle::from_degrees(25));
+            let mvp = camera * at(-3) * Affine::rotation_x(Angle::from_degrees(40)) * turned;
+            parts(&[(&polygons::CROSSING, mvp)], Cull::None)
         }
         "cycle" => parts(&[(&polygons::CYCLE, camera * at(-3) * spin)], Cull::Back),
         "slivers" => parts(&[(&soup::SLIVERS, camera * at(-3) * spin)], Cull::None),
