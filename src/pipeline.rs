@@ -6,8 +6,8 @@
 
 use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, NoDepth, Shader};
 use crate::geometry::{
-    Bounds, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Placed, Positions, ScreenVertex,
-    Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
+    Bounds, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Placed, PolygonCorners,
+    Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
@@ -309,8 +309,8 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     }
 
     /// Draws a clipped polygon as a fan of triangles.
-    fn fan(&mut self, polygon: &[(ClipVertex, S::Varyings)], face: &Face<'_>) {
-        let mut placed = polygon.iter().filter_map(|(v, varyings)| {
+    fn fan(&mut self, polygon: PolygonCorners<'_, S::Varyings>, face: &Face<'_>) {
+        let mut placed = polygon.filter_map(|(v, varyings)| {
             let v = project(v)?;
             Some((v, *varyings))
         });

@@ -45,7 +45,7 @@ type Polygon = Vec<(ClipVertex, [i32; 3])>;
 fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Polygon> {
     let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
     let mut polygons = Vec::new();
-    clip_triangle(triangle, Outcode(codes), range, |polygon| polygons.push(polygon.to_vec()));
+    clip_triangle(triangle, Outcode(codes), range, |polygon| polygons.push(polygon.copied().collect()));
     polygons
 }
 

@@ -5,7 +5,7 @@
 //! no planes here: the rasterizer is exact to ±32,767 px, and only at that guard band anything is cut.
 
 use super::Varyings;
-use heapless::Vec;
+use heapless::Deque;
 
 /// A vertex in clip space, in any common scale: x / w, y / w in units of 512 px from the screen's corner, z / w depth.
 ///
@@ -89,9 +89,12 @@ fn distance(plane: usize, v: &ClipVertex) -> i64 {
     }
 }
 
-/// A triangle cut by seven planes has at most ten corners.
-const CORNERS: usize = 10;
-type Polygon<V> = Vec<(ClipVertex, V), CORNERS>;
+/// A triangle cut by seven planes has at most ten corners, and one more is in its place twice while a plane cuts.
+const CORNERS: usize = 12;
+type Polygon<V> = Deque<(ClipVertex, V), CORNERS>;
+
+/// The corners of a polygon that the clipper hands on, in order.
+pub type PolygonCorners<'a, V> = heapless::deque::Iter<'a, (ClipVertex, V)>;
 
 /// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on what is left: one convex
 /// polygon, or up to three where depth is clamped.
@@ -99,79 +102,87 @@ pub fn clip_triangle<V: Varyings>(
     triangle: &[(ClipVertex, V); 3],
     codes: Outcode,
     range: DepthRange,
-    mut emit: impl FnMut(&[(ClipVertex, V)]),
+    mut emit: impl FnMut(PolygonCorners<'_, V>),
 ) {
-    let (keep_near, keep_far) = match range {
-        DepthRange::Clip => (false, false),
-        DepthRange::ClampFar => (false, true),
-        DepthRange::Clamp => (true, true),
-    };
     // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
     if triangle.iter().any(|(v, _)| *v == ClipVertex::default()) {
         return;
     }
+    let kept = match range {
+        DepthRange::Clip => 0,
+        DepthRange::ClampFar => Outcode::FAR,
+        DepthRange::Clamp => Outcode::FAR | Outcode::NEAR,
+    };
     let mut polygon = Polygon::new();
-    // Three fit ten; the same holds wherever a push is not checked below.
-    let _ = polygon.extend_from_slice(triangle);
-    let kept = (u8::from(keep_near) << NEAR) | (u8::from(keep_far) << FAR);
+    for vertex in triangle {
+        // Three fit twelve; the same holds for every push below.
+        let _ = polygon.push_back(*vertex);
+    }
     for plane in 0..PLANES {
         if codes.0 & !kept & (1 << plane) != 0 {
-            polygon = cut(&polygon, plane, true);
+            cut(&mut polygon, plane, true);
         }
     }
-    if codes.0 & kept & Outcode::NEAR != 0 {
-        let mut before = cut(&polygon, NEAR, false);
-        before.iter_mut().for_each(|(v, _)| v.z = 0);
-        hand_on(&before, &mut emit);
-        polygon = cut(&polygon, NEAR, true);
-    }
-    if codes.0 & kept & Outcode::FAR != 0 {
-        let mut beyond = cut(&polygon, FAR, false);
-        beyond.iter_mut().for_each(|(v, _)| v.z = v.w);
-        hand_on(&beyond, &mut emit);
-        polygon = cut(&polygon, FAR, true);
+    if codes.0 & kept != 0 {
+        clamp(&mut polygon, Outcode(codes.0 & kept), &mut emit);
     }
     hand_on(&polygon, &mut emit);
 }
 
-fn hand_on<V>(polygon: &Polygon<V>, emit: &mut impl FnMut(&[(ClipVertex, V)])) {
-    if polygon.len() >= 3 {
-        emit(polygon);
+/// Hands on what lies before the near and beyond the far plane with its depth clamped, and leaves what is between them.
+#[inline(never)]
+fn clamp<V: Varyings>(polygon: &mut Polygon<V>, codes: Outcode, emit: &mut impl FnMut(PolygonCorners<'_, V>)) {
+    for plane in [NEAR, FAR] {
+        if codes.0 & (1 << plane) != 0 {
+            let mut outside = polygon.clone();
+            cut(&mut outside, plane, false);
+            outside.iter_mut().for_each(|(v, _)| v.z = if plane == NEAR { 0 } else { v.w });
+            hand_on(&outside, emit);
+            cut(polygon, plane, true);
+        }
     }
 }
 
-/// The part of a convex polygon on one side of a plane: inside, or outside.
+fn hand_on<V>(polygon: &Polygon<V>, emit: &mut impl FnMut(PolygonCorners<'_, V>)) {
+    if polygon.len() >= 3 {
+        emit(polygon.iter());
+    }
+}
+
+/// Leaves the part of a convex polygon that is on one side of a plane: inside, or outside.
+///
+/// Corners are taken from the front and put back behind, in place.
 ///
 /// # Source
 /// Sutherland and Hodgman 1974, "Reentrant polygon clipping".
 #[inline(never)]
-fn cut<V: Varyings>(polygon: &Polygon<V>, plane: usize, inside: bool) -> Polygon<V> {
-    let mut result = Polygon::new();
-    let Some(mut from) = polygon.last() else { return result };
+fn cut<V: Varyings>(polygon: &mut Polygon<V>, plane: usize, inside: bool) {
+    let Some(mut from) = polygon.back().copied() else { return };
     let mut from_distance = distance(plane, &from.0);
-    for to in polygon {
+    for _ in 0..polygon.len() {
+        let Some(to) = polygon.pop_front() else { return };
         let to_distance = distance(plane, &to.0);
         if (from_distance >= 0) != (to_distance >= 0) {
             // Always from the vertex inside to the one outside, so that AB is cut like BA.
             let crossing = if from_distance >= 0 {
-                intersection(from, from_distance, to, to_distance, plane)
+                intersection(&from, from_distance, &to, to_distance, plane)
             } else {
-                intersection(to, to_distance, from, from_distance, plane)
+                intersection(&to, to_distance, &from, from_distance, plane)
             };
-            let _ = result.push(crossing);
+            let _ = polygon.push_back(crossing);
         }
         if (to_distance >= 0) == inside {
-            let _ = result.push(*to);
+            let _ = polygon.push_back(to);
         }
         (from, from_distance) = (to, to_distance);
     }
-    result
 }
 
 /// Where the edge from `a`, inside, to `b`, outside, meets the plane.
 ///
 /// # Format
-/// t = da / (da - db) as 0.64, rounded down; coordinates are off by less than 1 + 2⁻⁸ of their unit.
+/// t = da / (da - db) as 0.64, rounded down; coordinates are off by less than 1 + 2⁻⁷ of their unit.
+#[inline(never)]
 fn intersection<V: Varyings>(
     a: &(ClipVertex, V),
     da: i64,
@@ -180,21 +191,37 @@ fn intersection<V: Varyings>(
     plane: usize,
 ) -> (ClipVertex, V) {
     let t = fraction(da as u64, da.abs_diff(db));
-    let along = |a: i64, b: i64| a + ((i128::from(b - a) * i128::from(t)) >> 64) as i64;
-    let mut v =
-        ClipVertex { x: along(a.0.x, b.0.x), y: along(a.0.y, b.0.y), z: along(a.0.z, b.0.z), w: along(a.0.w, b.0.w) };
+    let mut v = ClipVertex {
+        x: along(a.0.x, b.0.x, t),
+        y: along(a.0.y, b.0.y, t),
+        z: along(a.0.z, b.0.z, t),
+        w: along(a.0.w, b.0.w, t),
+    };
     match plane {
         NEAR => v.z = 0,
         FAR => v.z = v.w,
         _ => {}
     }
-    let t32 = (t >> 32) as i64;
     let mut varyings = a.1;
     for (x, y) in varyings.as_mut().iter_mut().zip(b.1.as_ref()) {
-        // A difference of 33 bits times 32: fits with the sign.
-        *x = (i64::from(*x) + (((i64::from(*y) - i64::from(*x)) * (t32 >> 1)) >> 31)) as i32;
+        *x = along(i64::from(*x), i64::from(*y), t) as i32;
     }
     (v, varyings)
+}
+
+/// `a + (b - a) t` with t as 0.64, rounded towards `a`.
+///
+/// # Format
+/// |b - a| < 2⁵⁷. Four products of halves, each below 2⁶⁴, their carries kept.
+#[inline(never)]
+fn along(a: i64, b: i64, t: u64) -> i64 {
+    let d = b.abs_diff(a);
+    let (d1, d0) = (d >> 32, d & 0xFFFF_FFFF);
+    let (t1, t0) = (t >> 32, t & 0xFFFF_FFFF);
+    let middle = d1 * t0 + ((d0 * t0) >> 32);
+    let other = d0 * t1 + (middle & 0xFFFF_FFFF);
+    let part = (d1 * t1 + (middle >> 32) + (other >> 32)) as i64;
+    if b < a { a - part } else { a + part }
 }
 
 /// `num / den` as 0.64, rounded down; `num < den < 2⁶³`.

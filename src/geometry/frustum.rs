@@ -3,7 +3,7 @@
 use super::{BoundingBox, BoundingSphere, Bounds, Viewport};
 use crate::math::Projective;
 
-/// A plane in the space that the matrix maps from; its inside is where [`at`](Plane::at) is not negative.
+/// A plane in the space that the matrix maps from; its inside is where it is not negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plane {
     /// Normal, pointing inside, of any length; below 2²⁸.

@@ -94,31 +94,41 @@ impl<'a> Face<'a> {
         }
     }
 
+    /// The normal of the corners' positions.
+    ///
+    /// # Format
+    /// Edges are scaled to 15 bits, which a normal of 2.14 does not tell; its components, below 2³¹, to 15 bits again, so
+    /// that the sum of their squares fits 32: within 2⁻¹² of the exact normal unless the edges are nearly parallel.
+    #[inline(never)]
     fn computed_normal(&self) -> [i16; 3] {
         if let Positions::Homogeneous(_) = self.mesh.data().positions {
             return [0; 3];
         }
-        let [a, b, c] = self.corners.map(|k| self.mesh.position(usize::from(k)));
+        let [a, b, c] = self.corners.map(|k| self.mesh.position(usize::from(k)).to_bits());
         let (ab, ac) = (edge(a, b), edge(a, c));
-        // Components below 2³⁰: differences of products below 2⁶¹. The result is scaled to 30 bits, then normalized.
         let minor = |i: usize, j: usize| ab[i] * ac[j] - ab[j] * ac[i];
-        let n = [minor(1, 2), minor(2, 0), minor(0, 1)];
-        let widest = n.iter().fold(0, |m, v| v.unsigned_abs() | m);
-        let shift = (64 - widest.leading_zeros()).saturating_sub(30);
-        match Vec3::from_bits(n.map(|v| (v >> shift) as i32)).normalized() {
-            Some(unit) => unit.to_bits().map(|v| (v >> 2) as i16),
-            None => [0; 3],
-        }
+        let n = fifteen_bits([minor(1, 2), minor(2, 0), minor(0, 1)].map(|v| v << 1));
+        let length = n.iter().map(|&v| (v * v) as u32).fold(0, u32::wrapping_add).isqrt();
+        let Some(length) = core::num::NonZeroU32::new(length) else { return [0; 3] };
+        n.map(|v| {
+            let unit = ((v.unsigned_abs() << 14) + length.get() / 2) / length;
+            (if v < 0 { -(unit as i32) } else { unit as i32 }) as i16
+        })
     }
 }
 
-/// The direction from `a` to `b`, scaled to 30 bits.
-fn edge(a: Vec3, b: Vec3) -> [i64; 3] {
-    let (a, b) = (a.to_bits(), b.to_bits());
-    let d = [0, 1, 2].map(|k: usize| i64::from(b[k]) - i64::from(a[k]));
-    let widest = d.iter().fold(0, |m, v| v.unsigned_abs() | m);
-    let zeros = widest.leading_zeros() as i32 - 34;
-    d.map(|v| if zeros >= 0 { v << zeros } else { v >> -zeros })
+/// The direction from `a` to `b`, scaled to 15 bits.
+fn edge(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
+    // Halved, so that differences fit.
+    fifteen_bits([0, 1, 2].map(|k: usize| (b[k] >> 1) - (a[k] >> 1)))
+}
+
+/// A vector scaled so that its largest component has 15 bits.
+#[inline(never)]
+fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
+    let widest = v.iter().fold(0, |all, c| all | c.unsigned_abs());
+    let zeros = widest.leading_zeros() as i32 - 17;
+    v.map(|c| if zeros >= 0 { c << zeros.min(31) } else { c >> -zeros })
 }
 
 /// The programmable vertex stage: computes what is interpolated over triangles, and what is constant on them.

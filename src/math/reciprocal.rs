@@ -46,7 +46,7 @@ const fn seed() -> [u16; 256] {
     while i < 256 {
         // 2³¹ / (2¹⁵ + (i + 1/2) 2⁷), at most 65,408.
         let middle = (1 << 16) + ((2 * i as u64 + 1) << 7);
-        table[i] = (((1_u64 << 33) / middle + 1) / 2) as u16;
+        table[i] = ((1_u64 << 33) / middle).div_ceil(2) as u16;
         i += 1;
     }
     table

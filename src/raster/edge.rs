@@ -5,7 +5,7 @@
 //! exactly on the edge belongs to the span to its right, which is the top-left rule for edges that are not horizontal.
 
 use crate::geometry::small;
-use core::num::{NonZeroU32, NonZeroU64};
+use core::num::NonZeroU32;
 
 /// The state of an edge at a row.
 ///
@@ -23,20 +23,31 @@ pub struct Edge {
     denominator: u32,
 }
 
-/// `num / den` and the remainder; the 64-bit division, slow on small cores, only where 32 bits do not hold `num`.
+/// `num / den` and the remainder, for quotients below 2³².
 #[inline]
 fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
     match u32::try_from(num) {
         Ok(num) => (num / den, num % den),
-        Err(_) => wide_divide(num, den),
+        Err(_) => long_divide((num >> 32) as u32, num as u32, den),
     }
 }
 
+/// The same bit by bit, `high` being below `den`: rare, and no 64-bit division to link.
 #[cold]
 #[inline(never)]
-fn wide_divide(num: u64, den: NonZeroU32) -> (u32, u32) {
-    let den = NonZeroU64::from(den);
-    ((num / den) as u32, (num % den) as u32)
+fn long_divide(high: u32, low: u32, den: NonZeroU32) -> (u32, u32) {
+    let (mut rest, mut low) = (high, low);
+    for _ in 0..32 {
+        // The bit that leaves `rest` at the top makes it larger than any divisor.
+        let carry = rest >> 31;
+        rest = rest << 1 | low >> 31;
+        low <<= 1;
+        if carry != 0 || rest >= den.get() {
+            rest = rest.wrapping_sub(den.get());
+            low |= 1;
+        }
+    }
+    (low, rest)
 }
 
 impl Edge {
@@ -49,7 +60,7 @@ impl Edge {
     /// Points (x, y) in 24.8, at most ±32,767 px; `row` is one the edge crosses: 0 ≤ p < dy for its height p below `a`.
     /// dx = q dy + r with 0 ≤ r < dy ≤ 2²⁴, and the position at p is a.x + p q + p r / dy: p q stays within dx ± dy,
     /// p r below 2⁴⁸ (and mostly below 2³²).
-    #[inline]
+    #[inline(never)]
     pub fn new(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let p = 256 * row + 128 - a.1;
@@ -138,6 +149,21 @@ impl Edge {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn long_division_is_division() {
+        let mut state = 9_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            state ^ state >> 31
+        };
+        for _ in 0..20_000 {
+            let den = NonZeroU32::new((next() >> (32 + next() % 31)) as u32 | 1).expect("odd");
+            let num = (u64::from(den.get()) * (next() >> (32 + next() % 32))) + next() % u64::from(den.get());
+            let expected = ((num / u64::from(den.get())) as u32, (num % u64::from(den.get())) as u32);
+            assert_eq!(long_divide((num >> 32) as u32, num as u32, den), expected, "{num} / {den}");
+        }
+    }
 
     #[test]
     fn walking_and_dividing_give_the_same_edge() {

@@ -209,6 +209,7 @@ impl Wide {
 /// ⌊n 2^bits / den⌋ modulo 2³², 0 < den < 2⁵¹.
 ///
 /// Long division, bit by bit: it is rare, and wider divisions are code that small programs need not link.
+#[inline(never)]
 fn divide_modulo(n: Wide, den: u64, bits: u32) -> u32 {
     // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
     let flip = (n.high >> 63) as u32;

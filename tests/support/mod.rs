@@ -174,16 +174,16 @@ pub fn snapped<const K: usize>(
             continue;
         }
         let all = Outcode(codes[0] | codes[1] | codes[2]);
-        let mut fan = |polygon: &[(ClipVertex, [i32; K])]| {
-            let placed: Vec<_> = polygon.iter().filter_map(|(v, varyings)| Some((project(v)?, *varyings))).collect();
+        let mut fan = |placed: Vec<(ScreenVertex, [i32; K])>| {
             for k in 2..placed.len() {
                 triangles.push(([placed[0], placed[k - 1], placed[k]], number));
             }
         };
+        let placed = |(v, varyings): &(ClipVertex, [i32; K])| Some((project(v)?, *varyings));
         if all.0 == 0 {
-            fan(&vertices);
+            fan(vertices.iter().filter_map(placed).collect());
         } else {
-            clip_triangle(&vertices, all, range, fan);
+            clip_triangle(&vertices, all, range, |polygon| fan(polygon.filter_map(placed).collect()));
         }
     }
     triangles
