@@ -78,38 +78,33 @@ fn frame(
 
 #[inline(never)]
 pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = CAMERA * MIRROR;
     let [r, g, b] = QUAD_COLOR;
     let shader = Flat::unlit(Rgb888::new(r, g, b));
     let state = State { depth: DepthState::OFF, ..State::default() };
-    frame(buffers, sink, |scene| scene.draw_with(state, &QUAD, &mvp, &shader))
+    frame(buffers, sink, |scene| scene.draw_with(state, &QUAD, &IN_VIEW, &shader))
 }
 
 #[inline(never)]
 pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = CAMERA * MIRROR;
-    frame(buffers, sink, |scene| scene.draw(&QUAD, &mvp, &Gouraud::unlit()))
+    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::unlit()))
 }
 
 #[inline(never)]
 pub fn flat_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = CAMERA * MODEL;
-    let shader = Flat::new(light(), torus_color());
-    frame(buffers, sink, |scene| scene.draw(&TORUS, &mvp, &shader))
+    let shader = Flat::new(TORUS_LIGHT, torus_color());
+    frame(buffers, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
 #[inline(never)]
 pub fn gouraud_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = CAMERA * MODEL;
-    let shader = Gouraud::new(light(), torus_color());
-    frame(buffers, sink, |scene| scene.draw(&TORUS, &mvp, &shader))
+    let shader = Gouraud::new(TORUS_LIGHT, torus_color());
+    frame(buffers, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
 #[inline(never)]
 pub fn tiny(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    let mvp = CAMERA * MIRROR;
     let shader = FaceColors(Flat::unlit(Rgb888::new(0, 0, 0)));
-    frame(buffers, sink, |scene| scene.draw(&TINY, &mvp, &shader))
+    frame(buffers, sink, |scene| scene.draw(&TINY, &IN_VIEW, &shader))
 }
 
 /// The compiler makes it: 128-bit arithmetic stays out of the firmware.
@@ -120,16 +115,16 @@ const CAMERA: Projective = {
     }
 };
 
+/// Where workloads are that are given in the camera's own space, and the torus.
+const IN_VIEW: Projective = CAMERA.compose_affine(&MIRROR);
+const OF_TORUS: Projective = CAMERA.compose_affine(&MODEL);
+
 /// The light as the torus sees it.
-fn light() -> Light {
-    const fn level(part: f64) -> u8 {
-        nearest(part * 255.0) as u8
-    }
-    const DIRECTION: Vec3 = vector([LIGHT[0], LIGHT[1], -LIGHT[2]]);
-    let [ambient, diffuse] = const { [level(AMBIENT), level(DIFFUSE)] };
-    Light::new(DIRECTION, Rgb888::new(diffuse, diffuse, diffuse), Rgb888::new(ambient, ambient, ambient))
-        .to_object(&MODEL)
-}
+const TORUS_LIGHT: Light = {
+    let [ambient, diffuse] = [nearest(AMBIENT * 255.0) as u8, nearest(DIFFUSE * 255.0) as u8];
+    let direction = vector([LIGHT[0], LIGHT[1], -LIGHT[2]]);
+    Light::from_channels(direction, [diffuse; 3], [ambient; 3]).to_object(&MODEL)
+};
 
 fn torus_color() -> Rgb888 {
     let [r, g, b] = TORUS_COLOR;

@@ -25,8 +25,19 @@ pub struct Light {
 }
 
 /// Brightness of a colour's channels, 255 becoming 256.
-fn levels(color: Rgb888) -> [u16; 3] {
-    [color.r(), color.g(), color.b()].map(|c| u16::from(c) + u16::from(c >> 7))
+const fn levels([r, g, b]: [u8; 3]) -> [u16; 3] {
+    [r as u16 + (r >> 7) as u16, g as u16 + (g >> 7) as u16, b as u16 + (b >> 7) as u16]
+}
+
+/// The unit vector in a direction, 2.14, rounded; zero for the zero vector.
+const fn unit(direction: Vec3) -> [i16; 3] {
+    match direction.normalized() {
+        Some(unit) => {
+            let [x, y, z] = unit.to_bits();
+            [((x + 2) >> 2) as i16, ((y + 2) >> 2) as i16, ((z + 2) >> 2) as i16]
+        }
+        None => [0; 3],
+    }
 }
 
 impl Light {
@@ -34,17 +45,21 @@ impl Light {
     ///
     /// A zero vector leaves the ambient light alone.
     pub fn new(direction: Vec3, diffuse: Rgb888, ambient: Rgb888) -> Self {
-        let unit = direction.normalized().unwrap_or(Vec3::ZERO).to_bits();
-        Self { direction: unit.map(|c| ((c + 2) >> 2) as i16), diffuse: levels(diffuse), ambient: levels(ambient) }
+        let channels = |color: Rgb888| [color.r(), color.g(), color.b()];
+        Self::from_channels(direction, channels(diffuse), channels(ambient))
+    }
+
+    /// [`new`](Self::new) for constants: colours as red, green and blue.
+    pub const fn from_channels(direction: Vec3, diffuse: [u8; 3], ambient: [u8; 3]) -> Self {
+        Self { direction: unit(direction), diffuse: levels(diffuse), ambient: levels(ambient) }
     }
 
     /// The same light, given in world (or eye) space, as seen from object space: what a shader needs, as normals are in
     /// object space. `model` may rotate, move and scale evenly.
-    pub fn to_object(&self, model: &Affine) -> Self {
-        let direction = Vec3::from_bits(self.direction.map(|c| i32::from(c) << 2));
-        let turned = model.inverse_rigid().transform_vector(direction);
-        let unit = turned.normalized().unwrap_or(Vec3::ZERO).to_bits();
-        Self { direction: unit.map(|c| ((c + 2) >> 2) as i16), ..*self }
+    pub const fn to_object(&self, model: &Affine) -> Self {
+        let [x, y, z] = self.direction;
+        let direction = Vec3::from_bits([(x as i32) << 2, (y as i32) << 2, (z as i32) << 2]);
+        Self { direction: unit(model.inverse_rigid().transform_vector(direction)), ..*self }
     }
 
     /// Light on a surface of a colour: what is the same for all its normals, worked out once.
