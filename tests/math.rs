@@ -33,9 +33,7 @@ fn sine_and_cosine_are_right_at_all_angles() {
     for k in 0..=u16::MAX {
         let a = Angle(k);
         let (sin, cos) = (a.sin().to_num::<f64>(), a.cos().to_num::<f64>());
-        worst = worst
-            .max((sin - radians(a).sin()).abs())
-            .max((cos - radians(a).cos()).abs());
+        worst = worst.max((sin - radians(a).sin()).abs()).max((cos - radians(a).cos()).abs());
         assert!(sin.abs() <= 1.0 && cos.abs() <= 1.0, "{a:?}");
         // Odd and even, but for the rounding of halves.
         let off = |p: Scalar, q: Scalar| (p - q).abs().to_bits();
@@ -43,20 +41,9 @@ fn sine_and_cosine_are_right_at_all_angles() {
     }
     println!("worst sine or cosine is off by {:.3} · 2⁻¹⁶", worst / STEP);
     assert!(worst <= STEP, "{worst}");
-    for (degrees, sin, cos) in [
-        (0, 0, 1),
-        (90, 1, 0),
-        (180, 0, -1),
-        (270, -1, 0),
-        (-90, -1, 0),
-        (450, 1, 0),
-    ] {
+    for (degrees, sin, cos) in [(0, 0, 1), (90, 1, 0), (180, 0, -1), (270, -1, 0), (-90, -1, 0), (450, 1, 0)] {
         let a = Angle::from_degrees(degrees);
-        assert_eq!(
-            (a.sin(), a.cos()),
-            (Scalar::from_num(sin), Scalar::from_num(cos)),
-            "{degrees}°"
-        );
+        assert_eq!((a.sin(), a.cos()), (Scalar::from_num(sin), Scalar::from_num(cos)), "{degrees}°");
     }
 }
 
@@ -122,12 +109,7 @@ fn rotations_are_orthonormal_and_go_the_right_way() {
             (Vec3::Z, Affine::rotation_z(Angle(k))),
         ] {
             let (a, b) = (named.to_rows(), Affine::rotation(axis, Angle(k)).to_rows());
-            let off = a
-                .iter()
-                .flatten()
-                .zip(b.iter().flatten())
-                .map(|(a, b)| (a - b).abs())
-                .max();
+            let off = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).max();
             assert!(off <= Some(4), "angle {k} about {axis:?}: {a:?} {b:?}");
         }
     }
@@ -143,11 +125,7 @@ fn vectors_agree_with_f64() {
         let (p, q) = (to_f64(a), to_f64(b));
         let dot: f64 = (0..3).map(|i| p[i] * q[i]).sum();
         worst[0] = worst[0].max((a.dot(b).to_num::<f64>() - dot).abs());
-        let cross = [
-            p[1] * q[2] - p[2] * q[1],
-            p[2] * q[0] - p[0] * q[2],
-            p[0] * q[1] - p[1] * q[0],
-        ];
+        let cross = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
         for (found, exact) in to_f64(a.cross(b)).into_iter().zip(cross) {
             worst[1] = worst[1].max((found - exact).abs());
         }
@@ -160,10 +138,7 @@ fn vectors_agree_with_f64() {
             }
         }
     }
-    println!(
-        "worst dot, cross, length, normalized, in 2⁻¹⁶: {:?}",
-        worst.map(|w| w / STEP)
-    );
+    println!("worst dot, cross, length, normalized, in 2⁻¹⁶: {:?}", worst.map(|w| w / STEP));
     assert!(worst[..3].iter().all(|w| *w <= 1.01 * STEP), "rounded down to 2⁻¹⁶");
     assert!(worst[3] <= 2.0 * STEP, "within 2⁻¹⁵");
     assert_eq!(Vec3::ZERO.normalized(), None);
@@ -196,10 +171,7 @@ fn look_at_puts_the_eye_at_the_origin_and_the_target_ahead() {
         let error = [x, y, z + distance, ex, ey, ez].map(|v| v.abs() / scale);
         worst = error.into_iter().fold(worst, f64::max);
         // What is above the target is above it on the screen.
-        assert!(
-            to_f64(view.transform_point(target + Vec3::Y))[1] >= y - 4.0 * scale,
-            "seed {seed}"
-        );
+        assert!(to_f64(view.transform_point(target + Vec3::Y))[1] >= y - 4.0 * scale, "seed {seed}");
     }
     println!("worst look_at is off by {worst:.2} · 2⁻¹⁶ a unit of distance");
     assert!(worst <= 4.0);
@@ -217,11 +189,7 @@ fn perspective_maps_near_to_0_and_far_to_1() {
         let (width, height) = (rng.between(1, 2000) as u16, rng.between(1, 2000) as u16);
         let m = matrix(&Projective::perspective(fov, (width, height), near, far).expect("a camera"));
         let (n, f) = (near.to_num::<f64>(), far.to_num::<f64>());
-        for (distance, depth) in [
-            (n, 0.0),
-            (f, 1.0),
-            ((n + f) / 2.0, f * (f - n) / 2.0 / ((f - n) * (n + f) / 2.0)),
-        ] {
+        for (distance, depth) in [(n, 0.0), (f, 1.0), ((n + f) / 2.0, f * (f - n) / 2.0 / ((f - n) * (n + f) / 2.0))] {
             let [_, _, z, w] = apply(&m, [0.0, 0.0, -distance, 1.0]);
             assert!((w - distance).abs() < 1e-9);
             worst = worst.max((z / w - depth).abs() * n.min(1.0));
@@ -230,10 +198,7 @@ fn perspective_maps_near_to_0_and_far_to_1() {
         let tan = (radians(Angle(fov.0 / 2))).tan();
         let aspect = f64::from(width) / f64::from(height);
         let [x, y, _, w] = apply(&m, [tan * aspect, tan, -1.0, 1.0]);
-        assert!(
-            (x / w - 1.0).abs() < 1e-4 && (y / w - 1.0).abs() < 1e-4,
-            "seed {seed}: ({x}, {y}) / {w}"
-        );
+        assert!((x / w - 1.0).abs() < 1e-4 && (y / w - 1.0).abs() < 1e-4, "seed {seed}: ({x}, {y}) / {w}");
     }
     println!("worst depth is off by 2^{:.1} / near", worst.log2());
     assert!(worst < 2f64.powi(-30), "{worst}");
@@ -252,11 +217,7 @@ fn orthographic_maps_its_box_to_clip_space() {
         let num = |v: Scalar| v.to_num::<f64>();
         let low = apply(&m, [num(x.0), num(y.0), -num(z.0), 1.0]);
         let high = apply(&m, [num(x.1), num(y.1), -num(z.1), 1.0]);
-        for (found, expected) in low
-            .into_iter()
-            .chain(high)
-            .zip([-1.0, -1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0])
-        {
+        for (found, expected) in low.into_iter().chain(high).zip([-1.0, -1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0]) {
             assert!((found - expected).abs() < 1e-6, "seed {seed}: {low:?} {high:?}");
         }
     }
@@ -270,14 +231,8 @@ fn composition_is_application_one_after_the_other() {
         let [a, b, c] = [(); 3].map(|()| rigid(&mut rng, 20.0));
         let point = vector(&mut rng, 20.0);
         let off = |p: Vec3, q: Vec3| length(to_f64(p - q)) / STEP;
-        worst[0] = worst[0].max(off(
-            (a * b).transform_point(point),
-            a.transform_point(b.transform_point(point)),
-        ));
-        worst[1] = worst[1].max(off(
-            ((a * b) * c).transform_point(point),
-            (a * (b * c)).transform_point(point),
-        ));
+        worst[0] = worst[0].max(off((a * b).transform_point(point), a.transform_point(b.transform_point(point))));
+        worst[1] = worst[1].max(off(((a * b) * c).transform_point(point), (a * (b * c)).transform_point(point)));
         let there_and_back = a.inverse_rigid() * a;
         worst[2] = worst[2].max(off(there_and_back.transform_point(point), point));
         // The 4 × 4 matrix says the same, and composes to 2⁻³².
@@ -285,10 +240,7 @@ fn composition_is_application_one_after_the_other() {
         let [x, y, z] = to_f64(point);
         let p = apply(&matrix(&four), [x, y, z, 1.0]);
         let q = to_f64(a.transform_point(point));
-        assert!(
-            (0..3).all(|i| (p[i] - q[i]).abs() <= 2.0 * STEP) && p[3] == 1.0,
-            "seed {seed}"
-        );
+        assert!((0..3).all(|i| (p[i] - q[i]).abs() <= 2.0 * STEP) && p[3] == 1.0, "seed {seed}");
         let left = matrix(&((four * b) * c));
         let right = matrix(&(four * (Projective::from(b) * c)));
         for (l, r) in left.iter().flatten().zip(right.iter().flatten()) {
@@ -298,20 +250,14 @@ fn composition_is_application_one_after_the_other() {
     println!("worst in 2⁻¹⁶: (a b) p against a (b p), (a b) c against a (b c), inverse: {worst:.1?}");
     // Entries of a product are off by 1 · 2⁻¹⁶, those of a rotation by 4, times coordinates up to 35 · √3.
     assert!(worst[..2].iter().all(|w| *w <= 250.0) && worst[2] <= 500.0, "{worst:?}");
-    assert_eq!(
-        Affine::IDENTITY * Affine::translation(Vec3::X),
-        Affine::translation(Vec3::X)
-    );
+    assert_eq!(Affine::IDENTITY * Affine::translation(Vec3::X), Affine::translation(Vec3::X));
     assert_eq!(Projective::IDENTITY * Projective::IDENTITY, Projective::IDENTITY);
 }
 
 #[test]
 fn scales_and_saturation() {
     let scale = Affine::scale_axes(Vec3::from_ints(2, -3, 0));
-    assert_eq!(
-        scale.transform_point(Vec3::from_ints(1, 1, 1)),
-        Vec3::from_ints(2, -3, 0)
-    );
+    assert_eq!(scale.transform_point(Vec3::from_ints(1, 1, 1)), Vec3::from_ints(2, -3, 0));
     let huge = Affine::scale(Scalar::MAX);
     assert_eq!((huge * huge).transform_point(Vec3::X).x, Scalar::MAX);
     let big = Projective::from_rows([[i64::MAX; 4]; 4]);
