@@ -6,12 +6,14 @@ use crate::math::Projective;
 /// A plane in the space that the matrix maps from; its inside is where it is not negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Plane {
-    /// Normal, pointing inside, of any length; below 2²⁸.
+    /// Normal, pointing inside, of any length; at most 2²⁸.
     normal: [i32; 3],
     /// Offset, below 2⁶⁰: the value of the plane at the origin.
     offset: i64,
     /// At least the length of the normal.
     length: i32,
+    /// By how much values may be off.
+    slack: i64,
 }
 
 /// Where an object is.
@@ -43,13 +45,13 @@ pub struct Frustum {
     planes: [Plane; 6],
 }
 
-/// Rounding of a normal (a unit an axis times 2³¹) and of the offset cannot move a value by more than this.
+/// A unit of rounding an axis of a normal (times 2³¹), and of the offset, cannot move a value by more than this.
 const SLACK: i64 = 1 << 33;
 
 impl Plane {
-    /// The plane `row · (x, y, z, 1) ≥ 0`, entries below 2⁶¹ with 32 fractional bits each.
+    /// The plane `row · (x, y, z, 1) ≥ 0`, entries below 2⁶¹ with 32 fractional bits each, rounded down by up to `error`.
     #[inline(never)]
-    fn new(row: [i64; 4]) -> Self {
+    fn new(row: [i64; 4], error: i32) -> Self {
         // Normal below 2²⁸ and offset (16 more fractional bits) below 2⁶⁰, by one common shift.
         let bits = |v: i64| 64 - v.unsigned_abs().leading_zeros() as i32;
         let normal_bits = bits(row[0]).max(bits(row[1])).max(bits(row[2]));
@@ -61,10 +63,16 @@ impl Plane {
         let mut sizes = normal.map(i32::abs);
         sizes.sort_unstable();
         let length = sizes[2] + sizes[1] / 2 + sizes[0] / 3 + 2;
-        Self { normal, offset: scaled(row[3], shift - 16), length }
+        Self {
+            normal,
+            offset: scaled(row[3], shift - 16),
+            length,
+            // A unit for rounding here, beside those that came in, rounded up.
+            slack: (scaled(i64::from(error), shift) + i64::from(error > 0) + 1).clamp(1, 1 << 28) * SLACK,
+        }
     }
 
-    /// Value of the plane at a point in raw 16.16: positive inside, off by less than [`SLACK`].
+    /// Value of the plane at a point in raw 16.16: positive inside, off by less than `slack`.
     fn at(&self, p: [i32; 3]) -> i64 {
         // 2²⁸ · 2³¹ · 3 + 2⁶⁰ < 2⁶².
         let [a, b, c] = self.normal;
@@ -74,9 +82,9 @@ impl Plane {
     #[inline(never)]
     fn contains(&self, center: [i32; 3], reach: i64) -> Containment {
         let value = self.at(center);
-        if value + reach < -SLACK {
+        if value + reach < -self.slack {
             Containment::Outside
-        } else if value - reach > SLACK {
+        } else if value - reach > self.slack {
             Containment::Inside
         } else {
             Containment::Crossing
@@ -124,7 +132,8 @@ impl Frustum {
                     *sum += entry * i64::from(factor);
                 }
             }
-            Plane::new(sum)
+            let error = factors.iter().map(|f| f.abs()).sum();
+            Plane::new(sum, if shift > 0 { error } else { 0 })
         });
         Self { planes }
     }

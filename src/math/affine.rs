@@ -75,21 +75,23 @@ impl Affine {
             return Self::IDENTITY;
         };
         let n = unit.to_bits();
-        let (s, c) = (angle.sin_q30() >> 14, angle.cos_q30() >> 14);
+        let (s, c) = (angle.sin().to_bits() as i64, angle.cos().to_bits() as i64);
         let mut rows = [[0; 4]; 3];
         let mut i = 0;
         while i < 3 {
             let mut j = 0;
             while j < 3 {
-                let outer = (n[i] as i64 * n[j] as i64) >> 16;
-                rows[i][j] = ((outer * (ONE as i64 - c)) >> 16) as i32;
+                // Below 2³² · 2¹⁷.
+                let outer = n[i] as i64 * n[j] as i64 * (ONE as i64 - c);
+                rows[i][j] += ((outer + (1 << 31)) >> 32) as i32;
                 j += 1;
             }
             rows[i][i] += c as i32;
             // The cross-product matrix: +n on (next, previous), -n on (previous, next).
             let (next, previous) = ((i + 1) % 3, (i + 2) % 3);
-            rows[previous][next] += ((n[i] as i64 * s) >> 16) as i32;
-            rows[next][previous] -= ((n[i] as i64 * s) >> 16) as i32;
+            let cross = ((n[i] as i64 * s + (1 << 15)) >> 16) as i32;
+            rows[previous][next] += cross;
+            rows[next][previous] -= cross;
             i += 1;
         }
         Self { rows }

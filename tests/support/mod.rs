@@ -149,6 +149,9 @@ pub fn on_screen(viewport: &Viewport, [x, y, z, w]: [f64; 4]) -> [f64; 3] {
     ]
 }
 
+/// Corners on the screen, with what is interpolated.
+pub type SnappedTriangle<const K: usize> = [(ScreenVertex, [i32; K]); 3];
+
 /// The triangles of a mesh as the rasterizer gets them: transformed, clipped, projected and snapped, with `varyings` of
 /// their vertices, and the number each had in the mesh.
 pub fn snapped<const K: usize>(
@@ -157,7 +160,7 @@ pub fn snapped<const K: usize>(
     viewport: &Viewport,
     range: DepthRange,
     varyings: impl Fn(usize) -> [i32; K],
-) -> Vec<([(ScreenVertex, [i32; K]); 3], usize)> {
+) -> Vec<(SnappedTriangle<K>, usize)> {
     let positions = &mesh.data().positions;
     let transform = Transform::new(mvp, viewport, mesh, false);
     let mut triangles = Vec::new();

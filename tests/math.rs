@@ -1,0 +1,287 @@
+//! Angles, vectors and matrices against f64.
+
+mod reference;
+mod support;
+
+use reference::rng::Rng;
+use std::f64::consts::TAU;
+use support::{angle, apply, matrix, rigid, scalar, vector};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3, Wide};
+
+const STEP: f64 = 1.0 / 65_536.0;
+
+fn radians(angle: Angle) -> f64 {
+    f64::from(angle.0) / 65_536.0 * TAU
+}
+
+fn to_f64(v: Vec3) -> [f64; 3] {
+    v.to_bits().map(|c| f64::from(c) * STEP)
+}
+
+fn rows(a: &Affine) -> [[f64; 4]; 3] {
+    a.to_rows().map(|row| row.map(|c| f64::from(c) * STEP))
+}
+
+fn length(v: [f64; 3]) -> f64 {
+    v.iter().map(|c| c * c).sum::<f64>().sqrt()
+}
+
+/// Bound: 2⁻¹⁵, and 2⁻¹⁶ as documented.
+#[test]
+fn sine_and_cosine_are_right_at_all_angles() {
+    let mut worst = 0_f64;
+    for k in 0..=u16::MAX {
+        let a = Angle(k);
+        let (sin, cos) = (a.sin().to_num::<f64>(), a.cos().to_num::<f64>());
+        worst = worst.max((sin - radians(a).sin()).abs()).max((cos - radians(a).cos()).abs());
+        assert!(sin.abs() <= 1.0 && cos.abs() <= 1.0, "{a:?}");
+        // Odd and even, but for the rounding of halves.
+        let off = |p: Scalar, q: Scalar| (p - q).abs().to_bits();
+        assert!(off((-a).sin(), -a.sin()) <= 1 && off((-a).cos(), a.cos()) <= 1, "{a:?}");
+    }
+    println!("worst sine or cosine is off by {:.3} · 2⁻¹⁶", worst / STEP);
+    assert!(worst <= STEP, "{worst}");
+    for (degrees, sin, cos) in [(0, 0, 1), (90, 1, 0), (180, 0, -1), (270, -1, 0), (-90, -1, 0), (450, 1, 0)] {
+        let a = Angle::from_degrees(degrees);
+        assert_eq!((a.sin(), a.cos()), (Scalar::from_num(sin), Scalar::from_num(cos)), "{degrees}°");
+    }
+}
+
+#[test]
+fn angles_wrap_as_angles_do() {
+    for degrees in -1000..1000 {
+        let expected = (f64::from(degrees) / 360.0).rem_euclid(1.0) * 65_536.0;
+        let found = f64::from(Angle::from_degrees(degrees).0);
+        let off = (found - expected).abs();
+        assert!(off <= 0.5 || off >= 65_535.5, "{degrees}°: {found} for {expected}");
+    }
+    assert_eq!(Angle(60_000) + Angle(10_000), Angle(4464));
+    assert_eq!(Angle(100) - Angle(200), Angle(65_436));
+    assert_eq!(-Angle(1), Angle(65_535));
+    Angle::from_degrees(i32::MIN);
+    Angle::from_degrees(i32::MAX);
+}
+
+#[test]
+fn rotations_are_orthonormal_and_go_the_right_way() {
+    let mut worst = [0_f64; 2];
+    for seed in 0..3000 {
+        let mut rng = Rng::new(seed);
+        let (axis, turn) = (vector(&mut rng, 3.0), angle(&mut rng));
+        let (s, c) = radians(turn).sin_cos();
+        let n = to_f64(axis);
+        let n = n.map(|c| c / length(n));
+        // Rodrigues in f64.
+        let cross = [[0.0, -n[2], n[1]], [n[2], 0.0, -n[0]], [-n[1], n[0], 0.0]];
+        let m = rows(&Affine::rotation(axis, turn));
+        for i in 0..3 {
+            for j in 0..3 {
+                let unit = f64::from(u8::from(i == j));
+                let expected = unit * c + n[i] * n[j] * (1.0 - c) + cross[i][j] * s;
+                worst[0] = worst[0].max((m[i][j] - expected).abs());
+                let dot: f64 = (0..3).map(|k| m[i][k] * m[j][k]).sum();
+                worst[1] = worst[1].max((dot - unit).abs());
+            }
+        }
+    }
+    println!(
+        "worst entry of a rotation {:.2} · 2⁻¹⁶, worst product of two rows {:.2} · 2⁻¹⁶ off",
+        worst[0] / STEP,
+        worst[1] / STEP
+    );
+    assert!(worst[0] <= 4.0 * STEP, "entries are within 2⁻¹⁴: {}", worst[0]);
+    assert!(worst[1] <= 12.0 * STEP, "{}", worst[1]);
+
+    let quarter = Angle::from_degrees(90);
+    for (axis, from, to, named) in [
+        (Vec3::X, Vec3::Y, Vec3::Z, Affine::rotation_x(quarter)),
+        (Vec3::Y, Vec3::Z, Vec3::X, Affine::rotation_y(quarter)),
+        (Vec3::Z, Vec3::X, Vec3::Y, Affine::rotation_z(quarter)),
+    ] {
+        assert_eq!(named.transform_vector(from), to);
+        assert_eq!(Affine::rotation(axis, quarter).transform_vector(from), to);
+    }
+    assert_eq!(Affine::rotation(Vec3::ZERO, Angle(77)), Affine::IDENTITY);
+    for k in (0..=u16::MAX).step_by(97) {
+        for (axis, named) in [
+            (Vec3::X, Affine::rotation_x(Angle(k))),
+            (Vec3::Y, Affine::rotation_y(Angle(k))),
+            (Vec3::Z, Affine::rotation_z(Angle(k))),
+        ] {
+            let (a, b) = (named.to_rows(), Affine::rotation(axis, Angle(k)).to_rows());
+            let off = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).max();
+            assert!(off <= Some(4), "angle {k} about {axis:?}: {a:?} {b:?}");
+        }
+    }
+}
+
+#[test]
+fn vectors_agree_with_f64() {
+    let mut worst = [0_f64; 4];
+    for seed in 0..3000 {
+        let mut rng = Rng::new(seed);
+        let reach = (rng.unit() * 7.0).exp2();
+        let (a, b) = (vector(&mut rng, reach), vector(&mut rng, reach));
+        let (p, q) = (to_f64(a), to_f64(b));
+        let dot: f64 = (0..3).map(|i| p[i] * q[i]).sum();
+        worst[0] = worst[0].max((a.dot(b).to_num::<f64>() - dot).abs());
+        let cross = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]];
+        for (found, exact) in to_f64(a.cross(b)).into_iter().zip(cross) {
+            worst[1] = worst[1].max((found - exact).abs());
+        }
+        worst[2] = worst[2].max((a.length().to_num::<f64>() - length(p)).abs());
+        let tiny = Vec3::from_bits(a.to_bits().map(|c| c >> rng.below(16)));
+        if let Some(unit) = tiny.normalized() {
+            let p = to_f64(tiny);
+            for (found, exact) in to_f64(unit).into_iter().zip(p.map(|c| c / length(p))) {
+                worst[3] = worst[3].max((found - exact).abs());
+            }
+        }
+    }
+    println!("worst dot, cross, length, normalized, in 2⁻¹⁶: {:?}", worst.map(|w| w / STEP));
+    assert!(worst[..3].iter().all(|w| *w <= 1.01 * STEP), "rounded down to 2⁻¹⁶");
+    assert!(worst[3] <= 2.0 * STEP, "within 2⁻¹⁵");
+    assert_eq!(Vec3::ZERO.normalized(), None);
+    let huge = Vec3::from_bits([i32::MIN; 3]);
+    assert_eq!(
+        (huge.dot(huge), huge.length(), huge + huge, -huge),
+        (Scalar::MAX, Scalar::MAX, huge, Vec3::from_bits([i32::MAX; 3]))
+    );
+    assert_eq!(huge.cross(Vec3::from_bits([i32::MAX, i32::MIN, 0])).x, Scalar::MIN);
+    huge.normalized().expect("a direction");
+}
+
+#[test]
+fn look_at_puts_the_eye_at_the_origin_and_the_target_ahead() {
+    let mut worst = 0_f64;
+    for seed in 0..2000 {
+        let mut rng = Rng::new(seed);
+        let (eye, target) = (vector(&mut rng, 50.0), vector(&mut rng, 50.0));
+        let Ok(view) = Affine::look_at(eye, target, Vec3::Y) else {
+            continue;
+        };
+        let distance = length(to_f64(target - eye));
+        if distance < 1.0 {
+            continue;
+        }
+        let [x, y, z] = to_f64(view.transform_point(target));
+        let [ex, ey, ez] = to_f64(view.transform_point(eye));
+        // Units of 2⁻¹⁶ a unit of distance from the origin.
+        let scale = STEP * (distance + 2.0 * length(to_f64(eye)) + 1.0);
+        let error = [x, y, z + distance, ex, ey, ez].map(|v| v.abs() / scale);
+        worst = error.into_iter().fold(worst, f64::max);
+        // What is above the target is above it on the screen.
+        assert!(to_f64(view.transform_point(target + Vec3::Y))[1] >= y - 4.0 * scale, "seed {seed}");
+    }
+    println!("worst look_at is off by {worst:.2} · 2⁻¹⁶ a unit of distance");
+    assert!(worst <= 4.0);
+}
+
+#[test]
+fn perspective_maps_near_to_0_and_far_to_1() {
+    let mut worst = 0_f64;
+    for seed in 0..2000 {
+        let mut rng = Rng::new(seed);
+        let near = 0.01 + rng.unit() * 10.0;
+        let far = near * (1.5 + rng.unit() * 2000.0);
+        let (near, far) = (Scalar::from_num(near), Scalar::from_num(far.min(32_000.0)));
+        let fov = Angle(rng.between(400, 32_000) as u16);
+        let (width, height) = (rng.between(1, 2000) as u16, rng.between(1, 2000) as u16);
+        let m = matrix(&Projective::perspective(fov, (width, height), near, far).expect("a camera"));
+        let (n, f) = (near.to_num::<f64>(), far.to_num::<f64>());
+        for (distance, depth) in [(n, 0.0), (f, 1.0), ((n + f) / 2.0, f * (f - n) / 2.0 / ((f - n) * (n + f) / 2.0))] {
+            let [_, _, z, w] = apply(&m, [0.0, 0.0, -distance, 1.0]);
+            assert!((w - distance).abs() < 1e-9);
+            worst = worst.max((z / w - depth).abs() * n.min(1.0));
+        }
+        // The edge of the view at half the angle.
+        let tan = (radians(Angle(fov.0 / 2))).tan();
+        let aspect = f64::from(width) / f64::from(height);
+        let [x, y, _, w] = apply(&m, [tan * aspect, tan, -1.0, 1.0]);
+        assert!((x / w - 1.0).abs() < 1e-4 && (y / w - 1.0).abs() < 1e-4, "seed {seed}: ({x}, {y}) / {w}");
+    }
+    println!("worst depth is off by 2^{:.1} / near", worst.log2());
+    assert!(worst < 2f64.powi(-30), "{worst}");
+}
+
+#[test]
+fn orthographic_maps_its_box_to_clip_space() {
+    for seed in 0..2000 {
+        let mut rng = Rng::new(seed);
+        let mut range = || {
+            let low = scalar(&mut rng, 100.0);
+            (low, low + Scalar::from_num(0.5 + rng.unit() * 200.0))
+        };
+        let (x, y, z) = (range(), range(), range());
+        let m = matrix(&Projective::orthographic(x, y, z).expect("a box"));
+        let num = |v: Scalar| v.to_num::<f64>();
+        let low = apply(&m, [num(x.0), num(y.0), -num(z.0), 1.0]);
+        let high = apply(&m, [num(x.1), num(y.1), -num(z.1), 1.0]);
+        for (found, expected) in low.into_iter().chain(high).zip([-1.0, -1.0, 0.0, 1.0, 1.0, 1.0, 1.0, 1.0]) {
+            assert!((found - expected).abs() < 1e-6, "seed {seed}: {low:?} {high:?}");
+        }
+    }
+}
+
+#[test]
+fn composition_is_application_one_after_the_other() {
+    let mut worst = [0_f64; 3];
+    for seed in 0..2000 {
+        let mut rng = Rng::new(seed);
+        let [a, b, c] = [(); 3].map(|()| rigid(&mut rng, 20.0));
+        let point = vector(&mut rng, 20.0);
+        let off = |p: Vec3, q: Vec3| length(to_f64(p - q)) / STEP;
+        worst[0] = worst[0].max(off((a * b).transform_point(point), a.transform_point(b.transform_point(point))));
+        worst[1] = worst[1].max(off(((a * b) * c).transform_point(point), (a * (b * c)).transform_point(point)));
+        let there_and_back = a.inverse_rigid() * a;
+        worst[2] = worst[2].max(off(there_and_back.transform_point(point), point));
+        // The 4 × 4 matrix says the same, and composes to 2⁻³².
+        let four = Projective::from(a);
+        let [x, y, z] = to_f64(point);
+        let p = apply(&matrix(&four), [x, y, z, 1.0]);
+        let q = to_f64(a.transform_point(point));
+        assert!((0..3).all(|i| (p[i] - q[i]).abs() <= 2.0 * STEP) && p[3] == 1.0, "seed {seed}");
+        let left = matrix(&((four * b) * c));
+        let right = matrix(&(four * (Projective::from(b) * c)));
+        for (l, r) in left.iter().flatten().zip(right.iter().flatten()) {
+            assert!((l - r).abs() < 100.0 / 2f64.powi(32), "seed {seed}: {l} {r}");
+        }
+    }
+    println!("worst in 2⁻¹⁶: (a b) p against a (b p), (a b) c against a (b c), inverse: {worst:.1?}");
+    // Entries of a product are off by 1 · 2⁻¹⁶, those of a rotation by 4, times coordinates up to 35 · √3.
+    assert!(worst[..2].iter().all(|w| *w <= 250.0) && worst[2] <= 500.0, "{worst:?}");
+    assert_eq!(Affine::IDENTITY * Affine::translation(Vec3::X), Affine::translation(Vec3::X));
+    assert_eq!(Projective::IDENTITY * Projective::IDENTITY, Projective::IDENTITY);
+}
+
+#[test]
+fn scales_and_saturation() {
+    let scale = Affine::scale_axes(Vec3::from_ints(2, -3, 0));
+    assert_eq!(scale.transform_point(Vec3::from_ints(1, 1, 1)), Vec3::from_ints(2, -3, 0));
+    let huge = Affine::scale(Scalar::MAX);
+    assert_eq!((huge * huge).transform_point(Vec3::X).x, Scalar::MAX);
+    let big = Projective::from_rows([[i64::MAX; 4]; 4]);
+    assert_eq!((big * big).to_rows(), [[i64::MAX; 4]; 4]);
+    assert_eq!(Projective::IDENTITY.entry(1, 1), Some(Wide::ONE));
+    assert_eq!(Projective::IDENTITY.entry(4, 0), None);
+}
+
+/// Whole cameras and models can be constants.
+#[test]
+fn transforms_are_constants() {
+    const NEAR: Scalar = Scalar::ONE;
+    const FAR: Scalar = Scalar::from_bits(100 << 16);
+    const CAMERA: Projective = match Projective::perspective(Angle::from_degrees(60), (320, 240), NEAR, FAR) {
+        Ok(camera) => camera,
+        Err(_) => panic!("not a camera"),
+    };
+    const VIEW: Affine = match Affine::look_at(Vec3::from_ints(0, 2, 5), Vec3::ZERO, Vec3::Y) {
+        Ok(view) => view,
+        Err(_) => panic!("not a view"),
+    };
+    const MODEL: Affine = Affine::rotation(Vec3::from_ints(1, 1, 0), Angle(1000)).compose(&Affine::scale(Scalar::ONE));
+    const MVP: Projective = CAMERA.compose_affine(&VIEW).compose_affine(&MODEL.inverse_rigid());
+    const LENGTH: Scalar = Vec3::from_ints(3, 4, 0).length();
+    assert_eq!(MVP, CAMERA * VIEW * MODEL.inverse_rigid());
+    assert_eq!(LENGTH, Scalar::from_num(5));
+}
