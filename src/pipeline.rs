@@ -367,7 +367,9 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
 
     fn push(&mut self, vertex: &(ScreenVertex, S::Varyings)) -> u16 {
         let index = self.scene.records.push_vertex();
-        self.scene.records.keep::<S>(usize::from(index), Slot::new(&Placed::Screen(vertex.0)), &vertex.1);
+        self.scene
+            .records
+            .keep::<S>(usize::from(index), Slot::new(&Placed::Screen(vertex.0)), &vertex.1);
         index
     }
 
@@ -429,7 +431,16 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
 
     fn draw(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
         if let Some(target) = &mut self.scene.target {
-            rasterize(target, self.scene.screen, &self.clip, self.state, self.shader, v, varyings, face);
+            rasterize(
+                target,
+                self.scene.screen,
+                &self.clip,
+                self.state,
+                self.shader,
+                v,
+                varyings,
+                face,
+            );
         }
     }
 }
@@ -444,7 +455,10 @@ fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
 }
 
 /// 8 to 11. A triangle on the screen: set-up, spans, depth test, fragments.
-#[expect(clippy::too_many_arguments, reason = "all of them change from call to call, or belong to different owners")]
+#[expect(
+    clippy::too_many_arguments,
+    reason = "all of them change from call to call, or belong to different owners"
+)]
 #[inline(never)]
 fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
     target: &mut Target<'_, F>,
@@ -462,7 +476,9 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         return;
     }
     let gradients = Gradients::new(v, area, screen);
-    let depth = gradients.plane(v.map(|v| i32::from(v.z)), 16).from_corner(gradients.origin());
+    let depth = gradients
+        .plane(v.map(|v| i32::from(v.z)), 16)
+        .from_corner(gradients.origin());
     let (mut corner, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
     let values = varyings.each_ref().map(|v| v.as_ref());
     for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
@@ -481,10 +497,14 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         let columns = x.start as usize..x.end as usize;
         let depths = target.depth.get_mut(row + columns.start..row + columns.end);
         let colors = target.framebuffer.row(y as u32).get_mut(columns);
-        let (Some(depths), Some(colors)) = (depths, colors) else { return };
+        let (Some(depths), Some(colors)) = (depths, colors) else {
+            return;
+        };
         let mut varyings = corner;
         for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(dx.as_ref()).zip(dy.as_ref()) {
-            *value = value.wrapping_add(dx.wrapping_mul(x.start)).wrapping_add(dy.wrapping_mul(y));
+            *value = value
+                .wrapping_add(dx.wrapping_mul(x.start))
+                .wrapping_add(dy.wrapping_mul(y));
         }
         let fragments = Fragments {
             color: colors,
@@ -497,8 +517,14 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         };
         // 10, 11. Depth test and fragments, in a loop of its own for each kind of test.
         match state.depth {
-            DepthState { compare: Compare::Less, write: true } => shader.span(face, fragments, LessWrite),
-            DepthState { compare: Compare::Always, write: false } => shader.span(face, fragments, NoDepth),
+            DepthState {
+                compare: Compare::Less,
+                write: true,
+            } => shader.span(face, fragments, LessWrite),
+            DepthState {
+                compare: Compare::Always,
+                write: false,
+            } => shader.span(face, fragments, NoDepth),
             other => shader.span(face, fragments, AnyDepth::new(other)),
         }
     });

@@ -54,13 +54,28 @@ mod tests {
             for end in start..90 {
                 let mut halves = vec![1_u16; 100];
                 fill(&mut halves[start..end], 0xABCD);
-                assert!(halves.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 0xABCD } else { 1 }));
+                assert!(
+                    halves
+                        .iter()
+                        .enumerate()
+                        .all(|(k, v)| *v == if (start..end).contains(&k) { 0xABCD } else { 1 })
+                );
                 let mut bytes = vec![1_u8; 100];
                 fill(&mut bytes[start..end], 7);
-                assert!(bytes.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 7 } else { 1 }));
+                assert!(
+                    bytes
+                        .iter()
+                        .enumerate()
+                        .all(|(k, v)| *v == if (start..end).contains(&k) { 7 } else { 1 })
+                );
                 let mut triples = vec![[1_u8; 3]; 100];
                 fill(&mut triples[start..end], [7, 8, 9]);
-                assert!(triples.iter().enumerate().all(|(k, v)| (*v == [7, 8, 9]) == (start..end).contains(&k)));
+                assert!(
+                    triples
+                        .iter()
+                        .enumerate()
+                        .all(|(k, v)| (*v == [7, 8, 9]) == (start..end).contains(&k))
+                );
             }
         }
     }

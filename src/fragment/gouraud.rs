@@ -127,9 +127,21 @@ const fn pack(r: i32, g: i32, b: i32) -> u32 {
 /// its neighbour.
 #[inline(always)]
 fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3]>, test: D) {
-    let Fragments { color, depth, mut z, dz_dx, varyings, d_dx, .. } = span;
+    let Fragments {
+        color,
+        depth,
+        mut z,
+        dz_dx,
+        varyings,
+        d_dx,
+        ..
+    } = span;
     // 8.16 → 8.3 or 8.2, rounded.
-    let [dr, dg, db] = [(d_dx[0] + (1 << 12)) >> 13, (d_dx[1] + (1 << 13)) >> 14, (d_dx[2] + (1 << 12)) >> 13];
+    let [dr, dg, db] = [
+        (d_dx[0] + (1 << 12)) >> 13,
+        (d_dx[1] + (1 << 13)) >> 14,
+        (d_dx[2] + (1 << 12)) >> 13,
+    ];
     let step = pack(dr, dg, db);
     let [mut r, mut g, mut b] = varyings;
     if color.len() > 2 {

@@ -44,7 +44,15 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     span: Fragments<'_, P, S::Varyings>,
     test: D,
 ) {
-    let Fragments { color, depth, mut z, dz_dx, mut varyings, d_dx, .. } = span;
+    let Fragments {
+        color,
+        depth,
+        mut z,
+        dz_dx,
+        mut varyings,
+        d_dx,
+        ..
+    } = span;
     for (color, depth) in color.iter_mut().zip(depth) {
         if !D::ENABLED || test.passes((z >> 16) as u16, depth) {
             *color = shader.fragment(face, &varyings);

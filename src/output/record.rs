@@ -50,9 +50,10 @@ impl Slot {
     #[inline]
     pub(crate) const fn new(placed: &Placed) -> Self {
         match placed {
-            Placed::Screen(v) => {
-                Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32])
-            }
+            Placed::Screen(v) => Self([
+                (v.x as u32) << 8 | (v.z >> 8) as u32,
+                (v.y as u32) << 8 | (v.z & 0xFF) as u32,
+            ]),
             Placed::Outside(code) => Self([OFF_SCREEN | code.0 as u32, 0]),
         }
     }

@@ -269,8 +269,14 @@ impl PlaneEquation {
     /// pixel (x, y) is `base + dx x + dy y`.
     #[inline]
     pub const fn from_corner(self, origin: (i32, i32)) -> Self {
-        let along = self.dx.wrapping_mul(origin.0).wrapping_add(self.dy.wrapping_mul(origin.1));
-        Self { base: self.base.wrapping_sub(along as u32), ..self }
+        let along = self
+            .dx
+            .wrapping_mul(origin.0)
+            .wrapping_add(self.dy.wrapping_mul(origin.1));
+        Self {
+            base: self.base.wrapping_sub(along as u32),
+            ..self
+        }
     }
 }
 
