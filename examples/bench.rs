@@ -144,7 +144,7 @@ mod counting {
                 black_box(strip);
             });
         };
-        let peak = stack::peak_of(&mut draw) + stack::held();
+        let peak = stack::peak_of(&mut draw).expect("the stack is too small") + stack::held();
         let statics = stack::static_ram();
         let strip = 4 * WIDTH * SIZES.0;
         let records = 4 * SIZES.1;

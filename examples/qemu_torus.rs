@@ -26,6 +26,7 @@ fn run() {
 
     let mut report = None;
     let peak = firmware::stack::peak_of(|| report = Some(scenes::render(0, color, depth, records)));
+    let peak = peak.expect("the stack is too small");
     let Some(report) = report else { return };
     println!("{}: hash {:016x}", scenes::SCENES[0].name, report.hash);
     println!("{:#?}", report.stats);

@@ -457,7 +457,9 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         let columns = x.start as usize..x.end as usize;
         let depths = target.depth.get_mut(row + columns.start..row + columns.end);
         let colors = target.framebuffer.row(y as u32).get_mut(columns);
-        let (Some(depths), Some(colors)) = (depths, colors) else { return };
+        let (Some(depths), Some(colors)) = (depths, colors) else {
+            return;
+        };
         let mut varyings = corner;
         for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(dx.as_ref()).zip(dy.as_ref()) {
             *value = value.wrapping_add(dx.wrapping_mul(x.start)).wrapping_add(dy.wrapping_mul(y));

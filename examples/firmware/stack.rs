@@ -17,9 +17,10 @@ unsafe extern "C" {
     static mut _stack_start: u32;
 }
 
-/// Runs `work` and returns the most stack it used, in bytes, with its callers left out.
+/// Runs `work` and returns the most stack it used, in bytes, with its callers left out; `None` if that was all there is,
+/// so that it may have run into the statics.
 #[inline(never)]
-pub fn peak_of(work: impl FnOnce()) -> usize {
+pub fn peak_of(work: impl FnOnce()) -> Option<usize> {
     let bottom = &raw mut __sheap;
     let top = pointer();
     let words = (top as usize - bottom as usize) / 4;
@@ -31,7 +32,7 @@ pub fn peak_of(work: impl FnOnce()) -> usize {
     on_its_own_frame(work);
     // SAFETY: as above.
     let unused = (0..words).take_while(|&i| unsafe { bottom.add(i).read_volatile() } == PAINT).count();
-    (words - unused) * 4
+    (unused > 0).then_some((words - unused) * 4)
 }
 
 /// Inlined, the work would use the stack of `peak_of`, above the paint.

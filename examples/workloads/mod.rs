@@ -293,11 +293,11 @@ const MODEL: Affine = {
     Affine::from_rows(vector(x), vector(y), vector([-zx, -zy, -zz]), vector([0.0, 0.0, -DISTANCE]))
 };
 
-pub const TORUS_POSITIONS: [[f64; 3]; VERTICES] = torus().0;
-pub const TORUS_NORMALS: [[f64; 3]; VERTICES] = torus().1;
-pub const TORUS_INDICES: [u16; 3 * TRIANGLES] = torus_faces().0;
+pub static TORUS_POSITIONS: [[f64; 3]; VERTICES] = torus().0;
+pub static TORUS_NORMALS: [[f64; 3]; VERTICES] = torus().1;
+pub static TORUS_INDICES: [u16; 3 * TRIANGLES] = torus_faces().0;
 /// Pointing outwards.
-pub const TORUS_FACE_NORMALS: [[f64; 3]; TRIANGLES] = torus_faces().1;
+pub static TORUS_FACE_NORMALS: [[f64; 3]; TRIANGLES] = torus_faces().1;
 
 /// Positions and normals.
 const fn torus() -> ([[f64; 3]; VERTICES], [[f64; 3]; VERTICES]) {

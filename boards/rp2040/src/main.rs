@@ -12,10 +12,15 @@
 #[path = "../../../examples/scenes/mod.rs"]
 mod scenes;
 
-use embedded_graphics_core::pixelcolor::{Rgb565, raw::RawU16};
 use embedded_hal::{digital::OutputPin, spi::MODE_0};
 use embedded_hal_bus::spi::ExclusiveDevice;
-use mipidsi::{Builder, interface::SpiInterface, models::ST7789, options::ColorInversion};
+use mipidsi::{
+    Builder,
+    dcs::{InterfaceExt, SetColumnAddress, SetPageAddress, WriteMemoryStart},
+    interface::{Interface, SpiInterface},
+    models::ST7789,
+    options::ColorInversion,
+};
 use panic_halt as _;
 use rp2040_hal::{
     Clock, Sio, Spi, Timer, Watchdog,
@@ -24,6 +29,8 @@ use rp2040_hal::{
     gpio::{FunctionSpi, Pins},
     pac,
 };
+use zstrip::math::Angle;
+use zstrip::output::{Buffers, Renderer, Rgb565Be, StripPixels};
 
 #[unsafe(link_section = ".boot2")]
 #[used]
@@ -36,14 +43,17 @@ const ROWS: usize = 16;
 /// How far the torus turns from frame to frame, in binary angle; `ci/rp2040` knows it too.
 const TURN: u16 = 1024;
 
-struct Buffers {
+/// Bytes of a row, the block that the driver passes on in one go.
+const ROW_BYTES: usize = 2 * SIZE;
+
+struct Memory {
     color: [u16; SIZE * ROWS],
     depth: [u16; SIZE * ROWS],
-    records: [u32; 16 * 1024],
-    wire: [u8; 512],
+    records: [u32; 4 * 1024],
+    wire: [u8; ROW_BYTES],
 }
 
-static mut BUFFERS: Buffers = Buffers {
+static mut MEMORY: Memory = Memory {
     color: [0; _],
     depth: [0; _],
     records: [0; _],
@@ -85,14 +95,14 @@ fn main() -> ! {
     );
     let device = ExclusiveDevice::new(bus, cs, timer).unwrap();
 
-    let buffers = &raw mut BUFFERS;
+    let memory = &raw mut MEMORY;
     // SAFETY: `main` runs once; this is the only reference.
-    let Buffers {
+    let Memory {
         color,
         depth,
         records,
         wire,
-    } = unsafe { &mut *buffers };
+    } = unsafe { &mut *memory };
     let mut display = Builder::new(ST7789, SpiInterface::new(device, dc, wire))
         .display_size(SIZE as u16, SIZE as u16)
         .invert_colors(ColorInversion::Inverted)
@@ -100,18 +110,33 @@ fn main() -> ! {
         .init(&mut timer)
         .unwrap();
 
+    let screen = (SIZE as u16, SIZE as u16);
+    let buffers = Buffers { color, depth, records };
+    let mut renderer = Renderer::<Rgb565Be>::new(screen, buffers).unwrap();
     let mut turn = 0;
     loop {
         in_frame.set_high().unwrap();
-        scenes::draw(1, turn, [SIZE, SIZE], color, depth, records, |y0, strip| {
+        let send = |strip: &StripPixels<'_, Rgb565Be>| {
             sending.set_high().unwrap();
-            let y1 = y0 + strip.len() / SIZE;
-            let pixels = strip.iter().map(|&pixel| Rgb565::from(RawU16::new(pixel)));
-            display
-                .set_pixels(0, y0 as u16, SIZE as u16 - 1, y1 as u16 - 1, pixels)
-                .unwrap();
+            let y0 = strip.area().top_left.y as u16;
+            let y1 = y0 + strip.area().size.height as u16 - 1;
+            // SAFETY: the window and its pixels are the driver's own commands; no setting changes.
+            let panel = unsafe { display.dcs() };
+            panel.write_command(SetColumnAddress::new(0, SIZE as u16 - 1))?;
+            panel.write_command(SetPageAddress::new(y0, y1))?;
+            panel.write_command(WriteMemoryStart)?;
+            // The bytes are what the panel expects: they go out in whole rows, not pixel by pixel.
+            let rows = strip.bytes().as_chunks::<ROW_BYTES>().0;
+            let sent = panel.send_pixels(rows.iter().copied());
             sending.set_low().unwrap();
+            sent
+        };
+        let frame = renderer.frame_to(send, scenes::BACKGROUND, |scene| {
+            scenes::torus_gouraud(scene, Angle(turn))
         });
+        if frame.is_err() {
+            panic!("the panel does not answer");
+        }
         in_frame.set_low().unwrap();
         turn = turn.wrapping_add(TURN);
     }
