@@ -448,18 +448,17 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
     }
     // With the half that rounds.
     let z = depth.base.wrapping_add(1 << 15);
-    let width = usize::from(screen.0);
+    let width = screen.0 as usize;
     let first = target.rows.start;
+    let depths = &mut *target.depth;
+    let framebuffer = &mut *target.framebuffer;
 
     // 9. Spans.
     spans(v, area, clip, |y, x| {
         let row = width * (y - first) as usize;
         let columns = x.start as usize..x.end as usize;
-        let depths = target.depth.get_mut(row + columns.start..row + columns.end);
-        let colors = target.framebuffer.row(y as u32).get_mut(columns);
-        let (Some(depths), Some(colors)) = (depths, colors) else {
-            return;
-        };
+        let Some(depths) = depths.get_mut(row + columns.start..row + columns.end) else { return };
+        let colors = framebuffer.span(y as u32, columns);
         let mut varyings = corner;
         for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(dx.as_ref()).zip(dy.as_ref()) {
             *value = value.wrapping_add(dx.wrapping_mul(x.start)).wrapping_add(dy.wrapping_mul(y));

@@ -58,11 +58,10 @@ impl Plane {
         let shift = (normal_bits - 28).max(bits(row[3]) + 16 - 60);
         let scaled = |v: i64, shift: i32| if shift >= 0 { v >> shift.min(63) } else { v << -shift };
         let normal = [scaled(row[0], shift) as i32, scaled(row[1], shift) as i32, scaled(row[2], shift) as i32];
-        // The largest component, half the second and a third of the smallest are never shorter than the vector, and at
-        // most 1/6 longer.
-        let mut sizes = normal.map(i32::abs);
-        sizes.sort_unstable();
-        let length = sizes[2] + sizes[1] / 2 + sizes[0] / 3 + 2;
+        // The largest component and half the others are never shorter than the vector, and at most 1/6 longer.
+        let [a, b, c] = normal.map(i32::abs);
+        let largest = a.max(b).max(c);
+        let length = largest + (a + b + c - largest) / 2 + 2;
         Self {
             normal,
             offset: scaled(row[3], shift - 16),

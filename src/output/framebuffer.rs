@@ -2,6 +2,7 @@
 
 use crate::fragment::PixelFormat;
 use core::fmt;
+use core::ops::Range;
 
 /// Rows of pixels to draw into.
 ///
@@ -13,6 +14,12 @@ pub trait Framebuffer {
 
     /// Row `y` of the screen, from column 0.
     fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
+
+    /// Columns of row `y`; empty where they are not all there. What the rasterizer calls.
+    #[inline]
+    fn span(&mut self, y: u32, columns: Range<usize>) -> &mut [<Self::Format as PixelFormat>::Raw] {
+        self.row(y).get_mut(columns).unwrap_or_default()
+    }
 }
 
 /// A horizontal strip of the screen.
@@ -37,6 +44,13 @@ impl<P: PixelFormat> Framebuffer for Strip<'_, P> {
     fn row(&mut self, y: u32) -> &mut [P::Raw] {
         let start = y.wrapping_sub(self.first_row) as usize * self.width;
         self.pixels.get_mut(start..start + self.width).unwrap_or_default()
+    }
+
+    /// The rasterizer stays within the width, so one check will do.
+    #[inline]
+    fn span(&mut self, y: u32, columns: Range<usize>) -> &mut [P::Raw] {
+        let start = y.wrapping_sub(self.first_row) as usize * self.width;
+        self.pixels.get_mut(start + columns.start..start + columns.end).unwrap_or_default()
     }
 }
 
