@@ -419,6 +419,14 @@ fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     S::load(words)
 }
 
+/// The depth tests that have loops of their own.
+#[derive(Clone, Copy)]
+enum Test {
+    Less,
+    None,
+    Any(AnyDepth),
+}
+
 /// 8 to 11. A triangle on the screen: set-up, spans, depth test, fragments.
 #[expect(clippy::too_many_arguments, reason = "all of them change from call to call, or belong to different owners")]
 #[inline(never)]
@@ -450,15 +458,20 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
     let z = depth.base.wrapping_add(1 << 15);
     let width = screen.0 as usize;
     let first = target.rows.start;
+    let test = match state.depth {
+        DepthState { compare: Compare::Less, write: true } => Test::Less,
+        DepthState { compare: Compare::Always, write: false } => Test::None,
+        other => Test::Any(AnyDepth::new(other)),
+    };
     let depths = &mut *target.depth;
     let framebuffer = &mut *target.framebuffer;
 
     // 9. Spans.
     spans(v, area, clip, |y, x| {
-        let row = width * (y - first) as usize;
-        let columns = x.start as usize..x.end as usize;
-        let Some(depths) = depths.get_mut(row + columns.start..row + columns.end) else { return };
-        let colors = framebuffer.span(y as u32, columns);
+        let (column, length) = (x.start as usize, (x.end - x.start) as usize);
+        let start = width * (y - first) as usize + column;
+        let Some(depths) = depths.get_mut(start..).and_then(|rest| rest.get_mut(..length)) else { return };
+        let Some(colors) = framebuffer.span(y as u32, column, length) else { return };
         let mut varyings = corner;
         for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(dx.as_ref()).zip(dy.as_ref()) {
             *value = value.wrapping_add(dx.wrapping_mul(x.start)).wrapping_add(dy.wrapping_mul(y));
@@ -473,10 +486,10 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
             position: (x.start, y),
         };
         // 10, 11. Depth test and fragments, in a loop of its own for each kind of test.
-        match state.depth {
-            DepthState { compare: Compare::Less, write: true } => shader.span(face, fragments, LessWrite),
-            DepthState { compare: Compare::Always, write: false } => shader.span(face, fragments, NoDepth),
-            other => shader.span(face, fragments, AnyDepth::new(other)),
+        match test {
+            Test::Less => shader.span(face, fragments, LessWrite),
+            Test::None => shader.span(face, fragments, NoDepth),
+            Test::Any(test) => shader.span(face, fragments, test),
         }
     });
 }

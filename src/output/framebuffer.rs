@@ -2,7 +2,6 @@
 
 use crate::fragment::PixelFormat;
 use core::fmt;
-use core::ops::Range;
 
 /// Rows of pixels to draw into.
 ///
@@ -15,10 +14,10 @@ pub trait Framebuffer {
     /// Row `y` of the screen, from column 0.
     fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
 
-    /// Columns of row `y`; empty where they are not all there. What the rasterizer calls.
+    /// `length` pixels of row `y` from `column` on; `None` where they are not all there. What the rasterizer calls.
     #[inline]
-    fn span(&mut self, y: u32, columns: Range<usize>) -> &mut [<Self::Format as PixelFormat>::Raw] {
-        self.row(y).get_mut(columns).unwrap_or_default()
+    fn span(&mut self, y: u32, column: usize, length: usize) -> Option<&mut [<Self::Format as PixelFormat>::Raw]> {
+        self.row(y).get_mut(column..)?.get_mut(..length)
     }
 }
 
@@ -46,11 +45,12 @@ impl<P: PixelFormat> Framebuffer for Strip<'_, P> {
         self.pixels.get_mut(start..start + self.width).unwrap_or_default()
     }
 
-    /// The rasterizer stays within the width, so one check will do.
+    /// The rasterizer stays within the width, so the row's own end need not be checked.
     #[inline]
-    fn span(&mut self, y: u32, columns: Range<usize>) -> &mut [P::Raw] {
-        let start = y.wrapping_sub(self.first_row) as usize * self.width;
-        self.pixels.get_mut(start + columns.start..start + columns.end).unwrap_or_default()
+    fn span(&mut self, y: u32, column: usize, length: usize) -> Option<&mut [P::Raw]> {
+        let start = y.wrapping_sub(self.first_row) as usize * self.width + column;
+        // In two steps, each a comparison; a range is checked at both ends at once, which small cores pay twice for.
+        self.pixels.get_mut(start..)?.get_mut(..length)
     }
 }
 
