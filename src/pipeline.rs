@@ -6,8 +6,9 @@
 
 use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, NoDepth, Shader};
 use crate::geometry::{
-    Bounds, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Placed, PolygonCorners,
-    Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
+    Bounds, BoundsNode, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Placed,
+    PolygonCorners, Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place,
+    project, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
@@ -94,12 +95,12 @@ impl<F: Framebuffer> Scene<'_, F> {
                     return;
                 }
                 let print = fingerprint(&state, mesh, mvp, &self.viewport, stride);
-                let view = self.view::<S>(mesh, mvp);
+                let culled = self.is_culled::<S>(mesh, mvp);
                 // What is out of view leaves a header without vertices.
-                let vertices = if view.is_some() { mesh.vertex_count() } else { 0 };
+                let vertices = if culled { 0 } else { mesh.vertex_count() };
                 self.records.begin_draw(print, vertices, stride);
-                if let Some(frustum) = view {
-                    Assembly::new(self, &state, mesh, mvp, shader, true).run(&frustum);
+                if !culled {
+                    self.assemble(&state, mesh, mvp, shader, true);
                 }
                 self.records.end_draw();
             }
@@ -112,9 +113,9 @@ impl<F: Framebuffer> Scene<'_, F> {
                 self.replay(&state, shader);
             }
             Phase::Direct => {
-                if let Some(frustum) = self.view::<S>(mesh, mvp) {
+                if !self.is_culled::<S>(mesh, mvp) {
                     let cached = self.records.begin_direct(mesh.vertex_count(), stride);
-                    Assembly::new(self, &state, mesh, mvp, shader, cached).run(&frustum);
+                    self.assemble(&state, mesh, mvp, shader, cached);
                 }
             }
         }
@@ -124,6 +125,7 @@ impl<F: Framebuffer> Scene<'_, F> {
     /// left out, with everything inside of it: a hierarchy of objects.
     ///
     /// The answer is the same in all calls of the closure that must draw the same.
+    #[inline(never)]
     pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
         self.frustum(mvp).bounds(bounds) != Containment::Outside
     }
@@ -153,15 +155,31 @@ impl<F: Framebuffer> Scene<'_, F> {
         Frustum::through(mvp, &self.viewport, (rect.x.start, rect.x.end), (rect.y.start, rect.y.end))
     }
 
-    /// Stage 1, culling of whole meshes: the frustum to cull parts by, or `None` if nothing can be seen.
-    fn view<S: VertexShader>(&mut self, mesh: &Mesh<'_>, mvp: &Projective) -> Option<Frustum> {
-        let frustum = self.frustum(mvp);
+    /// Stage 1, culling of whole meshes. In a function of its own, as the others here, so that its planes leave the stack.
+    #[inline(never)]
+    fn is_culled<S: VertexShader>(&mut self, mesh: &Mesh<'_>, mvp: &Projective) -> bool {
         let bounded = !S::DISPLACES && !matches!(mesh.data().positions, Positions::Homogeneous(_));
-        if bounded && frustum.bounds(mesh.bounds()) == Containment::Outside {
-            self.stats.culled += 1;
-            return None;
+        let culled = bounded && !self.is_visible(mesh.bounds(), mvp);
+        self.stats.culled += u32::from(culled);
+        culled
+    }
+
+    #[inline(never)]
+    fn assemble<S: Shader<F::Format>>(
+        &mut self,
+        state: &State,
+        mesh: &Mesh<'_>,
+        mvp: &Projective,
+        shader: &S,
+        cached: bool,
+    ) {
+        let transform = Transform::new(mvp, &self.viewport, mesh, S::DISPLACES);
+        let clip = self.clip_rect(&self.band);
+        let mut assembly = Assembly { scene: self, state, mesh, shader, transform, clip, cached };
+        match mesh.data().hierarchy {
+            Some(nodes) if !S::DISPLACES => assembly.parts(nodes, mvp),
+            _ => assembly.triangles(0..mesh.triangle_count()),
         }
-        Some(frustum)
     }
 
     /// Draws the recorded triangles of this draw in the current strip.
@@ -198,24 +216,10 @@ struct Assembly<'s, 'a, 'm, F, S> {
 }
 
 impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S> {
-    fn new(
-        scene: &'s mut Scene<'a, F>,
-        state: &'m State,
-        mesh: &'m Mesh<'m>,
-        mvp: &Projective,
-        shader: &'m S,
-        cached: bool,
-    ) -> Self {
-        let transform = Transform::new(mvp, &scene.viewport, mesh, S::DISPLACES);
-        let clip = scene.clip_rect(&scene.band);
-        Self { scene, state, mesh, shader, transform, clip, cached }
-    }
-
-    /// Takes the mesh's triangles one by one, leaving out the nodes of its hierarchy that cannot be seen.
-    fn run(&mut self, frustum: &Frustum) {
-        let Some(nodes) = self.mesh.data().hierarchy.filter(|_| !S::DISPLACES) else {
-            return self.triangles(0..self.mesh.triangle_count());
-        };
+    /// Takes the parts of a mesh that can be seen.
+    #[inline(never)]
+    fn parts(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
+        let frustum = self.scene.frustum(mvp);
         let mut k = 0;
         while let Some(node) = nodes.get(k) {
             if frustum.bounds(&node.bounds) == Containment::Outside {
@@ -229,6 +233,8 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         }
     }
 
+    /// Takes triangles one by one.
+    #[inline(never)]
     fn triangles(&mut self, numbers: Range<usize>) {
         for number in numbers {
             if self.scene.records.overflowed() {

@@ -90,7 +90,7 @@ fn distance(plane: usize, v: &ClipVertex) -> i64 {
 }
 
 /// A triangle cut by seven planes has at most ten corners, and one more is in its place twice while a plane cuts.
-const CORNERS: usize = 12;
+const CORNERS: usize = 11;
 type Polygon<V> = Deque<(ClipVertex, V), CORNERS>;
 
 /// The corners of a polygon that the clipper hands on, in order.
@@ -115,7 +115,7 @@ pub fn clip_triangle<V: Varyings>(
     };
     let mut polygon = Polygon::new();
     for vertex in triangle {
-        // Three fit twelve; the same holds for every push below.
+        // Three fit eleven; the same holds for every push below.
         let _ = polygon.push_back(*vertex);
     }
     for plane in 0..PLANES {

@@ -85,6 +85,7 @@ impl Transform {
     /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
+    #[expect(clippy::needless_range_loop, reason = "rows and columns of several matrices at once")]
     pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
         let positions = &mesh.data().positions;
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
@@ -230,6 +231,7 @@ impl Short {
     /// half from the constant and one from the cut. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at
     /// most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it be,
     /// which is well inside the guard band.
+    #[expect(clippy::needless_range_loop, reason = "rows and columns of several matrices at once")]
     fn new(entries: &[[i64; 4]; 4], translation: &[i64; 4], least_w: i64) -> Option<Self> {
         if least_w < 1 << 51 {
             return None;
