@@ -6,9 +6,8 @@
 
 use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, NoDepth, Shader};
 use crate::geometry::{
-    Bounds, BoundsNode, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Placed,
-    PolygonCorners, Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place,
-    project, signed_area,
+    Bounds, BoundsNode, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Part, Placed,
+    Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
@@ -68,7 +67,7 @@ pub struct Scene<'a, F> {
     /// Rows of the band that is recorded, replayed or drawn.
     pub(crate) band: Range<i32>,
     pub(crate) target: Option<Target<'a, F>>,
-    pub(crate) stats: Stats,
+    pub(crate) stats: &'a mut Stats,
     /// Number of the next draw, and the first that differed from what was recorded.
     pub(crate) draws: u16,
     pub(crate) changed: Option<u16>,
@@ -202,6 +201,9 @@ impl<F: Framebuffer> Scene<'_, F> {
     }
 }
 
+/// The corners of a clipped polygon on the screen.
+type Fan<V> = heapless::Vec<(ScreenVertex, V), 10>;
+
 /// Stages 2 to 7 for one draw: from the mesh's triangles to triangles on the screen.
 struct Assembly<'s, 'a, 'm, F, S> {
     scene: &'s mut Scene<'a, F>,
@@ -295,31 +297,40 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     /// 4. Clipping, of a triangle with a vertex outside.
     #[inline(never)]
     fn clip(&mut self, codes: [u8; 3], corners: [u16; 3], number: usize) {
-        let clamped = match self.state.range {
-            DepthRange::Clip => 0,
-            DepthRange::ClampFar => Outcode::FAR,
-            DepthRange::Clamp => Outcode::FAR | Outcode::NEAR,
-        };
+        let clamped = self.state.range.clamped().0;
         if codes[0] & codes[1] & codes[2] & !clamped != 0 {
             self.scene.stats.outside += 1;
             return;
         }
         self.scene.stats.clipped += 1;
+        let all = Outcode(codes[0] | codes[1] | codes[2]);
+        for part in self.state.range.parts(all) {
+            let mut fan = Fan::<S::Varyings>::new();
+            self.cut(corners, all, part, &mut fan);
+            self.fan(&fan, &Face::new(self.mesh, number, corners));
+        }
+    }
+
+    /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
+    /// has left the stack when it is drawn.
+    #[inline(never)]
+    fn cut(&self, corners: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan<S::Varyings>) {
         let triangle = corners.map(|k| {
             let corner = Corner::new(self.mesh, usize::from(k));
             (self.transformed(usize::from(k)), self.shader.vertex(&corner))
         });
-        let face = Face::new(self.mesh, number, corners);
-        let all = Outcode(codes[0] | codes[1] | codes[2]);
-        clip_triangle(&triangle, all, self.state.range, |polygon| self.fan(polygon, &face));
+        clip_triangle(&triangle, codes, part, |(vertex, varyings)| {
+            if let Some(placed) = project(vertex) {
+                // There are no more corners than places.
+                let _ = fan.push((placed, *varyings));
+            }
+        });
     }
 
     /// Draws a clipped polygon as a fan of triangles.
-    fn fan(&mut self, polygon: PolygonCorners<'_, S::Varyings>, face: &Face<'_>) {
-        let mut placed = polygon.filter_map(|(v, varyings)| {
-            let v = project(v)?;
-            Some((v, *varyings))
-        });
+    #[inline(never)]
+    fn fan(&mut self, fan: &Fan<S::Varyings>, face: &Face<'_>) {
+        let mut placed = fan.iter().copied();
         let recording = self.scene.phase == Phase::Record;
         let (Some(first), Some(mut last)) = (placed.next(), placed.next()) else {
             return;
@@ -376,7 +387,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     /// 5. Culling by winding, and of what covers no pixel: where the triangle can have pixels, if it can.
     #[inline]
     fn visible(&mut self, v: &[ScreenVertex; 3]) -> Option<PixelRect> {
-        let stats = &mut self.scene.stats;
+        let stats = &mut *self.scene.stats;
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area == 0 {
             stats.degenerate += 1;

@@ -45,7 +45,13 @@ type Polygon = Vec<(ClipVertex, [i32; 3])>;
 fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Polygon> {
     let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
     let mut polygons = Vec::new();
-    clip_triangle(triangle, Outcode(codes), range, |polygon| polygons.push(polygon.copied().collect()));
+    for part in range.parts(Outcode(codes)) {
+        let mut polygon = Vec::new();
+        clip_triangle(triangle, Outcode(codes), part, |corner| polygon.push(*corner));
+        if !polygon.is_empty() {
+            polygons.push(polygon);
+        }
+    }
     polygons
 }
 

@@ -11,7 +11,7 @@ mod vertex;
 mod viewport;
 
 pub use bounds::{BoundingBox, BoundingSphere, Bounds, BoundsNode};
-pub use clip::{ClipVertex, DepthRange, Outcode, PolygonCorners, clip_triangle};
+pub use clip::{ClipVertex, DepthRange, Outcode, Part, clip_triangle};
 pub use frustum::{Containment, Frustum, Plane};
 pub use light::{Light, Lit, NORMAL_ONE};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};

@@ -136,7 +136,7 @@ impl Engine<'_> {
             strip_rows: self.strip_rows,
             band: i32::from(band.0)..i32::from(band.1),
             target: framebuffer.map(|framebuffer| Target { framebuffer, depth: self.depth, rows }),
-            stats: progress.stats,
+            stats: &mut progress.stats,
             draws: 0,
             changed: None,
         };
@@ -144,7 +144,6 @@ impl Engine<'_> {
         draw(&mut scene);
         let (draws, changed) = (scene.draws, scene.changed);
         progress.layout = scene.records.layout();
-        progress.stats = scene.stats;
         if phase == Phase::Record {
             progress.draws = draws;
         }

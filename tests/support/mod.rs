@@ -186,7 +186,11 @@ pub fn snapped<const K: usize>(
         if all.0 == 0 {
             fan(vertices.iter().filter_map(placed).collect());
         } else {
-            clip_triangle(&vertices, all, range, |polygon| fan(polygon.filter_map(placed).collect()));
+            for part in range.parts(all) {
+                let mut corners = Vec::new();
+                clip_triangle(&vertices, all, part, |corner| corners.extend(placed(corner)));
+                fan(corners);
+            }
         }
     }
     triangles
