@@ -12,10 +12,8 @@ use crate::math::{Projective, Vec3};
 /// A vertex transform, made once a draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Transform {
-    /// Whole parts of the entries, below 2²⁴ (rows x, y, z, w).
-    whole: [[i32; 4]; 4],
-    /// Fractions of the entries, 0.16.
-    fraction: [[u16; 4]; 4],
+    /// Entries with 16 fractional bits, below 2⁴⁰ (rows x, y, z, w).
+    entries: [[i64; 4]; 4],
     /// What the constant 1 contributes; below 2⁵⁵.
     translation: [i64; 4],
     /// The 32-bit path, where its error stays within the promise.
@@ -75,6 +73,15 @@ fn excess<'v>(values: impl Iterator<Item = &'v i64>, bits: i32) -> i32 {
     64 - all.leading_zeros() as i32 - bits
 }
 
+/// The least w in a box, from the row of w; on the scale of that row's last entry.
+fn least_w(row: &[i64; 4], aabb: &BoundingBox) -> i64 {
+    let mut least = row[3];
+    for ((r, center), half) in row.iter().zip(aabb.center.to_bits()).zip(aabb.half.to_bits()) {
+        least += times(*r, center) - times(r.abs(), half);
+    }
+    least
+}
+
 impl Transform {
     /// Folds everything that maps a mesh's numbers to the screen into one matrix.
     ///
@@ -88,8 +95,11 @@ impl Transform {
     #[expect(clippy::needless_range_loop, reason = "rows and columns of several matrices at once")]
     pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
         let positions = &mesh.data().positions;
+        // All in one matrix, in place: r first, e in the end.
+        let mut result = Self { entries: mvp.to_rows(), translation: [0; 4], short: None };
+        let Self { entries: r, translation: t, .. } = &mut result;
+
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
-        let mut r = mvp.to_rows();
         let shift = excess(r.iter().flatten(), 44).max(0);
         // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
         let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
@@ -108,51 +118,38 @@ impl Transform {
 
         // 3. What the mesh makes of its numbers. Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats
         //    written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
-        let mut e = [[0_i64; 4]; 4];
-        let mut t = [0_i64; 4];
-        for i in 0..4 {
+        let least_w = least_w(&r[3], &mesh.bounds().aabb);
+        for (r, t) in r.iter_mut().zip(t.iter_mut()) {
             match positions {
                 Positions::Quantized { scale, offset, .. } if !displaced => {
-                    t[i] = r[i][3];
-                    for (j, offset) in offset.to_bits().into_iter().enumerate() {
-                        t[i] += times(r[i][j], offset);
-                        e[i][j] = times(r[i][j], scale.to_bits());
+                    *t = r[3];
+                    for (r, offset) in r.iter_mut().zip(offset.to_bits()) {
+                        *t += times(*r, offset);
+                        *r = times(*r, scale.to_bits());
                     }
+                    r[3] = 0;
                 }
                 _ => {
-                    e[i] = r[i].map(|r| r << 15);
                     if displaced || !matches!(positions, Positions::Homogeneous(_)) {
-                        t[i] = r[i][3];
-                        e[i][3] = 0;
+                        *t = r[3];
+                        r[3] = 0;
                     }
+                    r.iter_mut().for_each(|r| *r <<= 15);
                 }
             }
         }
 
         // 4. One shift for all, so that the largest reachable value is just below 2⁵⁵; a quarter of it is summed up here.
         let mut reach = [0_i64; 4];
-        for (reach, (e, t)) in reach.iter_mut().zip(e.iter().zip(t)) {
-            *reach = e.iter().chain([&t]).fold(0, |sum, v| sum + (v.unsigned_abs() >> 2) as i64 + 1);
+        for (reach, (e, t)) in reach.iter_mut().zip(r.iter().zip(t.iter())) {
+            *reach = e.iter().chain([t]).fold(0, |sum, v| sum + (v.unsigned_abs() >> 2) as i64 + 1);
         }
         let shift = excess(reach.iter(), 53);
-        let mut result = Self { whole: [[0; 4]; 4], fraction: [[0; 4]; 4], translation: [0; 4], short: None };
-        for i in 0..4 {
-            for j in 0..4 {
-                // 16 fractional bits: e / 2³¹ · 2¹⁶.
-                e[i][j] = scale(e[i][j], shift + 15);
-                result.whole[i][j] = (e[i][j] >> 16) as i32;
-                result.fraction[i][j] = e[i][j] as u16;
-            }
-            result.translation[i] = scale(t[i], shift);
-        }
+        // 16 fractional bits: e / 2³¹ · 2¹⁶.
+        r.iter_mut().flatten().for_each(|e| *e = scale(*e, shift + 15));
+        t.iter_mut().for_each(|t| *t = scale(*t, shift));
         if let (Positions::Quantized { .. }, false) = (positions, displaced) {
-            // The least w in the mesh's box, on the scale of the translation.
-            let BoundingBox { center, half } = mesh.bounds().aabb;
-            let mut least = r[3][3];
-            for ((r, center), half) in r[3].into_iter().zip(center.to_bits()).zip(half.to_bits()) {
-                least += times(r, center) - times(r.abs(), half);
-            }
-            result.short = Short::new(&e, &result.translation, scale(least, shift));
+            result.short = Short::new(r, t, scale(least_w, shift));
         }
         result
     }
@@ -210,14 +207,13 @@ impl Transform {
     #[inline(never)]
     fn apply(&self, p: [i32; 4]) -> Transformed {
         let row = |i: usize| {
-            let (w, f) = (&self.whole[i], &self.fraction[i]);
-            let mut whole = self.translation[i];
+            let mut whole = 0_i64;
             let mut fraction = 0_i64;
-            for j in 0..4 {
-                whole += i64::from(w[j]) * i64::from(p[j]);
-                fraction += i64::from(f[j]) * i64::from(p[j]);
+            for (e, p) in self.entries[i].iter().zip(p) {
+                whole += (e >> 16) * i64::from(p);
+                fraction += (e & 0xFFFF) * i64::from(p);
             }
-            whole + (fraction >> 16)
+            self.translation[i] + whole + (fraction >> 16)
         };
         ClipVertex { x: row(0), y: row(1), z: row(2), w: row(3) }
     }
