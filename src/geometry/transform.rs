@@ -21,12 +21,17 @@ pub struct Transform {
 }
 
 /// Rows for 32-bit arithmetic on quantized positions: c = (Σ mᵢ qᵢ + t) / 2¹⁵ with mᵢ = 2¹⁵ high + low.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Short {
-    high: [[i32; 3]; 4],
-    low: [[i32; 3]; 4],
-    translation_high: [i32; 4],
-    translation_low: [i32; 4],
+    rows: [ShortRow; 4],
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct ShortRow {
+    high: [i32; 3],
+    low: [i32; 3],
+    translation_high: i32,
+    translation_low: i32,
 }
 
 /// Where a vertex is.
@@ -92,7 +97,6 @@ impl Transform {
     /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
-    #[expect(clippy::needless_range_loop, reason = "rows and columns of several matrices at once")]
     pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
         let positions = &mesh.data().positions;
         // All in one matrix, in place: r first, e in the end.
@@ -104,12 +108,13 @@ impl Transform {
         // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
         let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
         let (cx2, cy2) = (2 * i64::from(viewport.x()) + width, 2 * i64::from(viewport.y()) + height);
-        for j in 0..4 {
-            let [x, y, z, w] = [0, 1, 2, 3].map(|i: usize| scale(r[i][j], shift));
-            r[0][j] = width * x + cx2 * w;
-            r[1][j] = cy2 * w - height * y;
-            r[2][j] = z << 10;
-            r[3][j] = w << 10;
+        let [rx, ry, rz, rw] = &mut *r;
+        for (((rx, ry), rz), rw) in rx.iter_mut().zip(ry).zip(rz).zip(rw) {
+            let (x, y, z, w) = (scale(*rx, shift), scale(*ry, shift), scale(*rz, shift), scale(*rw, shift));
+            *rx = width * x + cx2 * w;
+            *ry = cy2 * w - height * y;
+            *rz = z << 10;
+            *rw = w << 10;
         }
         let shift = excess(r.iter().flatten(), 45);
         for entry in r.iter_mut().flatten() {
@@ -206,16 +211,17 @@ impl Transform {
     /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded in `new`; fractions below 2¹⁶ · 2³¹.
     #[inline(never)]
     fn apply(&self, p: [i32; 4]) -> Transformed {
-        let row = |i: usize| {
+        let row = |entries: &[i64; 4], translation: i64| {
             let mut whole = 0_i64;
             let mut fraction = 0_i64;
-            for (e, p) in self.entries[i].iter().zip(p) {
+            for (e, p) in entries.iter().zip(p) {
                 whole += (e >> 16) * i64::from(p);
                 fraction += (e & 0xFFFF) * i64::from(p);
             }
-            self.translation[i] + whole + (fraction >> 16)
+            translation + whole + (fraction >> 16)
         };
-        ClipVertex { x: row(0), y: row(1), z: row(2), w: row(3) }
+        let ([x, y, z, w], [tx, ty, tz, tw]) = (&self.entries, self.translation);
+        ClipVertex { x: row(x, tx), y: row(y, ty), z: row(z, tz), w: row(w, tw) }
     }
 }
 
@@ -227,35 +233,32 @@ impl Short {
     /// half from the constant and one from the cut. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at
     /// most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it be,
     /// which is well inside the guard band.
-    #[expect(clippy::needless_range_loop, reason = "rows and columns of several matrices at once")]
     fn new(entries: &[[i64; 4]; 4], translation: &[i64; 4], least_w: i64) -> Option<Self> {
         if least_w < 1 << 51 {
             return None;
         }
-        let mut short = Self { high: [[0; 3]; 4], low: [[0; 3]; 4], translation_high: [0; 4], translation_low: [0; 4] };
-        for i in 0..4 {
-            for j in 0..3 {
+        let mut short = Self::default();
+        for (row, (entries, translation)) in short.rows.iter_mut().zip(entries.iter().zip(translation)) {
+            for ((high, low), entry) in row.high.iter_mut().zip(&mut row.low).zip(entries) {
                 // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
-                let m = ((entries[i][j] + (1 << 9)) >> 10) as i32;
-                let low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
-                short.low[i][j] = low;
-                short.high[i][j] = (m - low) >> 15;
+                let m = ((entry + (1 << 9)) >> 10) as i32;
+                *low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
+                *high = (m - *low) >> 15;
             }
-            let t = (translation[i] + (1 << 9)) >> 10;
-            short.translation_high[i] = (t >> 15) as i32;
-            short.translation_low[i] = (t & 0x7FFF) as i32 + (1 << 14);
+            let t = (translation + (1 << 9)) >> 10;
+            row.translation_high = (t >> 15) as i32;
+            row.translation_low = (t & 0x7FFF) as i32 + (1 << 14);
         }
         Some(short)
     }
 
     #[inline]
     fn apply(&self, q: [i16; 3]) -> [i32; 4] {
-        let q = q.map(i32::from);
-        let row = |i: usize| {
-            let (h, l) = (&self.high[i], &self.low[i]);
-            let low = l[0] * q[0] + l[1] * q[1] + l[2] * q[2] + self.translation_low[i];
-            h[0] * q[0] + h[1] * q[1] + h[2] * q[2] + self.translation_high[i] + (low >> 15)
-        };
-        [row(0), row(1), row(2), row(3)]
+        let [x, y, z] = q.map(i32::from);
+        self.rows.each_ref().map(|row| {
+            let ([hx, hy, hz], [lx, ly, lz]) = (row.high, row.low);
+            let low = lx * x + ly * y + lz * z + row.translation_low;
+            hx * x + hy * y + hz * z + row.translation_high + (low >> 15)
+        })
     }
 }

@@ -106,8 +106,8 @@ impl<'a> Face<'a> {
         }
         let [a, b, c] = self.corners.map(|k| self.mesh.position(usize::from(k)).to_bits());
         let (ab, ac) = (edge(a, b), edge(a, c));
-        let minor = |i: usize, j: usize| ab[i] * ac[j] - ab[j] * ac[i];
-        let n = fifteen_bits([minor(1, 2), minor(2, 0), minor(0, 1)].map(|v| v << 1));
+        let ([ax, ay, az], [bx, by, bz]) = (ab, ac);
+        let n = fifteen_bits([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx].map(|v| v << 1));
         let length = n.iter().map(|&v| (v * v) as u32).fold(0, u32::wrapping_add).isqrt();
         let Some(length) = core::num::NonZeroU32::new(length) else { return [0; 3] };
         n.map(|v| {
@@ -120,7 +120,8 @@ impl<'a> Face<'a> {
 /// The direction from `a` to `b`, scaled to 15 bits.
 fn edge(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     // Halved, so that differences fit.
-    fifteen_bits([0, 1, 2].map(|k: usize| (b[k] >> 1) - (a[k] >> 1)))
+    let ([ax, ay, az], [bx, by, bz]) = (a, b);
+    fifteen_bits([(bx >> 1) - (ax >> 1), (by >> 1) - (ay >> 1), (bz >> 1) - (az >> 1)])
 }
 
 /// A vector scaled so that its largest component has 15 bits.

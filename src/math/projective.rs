@@ -79,10 +79,14 @@ const fn saturate(value: i128) -> i64 {
     }
 }
 
-/// `num / den` in 32.32, rounded to nearest, of two numbers in the same format; `den != 0`.
+/// `num / den` in 32.32, rounded to nearest, of two numbers in the same format; 0 for a
+/// zero `den`.
 const fn ratio(num: i128, den: i128) -> i64 {
     let (num, den) = if den < 0 { (-num, -den) } else { (num, den) };
-    saturate(((num << 33) + den).div_euclid(2 * den))
+    match ((num << 33) + den).checked_div_euclid(2 * den) {
+        Some(quotient) => saturate(quotient),
+        None => 0,
+    }
 }
 
 impl Projective {
