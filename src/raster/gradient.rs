@@ -82,8 +82,8 @@ impl Gradients {
     /// The plane through the values at the three vertices times 2^`scale`, modulo 2³²; usually 16.16.
     ///
     /// # Format
-    /// Any values, `scale` up to 16. Evaluated at a pixel inside the triangle and on the screen, the result is within 2¹² of
-    /// the exact plane: 2⁻⁴ of a unit in 16.16.
+    /// Any values, `scale` up to 16. Evaluated at a pixel inside the triangle and on the screen, the result is within 2¹³ of
+    /// the exact plane: 2⁻³ of a unit in 16.16.
     #[inline]
     pub fn plane(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
         let (v1, v2) = (values[1].wrapping_sub(values[0]), values[2].wrapping_sub(values[0]));
