@@ -9,8 +9,8 @@ use reference::rng::Rng;
 use reference::scenes::{screen_triangle, sliver};
 use reference::subject::Subject;
 use support::{apply, matrix, on_screen, position, rigid, scalar, vector, whole};
-use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
-use zstrip::fragment::{DepthState, Gouraud};
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::fragment::{DepthState, Gouraud, PixelFormat};
 use zstrip::geometry::{Mesh, MeshData, Positions, Transform, Viewport, project};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::{Cull, State};
@@ -253,9 +253,8 @@ fn depth_is_within_one_step_of_the_exact_plane() {
     assert!(pixels > 100_000);
 }
 
-#[test]
-fn gouraud_channels_are_within_1_of_255_of_the_exact_plane() {
-    let (mut worst, mut pixels) = ((0.0, String::new()), 0);
+/// Draws random Gouraud triangles in a pixel format, and gives `check` each covered pixel and the exact channels there.
+fn gouraud_pixels<P: PixelFormat>(black: P::Color, mut check: impl FnMut(P::Raw, [f64; 3], String)) {
     let state = State { cull: Cull::None, depth: DepthState::OFF, ..State::default() };
     for (seed, count, (width, height)) in [(11, 1500, (64_u32, 64_u32)), (12, 150, (1024, 8)), (13, 60, (4096, 4))] {
         let mut rng = Rng::new(seed);
@@ -266,32 +265,57 @@ fn gouraud_channels_are_within_1_of_255_of_the_exact_plane() {
             let mesh =
                 Mesh::new(MeshData { colors: Some(&colors), ..MeshData::new(Positions::Homogeneous(&vertices)) })
                     .expect("a triangle");
-            let size = (width as u16, height as u16);
-            let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| {
+            let (picture, ..) = whole::<P>((width as u16, height as u16), black, |scene| {
                 scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::unlit())
             });
             let tri = exact::widen(snaps);
             exact::for_each_pixel(tri, width, height, |x, y| {
-                pixels += 1;
-                let found = picture[(y * width + x) as usize];
-                for channel in 0..3 {
+                let at = exact::center(x.into(), y.into());
+                let exact = [0, 1, 2].map(|channel| {
                     let values = colors.map(|c| i64::from(c[channel]));
-                    let exact = exact::to_f64(exact::affine_at(tri, values, exact::center(x.into(), y.into())));
-                    let error = (f64::from(found[channel]) - exact).abs();
-                    let case = || {
-                        format!(
-                            "seed {seed} case {case}: {snaps:?} {colors:?} at ({x}, {y}): {} for {exact}",
-                            found[channel]
-                        )
-                    };
-                    assert!(error <= 1.0, "{}", case());
-                    if error > worst.0 {
-                        worst = (error, case());
-                    }
-                }
+                    exact::to_f64(exact::affine_at(tri, values, at))
+                });
+                let case = format!("seed {seed} case {case}: {snaps:?} {colors:?} at ({x}, {y}), exact {exact:?}");
+                check(picture[(y * width + x) as usize], exact, case);
             });
         }
     }
+}
+
+#[test]
+fn gouraud_channels_are_within_1_of_255_of_the_exact_plane() {
+    let (mut worst, mut pixels) = ((0.0, String::new()), 0);
+    gouraud_pixels::<Rgb888>(Rgb888::BLACK, |found, exact, case| {
+        pixels += 1;
+        for (found, exact) in found.into_iter().zip(exact) {
+            let error = (f64::from(found) - exact).abs();
+            assert!(error <= 1.0, "{case}: {found}");
+            if error > worst.0 {
+                worst = (error, case.clone());
+            }
+        }
+    });
+    println!("{pixels} pixels; worst channel is off by {:.4} of 255: {}", worst.0, worst.1);
+    assert!(pixels > 50_000);
+}
+
+/// Formats of 16 bits have a loop of their own, all channels in one word; what it packs must have been within 1 as well.
+#[test]
+fn packed_channels_were_within_1_of_255_before_they_lost_bits() {
+    let (mut worst, mut pixels) = ((0.0, String::new()), 0);
+    gouraud_pixels::<Rgb565>(Rgb565::BLACK, |found, exact, case| {
+        pixels += 1;
+        let steps = [(found >> 11, 8.0), (found >> 5 & 63, 4.0), (found & 31, 8.0)];
+        for ((found, step), exact) in steps.into_iter().zip(exact) {
+            // The nearest value that is cut to this one.
+            let low = f64::from(found) * step;
+            let error = (low - exact).max(exact - (low + step)).max(0.0);
+            assert!(error <= 1.0, "{case}: {found} steps of {step}");
+            if error > worst.0 {
+                worst = (error, case.clone());
+            }
+        }
+    });
     println!("{pixels} pixels; worst channel is off by {:.4} of 255: {}", worst.0, worst.1);
     assert!(pixels > 50_000);
 }
