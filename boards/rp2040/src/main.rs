@@ -53,12 +53,7 @@ struct Memory {
     wire: [u8; ROW_BYTES],
 }
 
-static mut MEMORY: Memory = Memory {
-    color: [0; _],
-    depth: [0; _],
-    records: [0; _],
-    wire: [0; _],
-};
+static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _], wire: [0; _] };
 
 #[rp2040_hal::entry]
 fn main() -> ! {
@@ -97,12 +92,7 @@ fn main() -> ! {
 
     let memory = &raw mut MEMORY;
     // SAFETY: `main` runs once; this is the only reference.
-    let Memory {
-        color,
-        depth,
-        records,
-        wire,
-    } = unsafe { &mut *memory };
+    let Memory { color, depth, records, wire } = unsafe { &mut *memory };
     let mut display = Builder::new(ST7789, SpiInterface::new(device, dc, wire))
         .display_size(SIZE as u16, SIZE as u16)
         .invert_colors(ColorInversion::Inverted)
@@ -131,9 +121,7 @@ fn main() -> ! {
             sending.set_low().unwrap();
             sent
         };
-        let frame = renderer.frame_to(send, scenes::BACKGROUND, |scene| {
-            scenes::torus_gouraud(scene, Angle(turn))
-        });
+        let frame = renderer.frame_to(send, scenes::BACKGROUND, |scene| scenes::torus_gouraud(scene, Angle(turn)));
         if frame.is_err() {
             panic!("the panel does not answer");
         }
