@@ -171,9 +171,9 @@ impl<F: Framebuffer> Scene<'_, F> {
         };
         let clip = self.clip_rect(&rows);
         while let Some(triangle) = self.records.replay_triangle() {
-            let corners = triangle.corners.map(usize::from);
-            let v = corners.map(|k| Slot::read(self.records.vertex(k)).screen());
-            let varyings = corners.map(|k| self.records.varyings::<S>(k));
+            let [i, j, k] = triangle.corners;
+            let (a, b, c) = (self.records.corner::<S>(i), self.records.corner::<S>(j), self.records.corner::<S>(k));
+            let (v, varyings) = ([a.0, b.0, c.0], [a.1, b.1, c.1]);
             if pixel_rect(&v).y.end > rows.end {
                 self.records.move_on(&triangle);
             }
@@ -240,11 +240,13 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             };
             self.scene.stats.triangles += 1;
             // 3. Vertex stage, once a vertex where there are records to keep the result.
-            let slots = corners.map(|k| self.slot(usize::from(k)));
-            if slots[0].is_on_screen() & slots[1].is_on_screen() & slots[2].is_on_screen() {
-                self.screen_triangle(&slots.map(Slot::screen), corners, number);
+            // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
+            let [i, j, k] = corners;
+            let (a, b, c) = (self.slot(usize::from(i)), self.slot(usize::from(j)), self.slot(usize::from(k)));
+            if a.is_on_screen() & b.is_on_screen() & c.is_on_screen() {
+                self.screen_triangle(&[a.screen(), b.screen(), c.screen()], corners, number);
             } else {
-                self.clip(slots.map(Slot::outcode), corners, number);
+                self.clip([a.outcode(), b.outcode(), c.outcode()], corners, number);
             }
         }
     }
@@ -438,7 +440,8 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         return;
     }
     let gradients = Gradients::new(v, area, screen);
-    let depth = gradients.plane(v.map(|v| i32::from(v.z)), 16).from_corner(gradients.origin());
+    let depth =
+        gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16).from_corner(gradients.origin());
     let (mut corner, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
     let values = varyings.each_ref().map(|v| v.as_ref());
     for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
