@@ -4,14 +4,14 @@
 //! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
 //! small even for one strip, it draws that strip *directly* (all stages at once).
 
-use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, NoDepth, Shader};
+use crate::fragment::{AnyDepth, Compare, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
 use crate::geometry::{
     Bounds, BoundsNode, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Part, Placed,
     Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
-use crate::raster::{Gradients, PixelRect, pixel_rect, spans};
+use crate::raster::{Edge, Gradients, PixelRect, pixel_rect, trapezoids};
 use core::ops::Range;
 
 /// Which faces are not drawn.
@@ -188,9 +188,9 @@ impl<F: Framebuffer> Scene<'_, F> {
         };
         let clip = self.clip_rect(&rows);
         while let Some(triangle) = self.records.replay_triangle() {
-            let corners = triangle.corners.map(usize::from);
-            let v = corners.map(|k| Slot::read(self.records.vertex(k)).screen());
-            let varyings = corners.map(|k| self.records.varyings::<S>(k));
+            let [i, j, k] = triangle.corners;
+            let (a, b, c) = (self.records.corner::<S>(i), self.records.corner::<S>(j), self.records.corner::<S>(k));
+            let (v, varyings) = ([a.0, b.0, c.0], [a.1, b.1, c.1]);
             if pixel_rect(&v).y.end > rows.end {
                 self.records.move_on(&triangle);
             }
@@ -248,11 +248,13 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             };
             self.scene.stats.triangles += 1;
             // 3. Vertex stage, once a vertex where there are records to keep the result.
-            let slots = corners.map(|k| self.slot(usize::from(k)));
-            if slots[0].is_on_screen() & slots[1].is_on_screen() & slots[2].is_on_screen() {
-                self.screen_triangle(&slots.map(Slot::screen), corners, number);
+            // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
+            let [i, j, k] = corners;
+            let (a, b, c) = (self.slot(usize::from(i)), self.slot(usize::from(j)), self.slot(usize::from(k)));
+            if a.is_on_screen() & b.is_on_screen() & c.is_on_screen() {
+                self.screen_triangle(&[a.screen(), b.screen(), c.screen()], corners, number);
             } else {
-                self.clip(slots.map(Slot::outcode), corners, number);
+                self.clip([a.outcode(), b.outcode(), c.outcode()], corners, number);
             }
         }
     }
@@ -436,14 +438,6 @@ fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     S::load(words)
 }
 
-/// The depth tests that have loops of their own.
-#[derive(Clone, Copy)]
-enum Test {
-    Less,
-    None,
-    Any(AnyDepth),
-}
-
 /// 8 to 11. A triangle on the screen: set-up, spans, depth test, fragments.
 #[expect(clippy::too_many_arguments, reason = "all of them change from call to call, or belong to different owners")]
 #[inline(never)]
@@ -463,7 +457,8 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         return;
     }
     let gradients = Gradients::new(v, area, screen);
-    let depth = gradients.plane(v.map(|v| i32::from(v.z)), 16).from_corner(gradients.origin());
+    let depth =
+        gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16).from_corner(gradients.origin());
     let (mut corner, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
     let values = varyings.each_ref().map(|v| v.as_ref());
     for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
@@ -471,44 +466,83 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         let plane = gradients.plane(values, S::ZERO_BITS).from_corner(gradients.origin());
         (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
     }
-    // With the half that rounds.
-    let z = depth.base.wrapping_add(1 << 15);
-    let width = screen.0 as usize;
-    let first = target.rows.start;
-    let test = match state.depth {
-        DepthState { compare: Compare::Less, write: true } => Test::Less,
-        DepthState { compare: Compare::Always, write: false } => Test::None,
-        other => Test::Any(AnyDepth::new(other)),
+    let words = shader.prepare(&mut corner, &dx);
+    let surface = Surface {
+        // With the half that rounds.
+        z: depth.base.wrapping_add(1 << 15),
+        dz_dy: depth.dy,
+        varyings: corner,
+        d_dy: dy,
+        steps: Steps { dz_dx: depth.dx, d_dx: dx, words },
     };
+
+    // 9. Spans; 10, 11: depth test and fragments, in a loop of its own for each kind of test.
+    let columns = &clip.x;
+    let width = screen.0 as usize;
+    trapezoids(v, area, &clip.y, |edges, y| match state.depth {
+        DepthState { compare: Compare::Less, write: true } => {
+            rows(target, width, columns, &surface, shader, face, LessWrite, edges, y);
+        }
+        DepthState { compare: Compare::Always, write: false } => {
+            rows(target, width, columns, &surface, shader, face, NoDepth, edges, y);
+        }
+        other => rows(target, width, columns, &surface, shader, face, AnyDepth::new(other), edges, y),
+    });
+}
+
+/// What is interpolated over a triangle: values at the screen's corner and their changes, all modulo 2³².
+struct Surface<V> {
+    z: u32,
+    dz_dy: i32,
+    varyings: V,
+    d_dy: V,
+    steps: Steps<V>,
+}
+
+/// 9 to 11 between two edges.
+#[expect(clippy::too_many_arguments, reason = "all of them change from call to call, or belong to different owners")]
+#[inline(never)]
+fn rows<F: Framebuffer, S: Shader<F::Format>, D: DepthTest>(
+    target: &mut Target<'_, F>,
+    width: usize,
+    columns: &Range<i32>,
+    surface: &Surface<S::Varyings>,
+    shader: &S,
+    face: u32,
+    test: D,
+    edges: &mut [Edge; 2],
+    rows: Range<i32>,
+) {
+    let [mut left, mut right] = *edges;
     let depths = &mut *target.depth;
     let framebuffer = &mut *target.framebuffer;
-
-    // 9. Spans.
-    spans(v, area, clip, |y, x| {
-        let (column, length) = (x.start as usize, (x.end - x.start) as usize);
-        let start = width * (y - first) as usize + column;
-        let Some(depths) = depths.get_mut(start..).and_then(|rest| rest.get_mut(..length)) else { return };
-        let Some(colors) = framebuffer.span(y as u32, column, length) else { return };
-        let mut varyings = corner;
-        for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(dx.as_ref()).zip(dy.as_ref()) {
-            *value = value.wrapping_add(dx.wrapping_mul(x.start)).wrapping_add(dy.wrapping_mul(y));
+    let steps = &surface.steps;
+    let mut y = rows.start;
+    // Column 0 of the row: where its depth is, and what is there.
+    let mut row = width.wrapping_mul((y - target.rows.start) as usize);
+    let mut z = surface.z.wrapping_add_signed(surface.dz_dy.wrapping_mul(y));
+    while y < rows.end {
+        let start = left.pixel().max(columns.start);
+        let length = right.pixel().min(columns.end) - start;
+        if length > 0 {
+            let (column, length) = (start as usize, length as usize);
+            let Some(depth) = depths.get_mut(row + column..).and_then(|rest| rest.get_mut(..length)) else { return };
+            let Some(color) = framebuffer.span(y as u32, column, length) else { return };
+            let mut varyings = surface.varyings;
+            let d_dx = steps.d_dx.as_ref().iter();
+            for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(d_dx).zip(surface.d_dy.as_ref()) {
+                *value = value.wrapping_add(dx.wrapping_mul(start)).wrapping_add(dy.wrapping_mul(y));
+            }
+            let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
+            shader.span(face, Fragments { color, depth, z, varyings, steps, position: (start, y) }, test);
         }
-        let fragments = Fragments {
-            color: colors,
-            depth: depths,
-            z: z.wrapping_add_signed(depth.dx.wrapping_mul(x.start).wrapping_add(depth.dy.wrapping_mul(y))),
-            dz_dx: depth.dx,
-            varyings,
-            d_dx: dx,
-            position: (x.start, y),
-        };
-        // 10, 11. Depth test and fragments, in a loop of its own for each kind of test.
-        match test {
-            Test::Less => shader.span(face, fragments, LessWrite),
-            Test::None => shader.span(face, fragments, NoDepth),
-            Test::Any(test) => shader.span(face, fragments, test),
-        }
-    });
+        left.step();
+        right.step();
+        row += width;
+        z = z.wrapping_add_signed(surface.dz_dy);
+        y += 1;
+    }
+    *edges = [left, right];
 }
 
 /// A word that differs, almost surely, between draws that would not leave the same records.

@@ -31,6 +31,13 @@ fn half_word<R: Pod>(value: R) -> u16 {
 fn fill_words<R: Pod>(pixels: &mut [R], value: R, word: u32) {
     let (head, words, tail) = bytemuck::pod_align_to_mut::<R, u32>(pixels);
     head.fill(value);
+    store(words, word);
+    tail.fill(value);
+}
+
+/// Out of line: a compiler that sees how `word` was made stores its halves one by one.
+#[inline(never)]
+fn store(words: &mut [u32], word: u32) {
     let mut blocks = words.chunks_exact_mut(8);
     for block in &mut blocks {
         // Spelled out: at `opt-level = "s"` a loop would stay a loop.
@@ -41,7 +48,6 @@ fn fill_words<R: Pod>(pixels: &mut [R], value: R, word: u32) {
     for place in blocks.into_remainder() {
         *place = word;
     }
-    tail.fill(value);
 }
 
 #[cfg(test)]

@@ -72,7 +72,8 @@ impl<P: PixelFormat> Shader<P> for Flat {
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
-        let Fragments { color, depth, mut z, dz_dx, .. } = span;
+        let Fragments { color, depth, mut z, steps, .. } = span;
+        let dz_dx = steps.dz_dx;
         let value = Shader::<P>::fragment(self, face, &[]);
         if !D::ENABLED {
             return fill(color, value);

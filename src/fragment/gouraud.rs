@@ -86,6 +86,11 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     }
 
     #[inline]
+    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
+        if P::PACKED { prepare(rgb, d_dx) } else { [0; 2] }
+    }
+
+    #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3]>, test: D) {
         if P::PACKED {
             packed_span(span, test);
@@ -94,9 +99,6 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
         }
     }
 }
-
-/// Pixels that one packed word is stepped over before it is made anew.
-const RUN: usize = 5;
 
 /// A word of three channels: red 8.3 in the upper 11 bits, blue 8.3 in the next 11, green 8.2 in the lower 10.
 ///
@@ -107,49 +109,99 @@ const fn pack(r: i32, g: i32, b: i32) -> u32 {
     ((r as u32) << 21).wrapping_add((b as u32) << 10).wrapping_add(g as u32)
 }
 
+/// Pixels that a word is stepped over until its rounding is made up for, and until it is made anew.
+const GROUP: usize = 4;
+const RUN: usize = 2 * GROUP;
+
+/// The word of channels in 8.16, cut.
+#[inline(always)]
+const fn word([r, g, b]: [i32; 3]) -> u32 {
+    pack(r >> 13, g >> 14, b >> 13)
+}
+
+/// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
+/// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next.
+#[inline(never)]
+fn prepare(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
+    let mut one = [0; 3];
+    let mut group = [0; 3];
+    for (k, (value, &step)) in rgb.iter_mut().zip(d_dx).enumerate() {
+        let half = if k == 1 { 1 << 13 } else { 1 << 12 };
+        let rounded = |v: i32| v.wrapping_add(half) & -(2 * half);
+        let four = step.wrapping_mul(GROUP as i32);
+        (one[k], group[k]) = (rounded(step), rounded(four));
+        let lost = 3 * step.wrapping_sub(one[k]) + four.wrapping_sub(group[k]);
+        *value = value.wrapping_add(half + (lost >> 1));
+    }
+    let step = word(one);
+    [step, word(group).wrapping_sub(step.wrapping_mul(GROUP as u32))]
+}
+
 /// Draws a span with one addition a pixel for all three channels, for formats of 5 or 6 bits a channel.
 ///
 /// # Format
-/// Steps are rounded to 8.3 and 8.2, by at most 1/16 and 1/8. Each run of 5 pixels starts from the exact values, moved
-/// so that the rounding cancels in its middle: 2 steps away it is 1/4 for green, 1/8 for the others; with the rounding of
-/// the word below 0.375. Squeezed channels are off by at most 1/2, and by 1/16 from the records (1/8 for red): in all,
-/// within 1 of 255 before the lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into
-/// its neighbour.
-#[inline(always)]
+/// Steps of one pixel and of four are rounded to 8.3 and 8.2, by at most e = 1/16 and 1/8. Each run of 8 pixels starts
+/// from the exact values, moved so that the rounding cancels in its middle: at most 1.5 steps of a pixel and half a step
+/// of a group away it is 2 e, 1/4 for green, 1/8 for the others; with the rounding of the word below 0.375. Squeezed
+/// channels are off by at most 1/2, and by 1/16 from the records (1/8 for red): in all, within 1 of 255 before the lower
+/// bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
+#[inline(never)]
 fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3]>, test: D) {
-    let Fragments { color, depth, mut z, dz_dx, varyings, d_dx, .. } = span;
-    // 8.16 → 8.3 or 8.2, rounded.
-    let [dr, dg, db] = [(d_dx[0] + (1 << 12)) >> 13, (d_dx[1] + (1 << 13)) >> 14, (d_dx[2] + (1 << 12)) >> 13];
-    let step = pack(dr, dg, db);
+    let Fragments { color, depth, z, varyings, steps, .. } = span;
+    let [step, correction] = steps.words;
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(varyings), step, mask: P::packed_mask() };
     let [mut r, mut g, mut b] = varyings;
-    if color.len() > 2 {
-        // What the steps miss on the way to the middle.
-        r += 2 * (d_dx[0] - (dr << 13));
-        g += 2 * (d_dx[1] - (dg << 14));
-        b += 2 * (d_dx[2] - (db << 13));
-    }
-    let start = |r: i32, g: i32, b: i32| pack((r + (1 << 12)) >> 13, (g + (1 << 13)) >> 14, (b + (1 << 12)) >> 13);
-    let mut pixel = |word: u32, color: &mut P::Raw, depth: &mut u16| {
-        if !D::ENABLED || test.passes((z >> 16) as u16, depth) {
-            *color = P::from_packed(word);
-        }
-        z = z.wrapping_add_signed(dz_dx);
-    };
     let mut colors = color.chunks_exact_mut(RUN);
     let mut depths = depth.chunks_exact_mut(RUN);
-    for (colors, depths) in (&mut colors).zip(&mut depths) {
-        let mut word = start(r, g, b);
-        for (color, depth) in colors.iter_mut().zip(depths) {
-            pixel(word, color, depth);
-            word = word.wrapping_add(step);
-        }
-        r = r.wrapping_add(RUN as i32 * d_dx[0]);
-        g = g.wrapping_add(RUN as i32 * d_dx[1]);
-        b = b.wrapping_add(RUN as i32 * d_dx[2]);
+    for run in (&mut colors).zip(&mut depths) {
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        let ([a, b0, c, d, e, f, g0, h], [az, bz, cz, dz, ez, fz, gz, hz]) = run else { return };
+        pen.draw::<P, D>(test, a, az);
+        pen.draw::<P, D>(test, b0, bz);
+        pen.draw::<P, D>(test, c, cz);
+        pen.draw::<P, D>(test, d, dz);
+        pen.word = pen.word.wrapping_add(correction);
+        pen.draw::<P, D>(test, e, ez);
+        pen.draw::<P, D>(test, f, fz);
+        pen.draw::<P, D>(test, g0, gz);
+        pen.draw::<P, D>(test, h, hz);
+        r = r.wrapping_add(RUN as i32 * steps.d_dx[0]);
+        g = g.wrapping_add(RUN as i32 * steps.d_dx[1]);
+        b = b.wrapping_add(RUN as i32 * steps.d_dx[2]);
+        pen.word = word([r, g, b]);
     }
-    let mut word = start(r, g, b);
-    for (color, depth) in colors.into_remainder().iter_mut().zip(depths.into_remainder()) {
-        pixel(word, color, depth);
-        word = word.wrapping_add(step);
+    let (mut color, mut depth) = (colors.into_remainder(), depths.into_remainder());
+    if color.len() >= GROUP {
+        let ([a, b, c, d, color_rest @ ..], [az, bz, cz, dz, depth_rest @ ..]) = (color, depth) else { return };
+        pen.draw::<P, D>(test, a, az);
+        pen.draw::<P, D>(test, b, bz);
+        pen.draw::<P, D>(test, c, cz);
+        pen.draw::<P, D>(test, d, dz);
+        pen.word = pen.word.wrapping_add(correction);
+        (color, depth) = (color_rest, depth_rest);
+    }
+    for (color, depth) in color.iter_mut().zip(depth) {
+        pen.draw::<P, D>(test, color, depth);
+    }
+}
+
+/// What changes from pixel to pixel in [`packed_span`].
+struct Pen {
+    z: u32,
+    dz_dx: i32,
+    word: u32,
+    step: u32,
+    mask: u32,
+}
+
+impl Pen {
+    /// Draws a pixel and steps to the next one.
+    #[inline(always)]
+    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, color: &mut P::Raw, depth: &mut u16) {
+        if !D::ENABLED || test.passes((self.z >> 16) as u16, depth) {
+            *color = P::from_packed(self.word, self.mask);
+        }
+        self.z = self.z.wrapping_add_signed(self.dz_dx);
+        self.word = self.word.wrapping_add(self.step);
     }
 }

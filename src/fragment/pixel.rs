@@ -17,9 +17,16 @@ pub trait PixelFormat {
     /// Whether [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
     const PACKED: bool = false;
 
+    /// What [`from_packed`](Self::from_packed) wants at hand in a register.
+    #[inline(always)]
+    fn packed_mask() -> u32 {
+        0
+    }
+
     /// From channels in one word, eight bits each: red in the bits 24 to 31, blue in 13 to 20, green in 2 to 9.
     #[inline(always)]
-    fn from_packed(word: u32) -> Self::Raw {
+    fn from_packed(word: u32, mask: u32) -> Self::Raw {
+        let _ = mask;
         Self::pack([(word >> 24) as u8, (word >> 2) as u8, (word >> 13) as u8])
     }
 

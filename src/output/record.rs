@@ -217,7 +217,7 @@ impl<'a> Records<'a> {
     #[inline]
     pub(crate) fn vertex(&self, index: usize) -> &[u32] {
         let start = self.layout.vertices + index * self.layout.stride;
-        self.words.get(start..start + self.layout.stride).unwrap_or_default()
+        self.words.get(start..).and_then(|rest| rest.get(..self.layout.stride)).unwrap_or_default()
     }
 
     #[inline]
@@ -239,6 +239,13 @@ impl<'a> Records<'a> {
     #[inline]
     pub(crate) fn varyings<S: VertexShader>(&self, index: usize) -> S::Varyings {
         S::load(self.vertex(index).get(VERTEX..).unwrap_or_default())
+    }
+
+    /// Where a vertex of the current draw is on the screen, and its varyings.
+    #[inline(never)]
+    pub(crate) fn corner<S: VertexShader>(&self, index: u16) -> (ScreenVertex, S::Varyings) {
+        let words = self.vertex(usize::from(index));
+        (Slot::read(words).screen(), S::load(words.get(VERTEX..).unwrap_or_default()))
     }
 
     /// Adds a vertex to the current draw, for a polygon that the clipper made.

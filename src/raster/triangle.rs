@@ -70,7 +70,31 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 /// ```
 #[inline]
 pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl FnMut(i32, Range<i32>)) {
-    let [mut a, mut b, mut c] = v.map(|v| (v.x, v.y));
+    trapezoids(v, area, &clip.y, |[left, right], rows| {
+        for y in rows {
+            let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
+            if x.start < x.end {
+                span(y, x);
+            }
+            left.step();
+            right.step();
+        }
+    });
+}
+
+/// Takes a triangle apart into the rows above and below its bend: calls `part(edges, rows)` for each that has rows in
+/// `clip`, with the left and the right edge at the first of them; `part` has to step both edges once a row.
+///
+/// Parameters are those of [`spans`].
+#[inline]
+pub fn trapezoids(
+    v: &[ScreenVertex; 3],
+    area: i64,
+    clip: &Range<i32>,
+    mut part: impl FnMut(&mut [Edge; 2], Range<i32>),
+) {
+    let [a, b, c] = v;
+    let (mut a, mut b, mut c) = ((a.x, a.y), (b.x, b.y), (c.x, c.y));
     // Whether the bend is to the right of the long edge: the sign of the area, changed by each exchange.
     let mut bend_right = area > 0;
     if b.1 < a.1 {
@@ -85,35 +109,22 @@ pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl 
             bend_right = !bend_right;
         }
     }
-    let mut row = first_centre(a.1).max(clip.y.start);
-    let end = first_centre(c.1).min(clip.y.end);
+    let mut row = first_centre(a.1).max(clip.start);
+    let end = first_centre(c.1).min(clip.end);
     if area == 0 || row >= end {
         return;
     }
-    let bend = first_centre(b.1);
-    let long = Edge::new(a, c, row);
-    let mut edges = (long, long);
-    // The part above the bend, and the part below it.
-    for (from, to, end) in [(a, b, bend.min(end)), (b, c, end)] {
-        if row >= end {
-            continue;
-        }
-        let short = Edge::new(from, to, row);
-        if bend_right {
-            edges.1 = short;
-        } else {
-            edges.0 = short;
-        }
-        let (mut left, mut right) = edges;
-        while row < end {
-            let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
-            if x.start < x.end {
-                span(row, x);
-            }
-            left.step();
-            right.step();
-            row += 1;
-        }
-        edges = (left, right);
+    let bend = first_centre(b.1).min(end);
+    let short = usize::from(bend_right);
+    let mut edges = [Edge::EMPTY; 2];
+    edges[1 - short] = Edge::new(a, c, row);
+    if row < bend {
+        edges[short] = Edge::new(a, b, row);
+        part(&mut edges, row..bend);
+        row = bend;
+    }
+    if row < end {
+        edges[short] = Edge::new(b, c, row);
+        part(&mut edges, row..end);
     }
 }
