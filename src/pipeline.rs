@@ -14,7 +14,8 @@ use crate::output::{Framebuffer, Records, Slot, Stats};
 use crate::raster::{Edge, Gradients, PixelRect, pixel_rect, trapezoids};
 use core::ops::Range;
 
-/// Which faces are not drawn.
+/// Which faces are not drawn. A model that is mirrored (or a projection that is) turns its faces round: exchange `Back` and
+/// `Front` for it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Cull {
@@ -83,10 +84,14 @@ impl<F: Framebuffer> Scene<'_, F> {
 
     /// Draws a mesh by other rules.
     pub fn draw_with<S: Shader<F::Format>>(&mut self, state: State, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
-        const { assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings") };
+        const {
+            assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
+            assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
+            assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
+        };
         let draw = self.draws;
         self.draws = draw.saturating_add(1);
-        self.stats.draws += 1;
+        self.stats.draws = self.stats.draws.wrapping_add(1);
         let stride = S::WORDS + crate::output::VERTEX_WORDS;
         match self.phase {
             Phase::Record => {
@@ -94,7 +99,7 @@ impl<F: Framebuffer> Scene<'_, F> {
                     return;
                 }
                 let print = fingerprint(&state, mesh, mvp, &self.viewport, stride);
-                let culled = self.is_culled::<S>(mesh, mvp);
+                let culled = self.is_culled::<S>(&state, mesh, mvp);
                 // What is out of view leaves a header without vertices.
                 let vertices = if culled { 0 } else { mesh.vertex_count() };
                 self.records.begin_draw(print, vertices, stride);
@@ -112,7 +117,7 @@ impl<F: Framebuffer> Scene<'_, F> {
                 self.replay(&state, shader);
             }
             Phase::Direct => {
-                if !self.is_culled::<S>(mesh, mvp) {
+                if !self.is_culled::<S>(&state, mesh, mvp) {
                     let cached = self.records.begin_direct(mesh.vertex_count(), stride);
                     self.assemble(&state, mesh, mvp, shader, cached);
                 }
@@ -123,10 +128,11 @@ impl<F: Framebuffer> Scene<'_, F> {
     /// Whether something with these bounds may be seen in the part of the screen that is being drawn; what is not can be
     /// left out, with everything inside of it: a hierarchy of objects.
     ///
-    /// The answer is the same in all calls of the closure that must draw the same.
+    /// The answer is the same in all calls of the closure that must draw the same. It counts near and far plane as borders,
+    /// whatever [`State::range`] says of what lies beyond them.
     #[inline(never)]
     pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
-        self.frustum(mvp).bounds(bounds) != Containment::Outside
+        self.frustum(&State::default(), mvp).bounds(bounds) != Containment::Outside
     }
 
     /// Maps clip space to a part of the screen from here on; nothing outside of it is touched. Each call of the closure
@@ -149,17 +155,18 @@ impl<F: Framebuffer> Scene<'_, F> {
     }
 
     /// What can be seen of the band.
-    fn frustum(&self, mvp: &Projective) -> Frustum {
+    fn frustum(&self, state: &State, mvp: &Projective) -> Frustum {
         let rect = self.clip_rect(&self.band);
         Frustum::through(mvp, &self.viewport, (rect.x.start, rect.x.end), (rect.y.start, rect.y.end))
+            .without(state.range.clamped())
     }
 
     /// Stage 1, culling of whole meshes. In a function of its own, as the others here, so that its planes leave the stack.
     #[inline(never)]
-    fn is_culled<S: VertexShader>(&mut self, mesh: &Mesh<'_>, mvp: &Projective) -> bool {
+    fn is_culled<S: VertexShader>(&mut self, state: &State, mesh: &Mesh<'_>, mvp: &Projective) -> bool {
         let bounded = !S::DISPLACES && !matches!(mesh.data().positions, Positions::Homogeneous(_));
-        let culled = bounded && !self.is_visible(mesh.bounds(), mvp);
-        self.stats.culled += u32::from(culled);
+        let culled = bounded && self.frustum(state, mvp).bounds(mesh.bounds()) == Containment::Outside;
+        self.stats.culled = self.stats.culled.wrapping_add(u32::from(culled));
         culled
     }
 
@@ -221,11 +228,11 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     /// Takes the parts of a mesh that can be seen.
     #[inline(never)]
     fn parts(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
-        let frustum = self.scene.frustum(mvp);
+        let frustum = self.scene.frustum(self.state, mvp);
         let mut k = 0;
         while let Some(node) = nodes.get(k) {
             if frustum.bounds(&node.bounds) == Containment::Outside {
-                self.scene.stats.culled += 1;
+                self.scene.stats.culled = self.scene.stats.culled.wrapping_add(1);
                 k = usize::from(node.skip);
             } else {
                 let first = usize::from(node.first_triangle);
@@ -246,7 +253,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             let Some(corners) = self.mesh.triangle(number) else {
                 return;
             };
-            self.scene.stats.triangles += 1;
+            self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
             // 3. Vertex stage, once a vertex where there are records to keep the result.
             // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
             let [i, j, k] = corners;
@@ -273,7 +280,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
 
     #[inline(never)]
     fn shade(&mut self, index: usize) -> Slot {
-        self.scene.stats.vertices += 1;
+        self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
         let placed = if S::DISPLACES {
             place(&self.transformed(index))
         } else {
@@ -301,10 +308,10 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     fn clip(&mut self, codes: [u8; 3], corners: [u16; 3], number: usize) {
         let clamped = self.state.range.clamped().0;
         if codes[0] & codes[1] & codes[2] & !clamped != 0 {
-            self.scene.stats.outside += 1;
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             return;
         }
-        self.scene.stats.clipped += 1;
+        self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1] | codes[2]);
         for part in self.state.range.parts(all) {
             let mut fan = Fan::<S::Varyings>::new();
@@ -392,24 +399,24 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         let stats = &mut *self.scene.stats;
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area == 0 {
-            stats.degenerate += 1;
+            stats.degenerate = stats.degenerate.wrapping_add(1);
             return None;
         }
         if (self.state.cull == Cull::Back && area > 0) || (self.state.cull == Cull::Front && area < 0) {
-            stats.back_facing += 1;
+            stats.back_facing = stats.back_facing.wrapping_add(1);
             return None;
         }
         let rect = pixel_rect(v);
         if rect.is_empty() {
-            stats.empty += 1;
+            stats.empty = stats.empty.wrapping_add(1);
             return None;
         }
         let rect = rect.intersection(&self.clip);
         if rect.is_empty() {
-            stats.outside += 1;
+            stats.outside = stats.outside.wrapping_add(1);
             return None;
         }
-        stats.drawn += 1;
+        stats.drawn = stats.drawn.wrapping_add(1);
         Some(rect)
     }
 
@@ -526,8 +533,10 @@ fn rows<F: Framebuffer, S: Shader<F::Format>, D: DepthTest>(
         let length = right.pixel().min(columns.end) - start;
         if length > 0 {
             let (column, length) = (start as usize, length as usize);
-            let Some(depth) = depths.get_mut(row + column..).and_then(|rest| rest.get_mut(..length)) else { return };
-            let Some(color) = framebuffer.span(y as u32, column, length) else { return };
+            let color = framebuffer.span(y as u32, column, length);
+            // As many depths as pixels, should the framebuffer be narrower than the screen.
+            let rest = depths.get_mut(row + column..).unwrap_or_default();
+            let Some(depth) = rest.get_mut(..color.len()) else { return };
             let mut varyings = surface.varyings;
             let d_dx = steps.d_dx.as_ref().iter();
             for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(d_dx).zip(surface.d_dy.as_ref()) {
@@ -557,6 +566,10 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
     add(viewport.x() as u32 ^ (viewport.y() as u32) << 16);
     add(u32::from(viewport.width()) | u32::from(viewport.height()) << 16);
     add(mesh.vertex_count() as u32 | (mesh.triangle_count() as u32) << 16);
+    let aabb = &mesh.bounds().aabb;
+    for coordinate in aabb.center.to_bits().into_iter().chain(aabb.half.to_bits()) {
+        add(coordinate as u32);
+    }
     add(stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20);
     add(state.depth.compare as u32 | u32::from(state.depth.write) << 8);
     hash

@@ -317,7 +317,7 @@ fn hierarchy_draws_the_same_picture_and_culls_something() {
         let mvp = camera * Affine::rotation_y(Angle(rng.between(-6000, 6000) as u16)) * Affine::translation(-eye);
         let draw = |mesh| {
             strips::<Rgb565>((64, 48), 8, records, Rgb565::BLACK, |scene| {
-                scene.draw_with(state, mesh, &mvp, &Gouraud::unlit())
+                scene.draw_with(state, mesh, &mvp, &Gouraud::colors_unlit())
             })
         };
         let ((expected, all), (picture, some)) = (draw(&plain), draw(&tree));

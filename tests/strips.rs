@@ -85,11 +85,11 @@ where
 {
     let (width, height) = scene.screen();
     scene.set_viewport(part);
-    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::unlit());
+    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
     scene.set_viewport(Viewport::full(width, height).expect("the screen is a viewport"));
     let turned = Projective::from(Affine::rotation_z(Angle(9999)));
     scene.draw_with(BOTH_SIDES, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
-    scene.draw_with(state, mesh, &turned, &Gouraud::unlit());
+    scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
 }
 
 fn random_state(rng: &mut Rng) -> State {
@@ -158,7 +158,7 @@ proptest! {
         let soup = Soup::new(&mut Rng::new(seed), triangles);
         let mesh = soup.mesh();
         let draw = |rows, records| strips::<Gray8>(screen, rows, records, Gray8::new(3), |scene| {
-            scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::unlit());
+            scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
         }).0;
         prop_assert_eq!(difference(&draw(rows, records), &draw(48, 20_000), 64), None);
     }

@@ -96,7 +96,7 @@ pub fn room_camera(screen: (u16, u16), turn: Angle) -> Projective {
 /// A room seen from inside, with a chequered floor, a pillar and a torus of half its size.
 pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = room_camera(scene.screen(), turn);
-    scene.draw(&polygons::ROOM, &mvp, &Gouraud::unlit());
+    scene.draw(&polygons::ROOM, &mvp, &Gouraud::colors_unlit());
     scene.draw(&polygons::FLOOR, &mvp, &Flat::colors(light()));
     let pillar = Affine::translation(Vec3::from_milli(800, 0, -600));
     scene.draw(&polygons::PILLAR, &(mvp * pillar), &Flat::colors(light()));
@@ -124,19 +124,19 @@ pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 /// Random triangles of all sizes around the eye.
 pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = standard_camera(scene) * Affine::rotation_y(turn);
-    scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &Gouraud::unlit());
+    scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &Gouraud::colors_unlit());
 }
 
 /// Triangles whose vertices are up to 30,000 px outside of the screen.
 pub fn far<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -4)) * Affine::rotation_z(turn);
-    scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &Gouraud::unlit());
+    scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &Gouraud::colors_unlit());
 }
 
 /// Triangles in clip space, cut by the near plane or with vertices behind the eye.
 pub fn near<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = Projective::from(Affine::rotation_z(turn));
-    scene.draw_with(BOTH_SIDES, &soup::NEAR, &mvp, &Gouraud::unlit());
+    scene.draw_with(BOTH_SIDES, &soup::NEAR, &mvp, &Gouraud::colors_unlit());
 }
 
 /// Many triangles of about 2 px.
@@ -148,13 +148,13 @@ pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 /// Three planks that each cover the next one: no order of drawing is right, only depth is.
 pub fn cycle<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(turn);
-    scene.draw(&polygons::CYCLE, &mvp, &Gouraud::unlit());
+    scene.draw(&polygons::CYCLE, &mvp, &Gouraud::colors_unlit());
 }
 
 /// Long triangles thinner than a pixel.
 pub fn slivers<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(turn);
-    scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &Gouraud::unlit());
+    scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &Gouraud::colors_unlit());
 }
 
 /// A grid, a strip, a fan and quads side by side.
@@ -164,7 +164,7 @@ pub fn field<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
         * Affine::rotation_x(Angle::from_degrees(-20))
         * Affine::rotation_z(turn);
     for mesh in [&polygons::GRID, &polygons::STRIP, &polygons::FAN, &polygons::QUADS] {
-        scene.draw_with(BOTH_SIDES, mesh, &mvp, &Gouraud::unlit());
+        scene.draw_with(BOTH_SIDES, mesh, &mvp, &Gouraud::colors_unlit());
     }
 }
 

@@ -86,7 +86,7 @@ pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
 
 #[inline(never)]
 pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::unlit()))
+    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::colors_unlit()))
 }
 
 #[inline(never)]

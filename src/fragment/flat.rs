@@ -10,26 +10,31 @@ use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
 #[derive(Clone, Copy, Debug)]
 pub struct Flat {
     light: Option<Light>,
-    /// The colour, lit or plain; that of the mesh where there is none.
+    /// The colour, and under the light; those of the mesh where there is none.
+    color: Option<[u8; 3]>,
     lit: Option<Lit>,
-    color: [u8; 3],
 }
 
 impl Flat {
     /// A colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
         let color = channels(color.into());
-        Self { light: Some(light), lit: Some(light.on(color)), color }
+        Self { light: Some(light), lit: Some(light.on(color)), color: Some(color) }
     }
 
     /// A colour without light.
     pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { light: None, lit: None, color: channels(color.into()) }
+        Self { light: None, lit: None, color: Some(channels(color.into())) }
+    }
+
+    /// The colours of the mesh's vertices as they are, the provoking one's a triangle.
+    pub const fn colors_unlit() -> Self {
+        Self { light: None, lit: None, color: None }
     }
 
     /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
     pub const fn colors(light: Light) -> Self {
-        Self { light: Some(light), lit: None, color: [255; 3] }
+        Self { light: Some(light), lit: None, color: None }
     }
 }
 
@@ -52,7 +57,7 @@ impl VertexShader for Flat {
         let rgb = match (self.light, self.lit) {
             (Some(_), Some(lit)) => lit.shade(face.normal()).map(round),
             (Some(light), None) => light.on(face.provoking().color()).shade(face.normal()).map(round),
-            _ => self.color,
+            _ => self.color.unwrap_or_else(|| face.provoking().color()),
         };
         u32::from_be_bytes([0, rgb[0], rgb[1], rgb[2]])
     }

@@ -6,7 +6,8 @@ use super::{DepthTest, Fragments, PixelFormat, Shader};
 use crate::geometry::{Corner, Light, Lit, VertexShader};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
-/// Gouraud shading: lit at the vertices, by the mesh's normals, and interpolated linearly on the screen.
+/// Gouraud shading: lit at the vertices, by the mesh's normals, and interpolated linearly on the screen. A mesh without
+/// normals shows the ambient light only.
 #[derive(Clone, Copy, Debug)]
 pub struct Gouraud {
     light: Option<Light>,
@@ -26,7 +27,7 @@ impl Gouraud {
     }
 
     /// The colours of the mesh's vertices as they are.
-    pub const fn unlit() -> Self {
+    pub const fn colors_unlit() -> Self {
         Self { light: None, lit: None }
     }
 }

@@ -16,7 +16,7 @@ pub struct BoundingBox {
 pub struct BoundingSphere {
     /// Centre.
     pub center: Vec3,
-    /// Radius; never negative.
+    /// Radius; never negative. `Scalar::MAX` stands for any that is larger, too: such a sphere culls nothing.
     pub radius: Scalar,
 }
 

@@ -36,6 +36,9 @@ pub enum DepthRange {
     #[default]
     Clip,
     /// What is beyond the far plane is drawn at depth 65,535: a sky, a distant landscape.
+    ///
+    /// Against a cleared depth buffer that takes [`Compare::LessEqual`](crate::fragment::Compare::LessEqual), as 65,535 is
+    /// what it is cleared to.
     ClampFar,
     /// Both are drawn, at depth 0 and 65,535.
     Clamp,

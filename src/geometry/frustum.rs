@@ -1,7 +1,7 @@
 //! Culling of whole objects: the planes of the view volume, tested against boxes and spheres.
 
-use super::{BoundingBox, BoundingSphere, Bounds, Viewport};
-use crate::math::Projective;
+use super::{BoundingBox, BoundingSphere, Bounds, Outcode, Viewport};
+use crate::math::{Projective, Scalar};
 
 /// A plane in the space that the matrix maps from; its inside is where it is not negative.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,6 +49,16 @@ pub struct Frustum {
 const SLACK: i64 = 1 << 33;
 
 impl Plane {
+    /// The normal: points inside, of any length.
+    pub const fn normal(&self) -> [i32; 3] {
+        self.normal
+    }
+
+    /// The value at the origin; elsewhere it is that and the normal times the position in raw 16.16, positive inside.
+    pub const fn offset(&self) -> i64 {
+        self.offset
+    }
+
     /// The plane `row · (x, y, z, 1) ≥ 0`, entries below 2⁶¹ with 32 fractional bits each, rounded down by up to `error`.
     #[inline(never)]
     fn new(row: [i64; 4], error: i32) -> Self {
@@ -58,7 +68,7 @@ impl Plane {
         let shift = (normal_bits - 28).max(bits(row[3]) + 16 - 60);
         let scaled = |v: i64, shift: i32| if shift >= 0 { v >> shift.min(63) } else { v << -shift };
         let normal = [scaled(row[0], shift) as i32, scaled(row[1], shift) as i32, scaled(row[2], shift) as i32];
-        // The largest component and half the others are never shorter than the vector, and at most 1/6 longer.
+        // The largest component and half the others are never shorter than the vector, and at most 1/4 longer.
         let [a, b, c] = normal.map(i32::abs);
         let largest = a.max(b).max(c);
         let length = largest + (a + b + c - largest) / 2 + 2;
@@ -137,6 +147,18 @@ impl Frustum {
         Self { planes }
     }
 
+    /// Without its near or far plane, where `planes` says so: for what is drawn beyond them with its depth clamped.
+    pub fn without(mut self, planes: Outcode) -> Self {
+        let [_, _, _, _, near, far] = &mut self.planes;
+        for (plane, bit) in [(near, Outcode::NEAR), (far, Outcode::FAR)] {
+            if planes.0 & bit != 0 {
+                // Everything is inside of it.
+                *plane = Plane { normal: [0; 3], offset: 1 << 60, length: 0, slack: 0 };
+            }
+        }
+        self
+    }
+
     /// The planes: left, right, bottom, top, near, far.
     pub const fn planes(&self) -> &[Plane; 6] {
         &self.planes
@@ -157,6 +179,10 @@ impl Frustum {
 
     /// Where a sphere is.
     pub fn sphere(&self, sphere: &BoundingSphere) -> Containment {
+        // A radius that did not fit holds nothing for sure.
+        if sphere.radius == Scalar::MAX {
+            return Containment::Crossing;
+        }
         let radius = i64::from(sphere.radius.to_bits());
         self.all(sphere.center.to_bits(), |plane| i64::from(plane.length) * radius)
     }

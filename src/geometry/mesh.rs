@@ -69,7 +69,8 @@ pub struct MeshData<'a> {
     pub uvs: Option<&'a [[Scalar; 2]]>,
     /// Bounds, where they are known better than a pass over the positions would find.
     pub bounds: Option<Bounds>,
-    /// A hierarchy of bounds over the triangles; see [`BoundsNode`].
+    /// A hierarchy of bounds over the triangles; see [`BoundsNode`]. Each triangle belongs into one leaf, whose bounds and
+    /// those of the nodes above have to hold it: what is in no leaf is not drawn.
     pub hierarchy: Option<&'a [BoundsNode]>,
 }
 
@@ -130,6 +131,8 @@ pub enum MeshError {
     Scale(i32),
     /// A node of the hierarchy does not skip forward within it, or its triangles are out of range: which node.
     Hierarchy(usize),
+    /// The given bounds do not hold a vertex: which one.
+    Bounds(usize),
 }
 
 impl fmt::Display for MeshError {
@@ -146,6 +149,7 @@ impl fmt::Display for MeshError {
             Self::Colors(n) => write!(f, "{n} colours do not match the number of vertices"),
             Self::Uvs(n) => write!(f, "{n} texture coordinates do not match the number of vertices"),
             Self::Scale(s) => write!(f, "scale {} of the positions is not positive", Scalar::from_bits(s)),
+            Self::Bounds(n) => write!(f, "the given bounds do not hold vertex {n}"),
             Self::Hierarchy(n) => write!(f, "node {n} of the hierarchy points out of range"),
         }
     }
@@ -223,7 +227,10 @@ impl<'a> Mesh<'a> {
             }
         }
         let bounds = match data.bounds {
-            Some(bounds) => bounds,
+            Some(bounds) => match outside(&data.positions, vertices, &bounds) {
+                Some(vertex) => return Err(MeshError::Bounds(vertex)),
+                None => bounds,
+            },
             None => find_bounds(&data.positions),
         };
         Ok(Self { data, bounds, triangles: triangles as u16 })
@@ -261,7 +268,7 @@ impl<'a> Mesh<'a> {
         &self.data
     }
 
-    /// Box and sphere around all vertices, in object space.
+    /// Box and sphere around all vertices, in object space; of homogeneous positions, without regard to w.
     pub const fn bounds(&self) -> &Bounds {
         &self.bounds
     }
@@ -329,6 +336,29 @@ const fn raw_position(positions: &Positions<'_>, vertex: usize, up: bool) -> [i6
             [p[0].to_bits() as i64, p[1].to_bits() as i64, p[2].to_bits() as i64]
         }
     }
+}
+
+/// The first vertex that is not in the box, or not in the sphere, give or take the rounding of quantized positions.
+const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) -> Option<usize> {
+    let (center, half) = (bounds.aabb.center.to_bits(), bounds.aabb.half.to_bits());
+    let radius = bounds.sphere.radius.to_bits();
+    let reach = if radius < 0 { 0 } else { radius as u128 + 2 };
+    let mut k = 0;
+    while k < vertices {
+        let p = raw_position(positions, k, false);
+        let mut axis = 0;
+        while axis < 3 {
+            if (p[axis] - center[axis] as i64).abs() > half[axis] as i64 + 1 {
+                return Some(k);
+            }
+            axis += 1;
+        }
+        if radius != i32::MAX && distance_squared(p, bounds.sphere.center) > reach * reach {
+            return Some(k);
+        }
+        k += 1;
+    }
+    None
 }
 
 /// Box and sphere of all positions, both about the middle of the box.

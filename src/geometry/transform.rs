@@ -53,9 +53,6 @@ pub fn place(vertex: &ClipVertex) -> Placed {
     }
 }
 
-/// What a vertex transform yields: clip coordinates in the transform's own scale.
-pub type Transformed = ClipVertex;
-
 /// `value / 2^shift`, rounded to nearest; a negative shift multiplies. 0 for shifts above 62.
 #[inline(never)]
 fn scale(value: i64, shift: i32) -> i64 {
@@ -161,7 +158,7 @@ impl Transform {
 
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
     #[inline]
-    pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> Transformed {
+    pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> ClipVertex {
         match positions {
             Positions::Quantized { points, .. } => {
                 let q = points.get(index).copied().unwrap_or_default();
@@ -197,7 +194,7 @@ impl Transform {
     }
 
     /// Clip coordinates of a 16.16 position, of a transform made for those.
-    pub fn point(&self, position: Vec3) -> Transformed {
+    pub fn point(&self, position: Vec3) -> ClipVertex {
         let [x, y, z] = position.to_bits();
         self.apply([x, y, z, 0])
     }
@@ -210,7 +207,7 @@ impl Transform {
     /// # Format
     /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded in `new`; fractions below 2¹⁶ · 2³¹.
     #[inline(never)]
-    fn apply(&self, p: [i32; 4]) -> Transformed {
+    fn apply(&self, p: [i32; 4]) -> ClipVertex {
         let row = |entries: &[i64; 4], translation: i64| {
             let mut whole = 0_i64;
             let mut fraction = 0_i64;

@@ -5,8 +5,8 @@ use crate::math::Vec3;
 
 /// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes.
 ///
-/// Interpolation is linear in screen space, exact to 2⁻⁶ of a unit for values that differ by less than 2³¹ over the
-/// triangle; so keep a few fractional bits.
+/// Interpolation is linear in screen space, for values that differ by less than 2³¹ over the triangle. Each is within 2¹³
+/// of its exact value (and 2 for each pixel of a small triangle), so give what has to be smooth some 16 fractional bits.
 pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
     /// How many.
     const LEN: usize;
@@ -107,7 +107,9 @@ impl<'a> Face<'a> {
         let [a, b, c] = self.corners.map(|k| self.mesh.position(usize::from(k)).to_bits());
         let (ab, ac) = (edge(a, b), edge(a, c));
         let ([ax, ay, az], [bx, by, bz]) = (ab, ac);
-        let n = fifteen_bits([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx].map(|v| v << 1));
+        // Halves of products below 2³⁰, so that differences fit.
+        let minor = |a: i32, b: i32, c: i32, d: i32| (a * b >> 1) - (c * d >> 1);
+        let n = fifteen_bits([minor(ay, bz, az, by), minor(az, bx, ax, bz), minor(ax, by, ay, bx)]);
         let length = n.iter().map(|&v| (v * v) as u32).fold(0, u32::wrapping_add).isqrt();
         let Some(length) = core::num::NonZeroU32::new(length) else { return [0; 3] };
         n.map(|v| {
@@ -119,9 +121,12 @@ impl<'a> Face<'a> {
 
 /// The direction from `a` to `b`, scaled to 15 bits.
 fn edge(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
-    // Halved, so that differences fit.
     let ([ax, ay, az], [bx, by, bz]) = (a, b);
-    fifteen_bits([(bx >> 1) - (ax >> 1), (by >> 1) - (ay >> 1), (bz >> 1) - (az >> 1)])
+    fifteen_bits(match (bx.checked_sub(ax), by.checked_sub(ay), bz.checked_sub(az)) {
+        (Some(x), Some(y), Some(z)) => [x, y, z],
+        // Halved, so that differences fit.
+        _ => [(bx >> 1) - (ax >> 1), (by >> 1) - (ay >> 1), (bz >> 1) - (az >> 1)],
+    })
 }
 
 /// A vector scaled so that its largest component has 15 bits.
@@ -143,7 +148,7 @@ pub trait VertexShader {
     const WORDS: usize = <Self::Varyings as Varyings>::LEN;
 
     /// How many low bits of all varyings are zero at the vertices, up to 16. Knowing it makes set-up cheaper: values of
-    /// at most 14 other bits take 32-bit arithmetic.
+    /// at most 14 other bits take 32-bit arithmetic. What the clipper makes of them is cut to that too.
     const ZERO_BITS: u32 = 0;
 
     /// Whether [`displace`](Self::displace) moves vertices. Such draws are not culled by the mesh's bounds.

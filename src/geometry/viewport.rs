@@ -40,7 +40,7 @@ impl fmt::Display for ViewportError {
 impl core::error::Error for ViewportError {}
 
 impl Viewport {
-    /// Largest width and height of a viewport and of a screen: gradients lose less than 2⁻⁴ of a step over it.
+    /// Largest width and height of a viewport and of a screen: gradients lose less than 2⁻³ of a step over it.
     pub const MAX_SIZE: u16 = 4096;
 
     /// Largest distance of the corner from that of the screen, so that it cannot come near the guard band.

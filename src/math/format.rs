@@ -1,12 +1,9 @@
 //! The fixed-point formats of the public interface, named once.
 
-use fixed::types::{I16F16, I24F8, I32F32};
+use fixed::types::{I16F16, I32F32};
 
 /// Object and world coordinates, lengths, factors: 16.16, -32768 to 32767.99998 in steps of 2⁻¹⁶.
 pub type Scalar = I16F16;
-
-/// Screen coordinates: 24.8 pixels, 8 sub-pixel bits. The rasterizer accepts ±32,767 px.
-pub type Subpixel = I24F8;
 
 /// Entries of a [`Projective`](super::Projective) matrix: 32.32.
 pub type Wide = I32F32;

@@ -13,7 +13,7 @@ mod vector;
 
 pub use affine::Affine;
 pub use angle::Angle;
-pub use format::{Scalar, Subpixel, Wide};
+pub use format::{Scalar, Wide};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
 pub use projective::{ProjectionError, Projective};

@@ -43,6 +43,11 @@ impl RamBudget {
         Self { records: 4 * records_len(strips, draws, vertices, varying_words, triangles), ..self }
     }
 
+    /// With a number of words of records.
+    pub const fn with_record_words(self, words: usize) -> Self {
+        Self { records: 4 * words, ..self }
+    }
+
     /// All of them.
     pub const fn total(&self) -> usize {
         self.color + self.depth + self.records

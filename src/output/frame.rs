@@ -219,6 +219,8 @@ impl Engine<'_> {
             self.walk(progress, Phase::Direct, (row, row + rows), Some(framebuffer), draw)
         };
         if let Some(draw) = changed {
+            // What is left in the records is of no use: the frame is over.
+            progress.row = self.viewport.height();
             return Err(draw);
         }
         progress.row += rows;

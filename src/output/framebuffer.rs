@@ -14,11 +14,18 @@ pub trait Framebuffer {
     /// Row `y` of the screen, from column 0.
     fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
 
-    /// `length` pixels of row `y` from `column` on; `None` where they are not all there. What the rasterizer calls.
+    /// Up to `length` pixels of row `y` from `column` on: those that there are. What the rasterizer calls.
     #[inline]
-    fn span(&mut self, y: u32, column: usize, length: usize) -> Option<&mut [<Self::Format as PixelFormat>::Raw]> {
-        self.row(y).get_mut(column..)?.get_mut(..length)
+    fn span(&mut self, y: u32, column: usize, length: usize) -> &mut [<Self::Format as PixelFormat>::Raw] {
+        first(self.row(y).get_mut(column..).unwrap_or_default(), length)
     }
+}
+
+/// The first `length` of some pixels, or all of them.
+#[inline]
+fn first<R>(pixels: &mut [R], length: usize) -> &mut [R] {
+    let length = length.min(pixels.len());
+    pixels.get_mut(..length).unwrap_or_default()
 }
 
 /// A horizontal strip of the screen.
@@ -41,16 +48,17 @@ impl<P: PixelFormat> Framebuffer for Strip<'_, P> {
 
     #[inline]
     fn row(&mut self, y: u32) -> &mut [P::Raw] {
-        let start = y.wrapping_sub(self.first_row) as usize * self.width;
-        self.pixels.get_mut(start..start + self.width).unwrap_or_default()
+        let row = y.checked_sub(self.first_row).and_then(|row| (row as usize).checked_mul(self.width));
+        let rest = row.and_then(|start| self.pixels.get_mut(start..)).unwrap_or_default();
+        first(rest, self.width)
     }
 
     /// The rasterizer stays within the width, so the row's own end need not be checked.
     #[inline]
-    fn span(&mut self, y: u32, column: usize, length: usize) -> Option<&mut [P::Raw]> {
-        let start = y.wrapping_sub(self.first_row) as usize * self.width + column;
+    fn span(&mut self, y: u32, column: usize, length: usize) -> &mut [P::Raw] {
+        let start = (y.wrapping_sub(self.first_row) as usize).wrapping_mul(self.width).wrapping_add(column);
         // In two steps, each a comparison; a range is checked at both ends at once, which small cores pay twice for.
-        self.pixels.get_mut(start..)?.get_mut(..length)
+        first(self.pixels.get_mut(start..).unwrap_or_default(), length)
     }
 }
 
@@ -121,8 +129,11 @@ impl<P: PixelFormat> Framebuffer for FrameSlice<'_, P> {
 
     #[inline]
     fn row(&mut self, y: u32) -> &mut [P::Raw] {
+        if y >= self.height {
+            return &mut [];
+        }
+        // Not more than the length of the slice, as `with_stride` has checked.
         let start = y as usize * self.stride;
-        let end = if y < self.height { start + self.width } else { start };
-        self.pixels.get_mut(start..end).unwrap_or_default()
+        first(self.pixels.get_mut(start..).unwrap_or_default(), self.width)
     }
 }

@@ -65,7 +65,7 @@ impl Edge {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let p = 256 * row + 128 - a.1;
         // The usual edge: short, not flatter than 1 in 4, and begun at its upper end.
-        if small(dx) & ((dy as u32) < 1 << 15) & ((p as u32) < 256) && dx.abs() <= 4 * dy {
+        if small(dx) & (dy > 0) & ((dy as u32) < 1 << 15) & ((p as u32) < 256) && dx.abs() <= 4 * dy {
             return Self::walked(a.0, dx, dy, p);
         }
         Self::divided(a, b, row)
