@@ -526,7 +526,8 @@ fn rows<F: Framebuffer, S: Shader<F::Format>, D: DepthTest>(
         let length = right.pixel().min(columns.end) - start;
         if length > 0 {
             let (column, length) = (start as usize, length as usize);
-            let Some(depth) = depths.get_mut(row + column..).and_then(|rest| rest.get_mut(..length)) else { return };
+            let Some(depth) = depths.get_mut(row + column..) else { return };
+            let Some(depth) = depth.get_mut(..length) else { return };
             let Some(color) = framebuffer.span(y as u32, column, length) else { return };
             let mut varyings = surface.varyings;
             let d_dx = steps.d_dx.as_ref().iter();

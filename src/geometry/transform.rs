@@ -254,7 +254,7 @@ impl Short {
 
     #[inline]
     fn apply(&self, q: [i16; 3]) -> [i32; 4] {
-        let [x, y, z] = q.map(i32::from);
+        let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
         self.rows.each_ref().map(|row| {
             let ([hx, hy, hz], [lx, ly, lz]) = (row.high, row.low);
             let low = lx * x + ly * y + lz * z + row.translation_low;
