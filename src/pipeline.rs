@@ -535,8 +535,8 @@ fn rows<F: Framebuffer, S: Shader<F::Format>, D: DepthTest>(
             let (column, length) = (start as usize, length as usize);
             let color = framebuffer.span(y as u32, column, length);
             // As many depths as pixels, should the framebuffer be narrower than the screen.
-            let rest = depths.get_mut(row + column..).unwrap_or_default();
-            let Some(depth) = rest.get_mut(..color.len()) else { return };
+            let Some(depth) = depths.get_mut(row + column..) else { return };
+            let Some(depth) = depth.get_mut(..color.len()) else { return };
             let mut varyings = surface.varyings;
             let d_dx = steps.d_dx.as_ref().iter();
             for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(d_dx).zip(surface.d_dy.as_ref()) {

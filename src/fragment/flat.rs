@@ -54,12 +54,15 @@ impl VertexShader for Flat {
     /// The colour, 8 bits a channel, blue lowest.
     #[inline]
     fn face(&self, face: &Face<'_>) -> u32 {
-        let rgb = match (self.light, self.lit) {
-            (Some(_), Some(lit)) => lit.shade(face.normal()).map(round),
-            (Some(light), None) => light.on(face.provoking().color()).shade(face.normal()).map(round),
-            _ => self.color.unwrap_or_else(|| face.provoking().color()),
+        let [r, g, b] = match (self.light, self.lit) {
+            (Some(_), Some(lit)) => lit.shade(face.normal()),
+            (Some(light), None) => light.on(face.provoking().color()).shade(face.normal()),
+            _ => {
+                let [r, g, b] = self.color.unwrap_or_else(|| face.provoking().color());
+                return u32::from_be_bytes([0, r, g, b]);
+            }
         };
-        u32::from_be_bytes([0, rgb[0], rgb[1], rgb[2]])
+        u32::from_be_bytes([0, round(r), round(g), round(b)])
     }
 }
 

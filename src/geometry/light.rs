@@ -91,7 +91,7 @@ impl Lit {
     /// Normal 2.14; result 8.8, within 1/64 of the exact value for the same 2.14 vectors. n · l: 2²⁸ and a little.
     #[inline]
     pub fn shade(&self, normal: [i16; 3]) -> [i32; 3] {
-        let [x, y, z] = normal.map(i32::from);
+        let [x, y, z] = [i32::from(normal[0]), i32::from(normal[1]), i32::from(normal[2])];
         let [lx, ly, lz] = self.direction;
         // Components are in -2¹⁵..2¹⁵, those of the light at most 2¹⁴: below 2³¹.
         let cosine = ((x * lx + y * ly + z * lz) >> 14).clamp(0, 1 << 14);

@@ -251,11 +251,14 @@ impl Short {
 
     #[inline]
     fn apply(&self, q: [i16; 3]) -> [i32; 4] {
-        let [x, y, z] = q.map(i32::from);
-        self.rows.each_ref().map(|row| {
+        let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
+        let apply = |row: &ShortRow| {
             let ([hx, hy, hz], [lx, ly, lz]) = (row.high, row.low);
             let low = lx * x + ly * y + lz * z + row.translation_low;
             hx * x + hy * y + hz * z + row.translation_high + (low >> 15)
-        })
+        };
+        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
+        let [a, b, c, d] = &self.rows;
+        [apply(a), apply(b), apply(c), apply(d)]
     }
 }

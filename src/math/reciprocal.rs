@@ -16,16 +16,12 @@ pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
     if NARROW { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
 }
 
-/// [`mul_high`] from four products of 16 bits.
+/// [`mul_high`] from [`mul_high_signed`], which takes `a` for a - 2³² when its top bit is set: b is missing then.
 ///
-/// # Format
-/// Each product is at most (2¹⁶ - 1)², which leaves room for one more carry of 16 bits.
+/// Four products by themselves would be recognized by the compiler and replaced by a call to `__aeabi_lmul`.
 #[inline(always)]
 const fn mul_high_by_halves(a: u32, b: u32) -> u32 {
-    let (a1, a0, b1, b0) = (a >> 16, a & 0xFFFF, b >> 16, b & 0xFFFF);
-    let middle = a1 * b0 + ((a0 * b0) >> 16);
-    let other = a0 * b1 + (middle & 0xFFFF);
-    a1 * b1 + (middle >> 16) + (other >> 16)
+    (mul_high_signed_by_halves(a as i32, b) as u32).wrapping_add(b & (a as i32 >> 31) as u32)
 }
 
 /// [`mul_high_signed`] from four products of 16 bits, the upper half of `a` with its sign.
