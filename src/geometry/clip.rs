@@ -9,7 +9,7 @@ use heapless::Deque;
 
 /// A vertex in clip space, in any common scale: x / w, y / w in units of 512 px from the screen's corner, z / w depth.
 ///
-/// Magnitudes stay below 2⁵⁶, so that plane distances fit 63 bits. The scale must be so large that w below
+/// Magnitudes stay below 2⁵⁵ + 2, so that plane distances fit 63 bits. The scale must be so large that w below
 /// [`ClipVertex::MIN_W`] does not matter; it counts as behind the eye.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClipVertex {
@@ -24,7 +24,7 @@ pub struct ClipVertex {
 }
 
 impl ClipVertex {
-    /// Smallest w in front of the eye. A cut there is off by one unit, 1/2048 px; the short path of the vertex transform
+    /// Smallest w in front of the eye. A cut there is off by one unit, 1/8 of 1/256 px in x and y; the short path of the vertex transform
     /// has no smaller w, and the long one only nearer to the eye than positions resolve.
     pub const MIN_W: i64 = 1 << 20;
 }

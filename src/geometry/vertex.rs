@@ -108,7 +108,7 @@ impl<'a> Face<'a> {
         let (ab, ac) = (edge(a, b), edge(a, c));
         let ([ax, ay, az], [bx, by, bz]) = (ab, ac);
         // Halves of products below 2³⁰, so that differences fit.
-        let minor = |a: i32, b: i32, c: i32, d: i32| (a * b >> 1) - (c * d >> 1);
+        let minor = |a: i32, b: i32, c: i32, d: i32| ((a * b) >> 1) - ((c * d) >> 1);
         let n = fifteen_bits([minor(ay, bz, az, by), minor(az, bx, ax, bz), minor(ax, by, ay, bx)]);
         let length = n.iter().map(|&v| (v * v) as u32).fold(0, u32::wrapping_add).isqrt();
         let Some(length) = core::num::NonZeroU32::new(length) else { return [0; 3] };

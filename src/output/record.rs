@@ -165,7 +165,7 @@ impl<'a> Records<'a> {
     /// Room for the vertices of a draw, all unshaded; whether there is enough.
     fn reserve(&mut self, vertices: usize, stride: usize) -> bool {
         let start = self.layout.front;
-        // At most 2¹⁶ · 2⁸: no overflow even in 32 bits.
+        // At most 2¹⁶ · 255: no overflow even in 32 bits.
         let needs = vertices * stride;
         if self.free() < needs {
             return false;

@@ -122,7 +122,7 @@ impl Gradients {
     /// [`plane`](Self::plane) for any triangle and any values, in 64 bits.
     ///
     /// # Format
-    /// Differences of 33 bits, of 49 with `scale`; times 2²⁵ below 2⁵⁸ without it, in sums below 2⁵⁹.
+    /// Differences of 33 bits times 2²⁵, below 2⁵⁸; in sums below 2⁵⁹.
     #[inline(never)]
     fn long(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
         let [v0, v1, v2] = values.map(i64::from);
