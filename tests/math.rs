@@ -285,3 +285,19 @@ fn transforms_are_constants() {
     assert_eq!(MVP, CAMERA * VIEW * MODEL.inverse_rigid());
     assert_eq!(LENGTH, Scalar::from_num(5));
 }
+
+#[test]
+fn points_are_transformed_as_by_f64() {
+    let near = Scalar::from_num(0.5);
+    let camera =
+        Projective::perspective(Angle::from_degrees(70), (4, 3), near, Scalar::from_num(40)).expect("a camera");
+    let model = Affine::translation(Vec3::from_ints(1, -2, -9)) * Affine::rotation_x(Angle::from_degrees(33));
+    let point = Vec3::from_milli(1250, -3700, 812);
+    assert_eq!(model * point, model.transform_point(point));
+    let rows = (camera * model).to_rows().map(|row| row.map(|v| v as f64 / 4_294_967_296.0));
+    let p = point.to_bits().map(|v| f64::from(v) / 65_536.0);
+    for (row, found) in rows.iter().zip((camera * model).transform_point(point)) {
+        let exact = row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3];
+        assert!((found.to_num::<f64>() - exact).abs() < 1e-9, "{found} for {exact}");
+    }
+}

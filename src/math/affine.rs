@@ -195,6 +195,14 @@ impl Affine {
     }
 }
 
+impl Mul<Vec3> for Affine {
+    type Output = Vec3;
+    /// [`transform_point`](Affine::transform_point).
+    fn mul(self, point: Vec3) -> Vec3 {
+        self.transform_point(point)
+    }
+}
+
 impl Mul for Affine {
     type Output = Self;
     fn mul(self, first: Self) -> Self {

@@ -1,6 +1,6 @@
 //! Projective transforms: 4×4 matrices that take world or object space to clip space.
 
-use super::{Affine, Angle, Scalar, Wide};
+use super::{Affine, Angle, Scalar, Vec3, Wide};
 use core::fmt;
 use core::ops::Mul;
 
@@ -200,6 +200,24 @@ impl Projective {
     /// `self` after an affine transform: `const` version of `self * model`.
     pub const fn compose_affine(&self, model: &Affine) -> Self {
         self.compose(&Self::from_affine(model))
+    }
+
+    /// Where a point goes: x, y, z, w, rounded to nearest and saturating. Divided by w they are its place in clip space.
+    pub const fn transform_point(&self, point: Vec3) -> [Wide; 4] {
+        let p = point.to_bits();
+        let mut result = [Wide::ZERO; 4];
+        let mut i = 0;
+        while i < 4 {
+            let r = &self.rows[i];
+            // 64 + 32 bits each: no sum of four leaves 128.
+            let sum = r[0] as i128 * p[0] as i128
+                + r[1] as i128 * p[1] as i128
+                + r[2] as i128 * p[2] as i128
+                + ((r[3] as i128) << 16);
+            result[i] = Wide::from_bits(saturate((sum + (1 << 15)) >> 16));
+            i += 1;
+        }
+        result
     }
 
     /// The same transform as a 4×4 matrix.
