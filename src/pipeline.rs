@@ -14,12 +14,11 @@ use crate::output::{Framebuffer, Records, Slot, Stats};
 use crate::raster::{Edge, Gradients, PixelRect, pixel_rect, trapezoids};
 use core::ops::Range;
 
-/// Which faces are not drawn. A model that is mirrored (or a projection that is) turns its faces round: exchange `Back` and
-/// `Front` for it.
+/// Which faces are not drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Cull {
-    /// Those that show their back: clockwise ones, with y up.
+    /// Those that show their back.
     #[default]
     Back,
     /// Those that show their front.
@@ -28,15 +27,34 @@ pub enum Cull {
     None,
 }
 
+/// Which way the corners of a front face go round on the screen, with y up.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Winding {
+    /// Against the clock.
+    #[default]
+    CounterClockwise,
+    /// With the clock: for meshes made that way, and for mirrored models.
+    Clockwise,
+}
+
 /// How a draw is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct State {
     /// Which faces are left out.
     pub cull: Cull,
+    /// Which faces are front faces.
+    pub front: Winding,
     /// The depth test.
     pub depth: DepthState,
     /// What happens before the near and beyond the far plane.
     pub range: DepthRange,
+}
+
+impl State {
+    /// The default, for constants: back faces culled, nearer fragments win, clipped at the near and the far plane.
+    pub const DEFAULT: Self =
+        Self { cull: Cull::Back, front: Winding::CounterClockwise, depth: DepthState::LESS, range: DepthRange::Clip };
 }
 
 /// What the closure's calls do.
@@ -402,7 +420,9 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             stats.degenerate = stats.degenerate.wrapping_add(1);
             return None;
         }
-        if (self.state.cull == Cull::Back && area > 0) || (self.state.cull == Cull::Front && area < 0) {
+        // y points down here: a positive area goes with the clock.
+        let is_back = (area > 0) == (self.state.front == Winding::CounterClockwise);
+        if (self.state.cull == Cull::Back && is_back) || (self.state.cull == Cull::Front && !is_back) {
             stats.back_facing = stats.back_facing.wrapping_add(1);
             return None;
         }
@@ -570,7 +590,7 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
     for coordinate in aabb.center.to_bits().into_iter().chain(aabb.half.to_bits()) {
         add(coordinate as u32);
     }
-    add(stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20);
+    add(stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20 | (state.front as u32) << 24);
     add(state.depth.compare as u32 | u32::from(state.depth.write) << 8);
     hash
 }

@@ -16,7 +16,7 @@ use zstrip::geometry::{
     ClipVertex, DepthRange, Light, Mesh, MeshData, Outcode, Positions, Topology, Viewport, clip_triangle,
 };
 use zstrip::math::{Affine, Projective, Scalar, Vec3};
-use zstrip::{Cull, State};
+use zstrip::{Cull, State, Winding};
 
 const RANGES: [DepthRange; 3] = [DepthRange::Clip, DepthRange::ClampFar, DepthRange::Clamp];
 const COMPARES: [Compare; 8] = [
@@ -29,7 +29,7 @@ const COMPARES: [Compare; 8] = [
     Compare::GreaterEqual,
     Compare::Always,
 ];
-const NO_CULLING: State = State { cull: Cull::None, depth: DepthState::LESS, range: DepthRange::Clip };
+const NO_CULLING: State = State { cull: Cull::None, ..State::DEFAULT };
 
 /// In the scale of the vertex transform.
 fn scaled([x, y, z, w]: [i32; 4]) -> ClipVertex {
@@ -276,6 +276,7 @@ fn no_input_panics_in_any_state() {
             cull: rng.pick(&[Cull::Back, Cull::Front, Cull::None]),
             depth: DepthState { compare: COMPARES[seed as usize % 8], write: seed / 8 % 2 == 0 },
             range: RANGES[seed as usize % 3],
+            front: rng.pick(&[Winding::CounterClockwise, Winding::Clockwise]),
         };
         let stats = strips::<Rgb565>(
             (20, 15),
@@ -436,12 +437,17 @@ fn culling_goes_by_winding_on_the_screen() {
         (Cull::None, &back, true),
     ] {
         let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(vertices))).expect("a triangle");
-        let state = State { cull, ..NO_CULLING };
-        let (picture, _, stats) = whole::<Gray8>((16, 16), Gray8::new(0), |scene| {
-            scene.draw_with(state, &mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE))
-        });
-        assert_eq!(picture[8 * 16 + 8] == 255, shows, "{cull:?}");
-        assert_eq!((stats.back_facing, stats.drawn), (u32::from(!shows), u32::from(shows)), "{cull:?}");
+        for winding in [Winding::CounterClockwise, Winding::Clockwise] {
+            // The other winding turns faces round, which matters unless both sides show.
+            let shows = shows != (winding == Winding::Clockwise && cull != Cull::None);
+            let state = State { cull, front: winding, ..NO_CULLING };
+            let (picture, _, stats) = whole::<Gray8>((16, 16), Gray8::new(0), |scene| {
+                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE))
+            });
+            assert_eq!(picture[8 * 16 + 8] == 255, shows, "{cull:?} {winding:?}");
+            let counts = (u32::from(!shows), u32::from(shows));
+            assert_eq!((stats.back_facing, stats.drawn), counts, "{cull:?} {winding:?}");
+        }
     }
 }
 

@@ -127,7 +127,7 @@ impl Shader<Rgb888> for Ids {
 }
 
 fn state(part: &Part, depth: DepthState) -> State {
-    State { cull: part.cull, depth, range: DepthRange::Clip }
+    State { cull: part.cull, depth, ..State::DEFAULT }
 }
 
 /// Ids and depths of a frame by the crate.

@@ -19,8 +19,7 @@ use zstrip::{Cull, Scene, State};
 
 const SCREEN: (u16, u16) = (320, 240);
 const AMPLE: usize = 40_000;
-const BOTH_SIDES: State =
-    State { cull: Cull::None, depth: DepthState::LESS, range: zstrip::geometry::DepthRange::Clip };
+const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
 fn draw_scene(name: &str) -> impl Fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle) + use<> {
     let info = scenes::SCENES.iter().find(|info| info.name == name);
@@ -102,6 +101,7 @@ fn random_state(rng: &mut Rng) -> State {
             write: !rng.one_in(4),
         },
         range: rng.pick(&[DepthRange::Clip, DepthRange::ClampFar, DepthRange::Clamp]),
+        ..State::DEFAULT
     }
 }
 

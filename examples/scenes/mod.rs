@@ -108,9 +108,7 @@ pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     );
 }
 
-const BOTH_SIDES: State = State { cull: Cull::None, ..DEFAULT };
-const DEFAULT: State =
-    State { cull: Cull::Back, depth: zstrip::fragment::DepthState::LESS, range: zstrip::geometry::DepthRange::Clip };
+const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
 /// Three squares through one another.
 pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
