@@ -1,6 +1,7 @@
 //! What a frame did: counters of every stage.
 
-/// Counters of a frame. Work that is done again, for another band or strip, is counted again.
+/// Counters of a frame. Work that is done again, for another band or strip, is counted again; counters
+/// wrap at 2³².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Stats {
