@@ -87,7 +87,7 @@ pub struct Scene<'a, F> {
     pub(crate) strips: StripRows,
     /// Rows of the band that is recorded, replayed or drawn.
     pub(crate) band: Range<i32>,
-    pub(crate) target: Option<Target<'a, F>>,
+    pub(crate) target: Target<'a, F>,
     pub(crate) stats: &'a mut Stats,
     /// Number of the next draw, and the first that differed from what was recorded.
     pub(crate) draws: u16,
@@ -225,31 +225,22 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Draws the recorded triangles of this draw in the current strip.
     fn replay<S: Shader<F::Format>>(&mut self, state: &State, shader: &S) {
-        let Some(rows) = self.target.as_ref().map(|target| target.rows.clone()) else {
-            return;
-        };
-        let clip = self.clip_rect(&rows);
+        let end = self.target.rows.end;
+        let clip = self.clip_rect(&self.target.rows);
         while let Some(triangle) = self.records.replay_triangle() {
             let [i, j, k] = triangle.corners;
             let (a, b, c) = (self.records.corner::<S>(i), self.records.corner::<S>(j), self.records.corner::<S>(k));
-            if first_centre(a.0.y.max(b.0.y).max(c.0.y)) > rows.end {
+            if first_centre(a.0.y.max(b.0.y).max(c.0.y)) > end {
                 self.records.move_on(&triangle);
             }
-            if let Some(mut painter) = self.painter(&clip, state, shader) {
-                painter.triangle(&[a.0, b.0, c.0], &[a.1, b.1, c.1], triangle.face);
-            }
+            let v = [a.0, b.0, c.0];
+            self.painter(&clip, state, shader).triangle(&v, &[a.1, b.1, c.1], triangle.face);
         }
     }
 
     /// What to draw triangles with, in the phases that draw.
-    fn painter<'p, S>(
-        &'p mut self,
-        clip: &'p PixelRect,
-        state: &'p State,
-        shader: &'p S,
-    ) -> Option<Painter<'p, 'a, F, S>> {
-        let screen = self.screen;
-        self.target.as_mut().map(|target| Painter { target, screen, clip, state, shader })
+    fn painter<'p, S>(&'p mut self, clip: &'p PixelRect, state: &'p State, shader: &'p S) -> Painter<'p, 'a, F, S> {
+        Painter { target: &mut self.target, screen: self.screen, clip, state, shader }
     }
 }
 

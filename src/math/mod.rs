@@ -9,6 +9,7 @@ mod format;
 mod micromath;
 mod projective;
 mod reciprocal;
+mod root;
 mod vector;
 
 pub use affine::Affine;
@@ -18,4 +19,5 @@ pub use format::{Scalar, Wide};
 pub use micromath::FloatError;
 pub use projective::{ProjectionError, Projective};
 pub use reciprocal::{mul_high, mul_high_signed, reciprocal};
+pub use root::isqrt;
 pub use vector::Vec3;

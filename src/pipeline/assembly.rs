@@ -235,9 +235,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     fn draw(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
-        if let Some(mut painter) = self.scene.painter(&self.clip, self.state, self.shader) {
-            painter.triangle(v, varyings, face);
-        }
+        self.scene.painter(&self.clip, self.state, self.shader).triangle(v, varyings, face);
     }
 }
 
