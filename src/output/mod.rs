@@ -1,16 +1,20 @@
 //! Pixels → display: pixel formats, strips and other framebuffers, records, and the loop that makes a frame of strips.
 
 mod budget;
+mod dither;
 mod frame;
 mod framebuffer;
+mod packed;
 mod pixel;
 mod record;
 mod sink;
 mod stats;
 
 pub use budget::RamBudget;
+pub use dither::{Dither, Levels, Tones};
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
+pub use packed::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use pixel::Rgb565Be;
 pub use record::records_len;
 pub(crate) use record::{Records, Slot, VERTEX as VERTEX_WORDS};
