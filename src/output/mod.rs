@@ -12,6 +12,7 @@ mod stats;
 
 pub use budget::RamBudget;
 pub use dither::{Dither, Levels, Tones};
+pub(crate) use frame::StripRows;
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use packed::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
