@@ -2,6 +2,7 @@
 
 mod budget;
 mod dither;
+mod dithered;
 mod frame;
 mod framebuffer;
 mod packed;
@@ -12,11 +13,12 @@ mod stats;
 
 pub use budget::RamBudget;
 pub use dither::{Dither, Levels, Tones};
+pub use dithered::{DitherWords, Ditherable, Dithered};
 pub(crate) use frame::StripRows;
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use packed::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
-pub use pixel::Rgb565Be;
+pub use pixel::{Bgr565Be, Rgb332, Rgb565Be};
 pub use record::records_len;
 pub(crate) use record::{Records, Slot, VERTEX as VERTEX_WORDS};
 pub use sink::{OnDisplay, StripPixels, StripSink};
