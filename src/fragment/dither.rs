@@ -7,21 +7,25 @@
 use super::gouraud::{pack, packed_span, squeeze, word};
 use super::{DepthTest, Fragments, PixelFormat, Steps};
 
-/// Makes room above the channels, or their steps, for what dithering adds.
+/// Makes room above the channels for what dithering adds.
 ///
 /// # Format
 /// Channels of 8.16, 0.5..=254.5 and at most 0.375 off. With b bits that stay, s = 2^(8 - b) and c - 1/2 in 0..=254, the result
 /// is 1/2 + (c - 1/2) (1 - 2⁻ᵇ + 2⁻⁷), for which 254 becomes 256 - s and up to 0.6 more: white is the last level without
 /// any help, black plus the largest addend, (s - 1) 63/64, the first one, and nothing exceeds 256.
 #[inline(always)]
-pub(super) fn spread<P: PixelFormat + ?Sized>(c: [i32; 3], is_step: bool) -> [i32; 3] {
-    let Some([r, g, b]) = P::DITHER else { return c };
-    let half = if is_step { 0 } else { 1 << 15 };
-    let spread = |c: i32, bits: u32| {
-        let above = c.wrapping_sub(half);
-        c.wrapping_sub(above >> bits).wrapping_add(above >> 7)
-    };
-    [spread(c[0], r), spread(c[1], g), spread(c[2], b)]
+pub(super) fn spread<P: PixelFormat + ?Sized>(c: [i32; 3]) -> [i32; 3] {
+    let spread = |channel: usize, c: i32| spread_step::<P>(channel, c.wrapping_sub(1 << 15)).wrapping_add(1 << 15);
+    if P::DITHER.is_some() { [spread(0, c[0]), spread(1, c[1]), spread(2, c[2])] } else { c }
+}
+
+/// [`spread`] of a channel's change.
+#[inline(always)]
+pub(super) fn spread_step<P: PixelFormat + ?Sized>(channel: usize, step: i32) -> i32 {
+    match P::DITHER {
+        Some(bits) => step.wrapping_sub(step >> bits.get(channel).copied().unwrap_or(0)).wrapping_add(step >> 7),
+        None => step,
+    }
 }
 
 /// What is to be added to packed channels of which so many bits stay, for a threshold of `rank`/64: an entry of
@@ -41,8 +45,7 @@ const fn addend(rank: u8, bits: u32, fraction: u32) -> i32 {
 #[inline(always)]
 pub(super) fn dithered<P: PixelFormat + ?Sized>(rgb: [u8; 3], addends: &[u32; 8]) -> P::Raw {
     let [r, g, b] = rgb;
-    let channels =
-        spread::<P>([squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)], false);
+    let channels = spread::<P>([squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)]);
     P::from_packed(word(channels).wrapping_add(addends[0]), P::packed_mask())
 }
 

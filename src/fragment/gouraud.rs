@@ -1,6 +1,6 @@
 //! Colours a vertex, interpolated over the triangle.
 
-use super::dither::spread;
+use super::dither::{spread, spread_step};
 use super::flat::channels;
 use super::shader::fragments;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
@@ -127,7 +127,8 @@ pub(super) const fn word([r, g, b]: [i32; 3]) -> u32 {
 fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
     let mut one = [0; 3];
     let mut group = [0; 3];
-    for (k, (value, step)) in rgb.iter_mut().zip(spread::<P>(*d_dx, true)).enumerate() {
+    for (k, (value, &step)) in rgb.iter_mut().zip(d_dx).enumerate() {
+        let step = spread_step::<P>(k, step);
         let half = if k == 1 { 1 << 13 } else { 1 << 12 };
         let rounded = |v: i32| v.wrapping_add(half) & -(2 * half);
         let four = step.wrapping_mul(GROUP as i32);
@@ -151,7 +152,7 @@ fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
 pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3]>, test: D) {
     let Fragments { color, depth, z, varyings, steps, position } = span;
     let [step, correction] = steps.words;
-    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(spread::<P>(varyings, false)), step, mask: P::packed_mask() };
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(spread::<P>(varyings)), step, mask: P::packed_mask() };
     let [mut r, mut g, mut b] = varyings;
     let addends = P::dither(position);
     let mut colors = color.chunks_exact_mut(RUN);
@@ -171,7 +172,7 @@ pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [
         r = r.wrapping_add(RUN as i32 * steps.d_dx[0]);
         g = g.wrapping_add(RUN as i32 * steps.d_dx[1]);
         b = b.wrapping_add(RUN as i32 * steps.d_dx[2]);
-        pen.word = word(spread::<P>([r, g, b], false));
+        pen.word = word(spread::<P>([r, g, b]));
     }
     let (mut color, mut depth) = (colors.into_remainder(), depths.into_remainder());
     let [_, _, _, _, last @ ..] = addends;
@@ -185,8 +186,8 @@ pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [
         pen.word = pen.word.wrapping_add(correction);
         (color, depth, rest) = (color_rest, depth_rest, last);
     }
-    for ((color, depth), addend) in color.iter_mut().zip(depth).zip(rest) {
-        pen.draw::<P, D>(test, *addend, color, depth);
+    for (k, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
+        pen.draw::<P, D>(test, rest.get(k).copied().unwrap_or(0), color, depth);
     }
 }
 
