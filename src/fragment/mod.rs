@@ -1,5 +1,6 @@
 //! Span → pixels: the depth test, the fragment stage's seam, and the shaders that come with the crate.
 
+mod bias;
 mod depth;
 mod dither;
 mod fill;
@@ -8,6 +9,7 @@ mod gouraud;
 mod pixel;
 mod shader;
 
+pub use bias::DepthBias;
 pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
 pub use dither::dither_word;
 pub use fill::fill;
