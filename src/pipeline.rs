@@ -8,7 +8,7 @@ mod assembly;
 mod triangle;
 
 use crate::fragment::{DepthBias, DepthState, Shader};
-use crate::geometry::{Bounds, DepthRange, Mesh, Positions, Transform, Varyings, View, Viewport};
+use crate::geometry::{Bounds, DepthRange, DepthScale, Mesh, Positions, Transform, Varyings, View, Viewport};
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::raster::{PixelRect, first_centre};
@@ -53,6 +53,8 @@ pub struct State {
     pub range: DepthRange,
     /// What is added to depth.
     pub bias: DepthBias,
+    /// How depth grows with distance.
+    pub depth_scale: DepthScale,
 }
 
 impl State {
@@ -63,6 +65,7 @@ impl State {
         depth: DepthState::LESS,
         range: DepthRange::Clip,
         bias: DepthBias::NONE,
+        depth_scale: DepthScale::Perspective,
     };
 }
 
@@ -202,7 +205,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if !recording {
             self.records.begin_direct(mesh.vertex_count(), stride);
         }
-        Some(Transform::of(view, mesh, displaced))
+        let mut transform = Transform::of(view, mesh, displaced);
+        transform.set_depth_scale(state.depth_scale);
+        Some(transform)
     }
 
     fn end_draw(&mut self) {
@@ -277,6 +282,10 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
         stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20 | (state.front as u32) << 24,
         state.depth.compare as u32 | u32::from(state.depth.write) << 8 | (state.bias.constant as u32) << 16,
         state.bias.slope.to_bits() as u32,
+        match state.depth_scale {
+            DepthScale::Perspective => 0,
+            DepthScale::Uniform { far } => far.to_bits() as u32,
+        },
     ];
     // FNV-1a over words instead of bytes.
     let matrix = mvp.to_rows();
