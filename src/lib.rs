@@ -102,9 +102,11 @@ mod tests {
         fn logged<T: defmt::Format>() {}
         logged::<crate::geometry::MeshError>();
         logged::<crate::geometry::ViewportError>();
+        logged::<crate::math::PrecisionError>();
         logged::<crate::math::ProjectionError>();
         logged::<crate::output::FramebufferError>();
         logged::<crate::output::RendererError>();
+        logged::<crate::output::PackerError>();
         logged::<crate::output::FrameError>();
         logged::<crate::output::Stats>();
         #[cfg(feature = "micromath")]

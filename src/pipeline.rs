@@ -7,8 +7,8 @@
 mod assembly;
 mod triangle;
 
-use crate::fragment::{DepthState, Shader};
-use crate::geometry::{Bounds, DepthRange, Mesh, Positions, Transform, Varyings, View, Viewport};
+use crate::fragment::{DepthBias, DepthState, Shader};
+use crate::geometry::{Bounds, DepthRange, DepthScale, Mesh, Positions, Transform, Varyings, View, Viewport};
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::raster::{PixelRect, first_centre};
@@ -51,12 +51,22 @@ pub struct State {
     pub depth: DepthState,
     /// What happens before the near and beyond the far plane.
     pub range: DepthRange,
+    /// What is added to depth.
+    pub bias: DepthBias,
+    /// How depth grows with distance.
+    pub depth_scale: DepthScale,
 }
 
 impl State {
     /// The default, for constants: back faces culled, nearer fragments win, clipped at the near and the far plane.
-    pub const DEFAULT: Self =
-        Self { cull: Cull::Back, front: Winding::CounterClockwise, depth: DepthState::LESS, range: DepthRange::Clip };
+    pub const DEFAULT: Self = Self {
+        cull: Cull::Back,
+        front: Winding::CounterClockwise,
+        depth: DepthState::LESS,
+        range: DepthRange::Clip,
+        bias: DepthBias::NONE,
+        depth_scale: DepthScale::Perspective,
+    };
 }
 
 /// What the closure's calls do.
@@ -195,7 +205,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if !recording {
             self.records.begin_direct(mesh.vertex_count(), stride);
         }
-        Some(Transform::of(view, mesh, displaced))
+        let mut transform = Transform::of(view, mesh, displaced);
+        transform.set_depth_scale(state.depth_scale);
+        Some(transform)
     }
 
     fn end_draw(&mut self) {
@@ -259,7 +271,12 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
         by as u32,
         bz as u32,
         stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20 | (state.front as u32) << 24,
-        state.depth.compare as u32 | u32::from(state.depth.write) << 8,
+        state.depth.compare as u32 | u32::from(state.depth.write) << 8 | (state.bias.constant as u32) << 16,
+        state.bias.slope.to_bits() as u32,
+        match state.depth_scale {
+            DepthScale::Perspective => 0,
+            DepthScale::Uniform { far } => far.to_bits() as u32,
+        },
     ];
     // FNV-1a over words instead of bytes.
     let matrix = mvp.to_rows();
