@@ -48,11 +48,14 @@ impl Default for DepthState {
 
 /// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
 pub trait DepthTest: Copy {
-    /// Whether depth plays a part at all; otherwise `passes` is not called.
+    /// Whether depth plays a part at all; otherwise neither method is called.
     const ENABLED: bool;
 
-    /// Tests `z` against `stored`, and replaces it if the fragment passes and writes.
-    fn passes(self, z: u16, stored: &mut u16) -> bool;
+    /// Compares `z` with the stored depth.
+    fn passes(self, z: u16, stored: u16) -> bool;
+
+    /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
+    fn write(self, z: u16, stored: &mut u16);
 }
 
 /// [`DepthState::LESS`].
@@ -63,12 +66,13 @@ impl DepthTest for LessWrite {
     const ENABLED: bool = true;
 
     #[inline(always)]
-    fn passes(self, z: u16, stored: &mut u16) -> bool {
-        let nearer = z < *stored;
-        if nearer {
-            *stored = z;
-        }
-        nearer
+    fn passes(self, z: u16, stored: u16) -> bool {
+        z < stored
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut u16) {
+        *stored = z;
     }
 }
 
@@ -80,9 +84,12 @@ impl DepthTest for NoDepth {
     const ENABLED: bool = false;
 
     #[inline(always)]
-    fn passes(self, _: u16, _: &mut u16) -> bool {
+    fn passes(self, _: u16, _: u16) -> bool {
         true
     }
+
+    #[inline(always)]
+    fn write(self, _: u16, _: &mut u16) {}
 }
 
 /// Any other test.
@@ -111,15 +118,18 @@ impl DepthTest for AnyDepth {
     const ENABLED: bool = true;
 
     #[inline(always)]
-    fn passes(self, z: u16, stored: &mut u16) -> bool {
-        let passes = match z.cmp(stored) {
+    fn passes(self, z: u16, stored: u16) -> bool {
+        match z.cmp(&stored) {
             core::cmp::Ordering::Less => self.less,
             core::cmp::Ordering::Equal => self.equal,
             core::cmp::Ordering::Greater => self.greater,
-        };
-        if passes && self.write {
+        }
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut u16) {
+        if self.write {
             *stored = z;
         }
-        passes
     }
 }
