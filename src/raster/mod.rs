@@ -1,12 +1,14 @@
 //! Screen primitive → spans: exact edges walked row by row, the plane equations of what is interpolated, and the pixels of
 //! lines and points.
 
+mod along;
 mod edge;
 mod gradient;
 mod line;
 mod point;
 mod triangle;
 
+pub use along::Along;
 pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
