@@ -93,7 +93,7 @@ mod tests {
             // As an edge of a triangle whose third vertex is inside.
             let third = (ClipVertex { x: 0, y: 0, z: ONE / 4, w: ONE / 2 }, [0]);
             let mut corners = Vec::new();
-            clip_triangle(&[a, b, third], all, Part::Between, |corner| corners.push(*corner));
+            clip_triangle([a, b, third], all, Part::Between, |corner| corners.push(*corner));
             if let Some([a, b]) = cut {
                 cut_lines += 1;
                 assert!(corners.contains(&a) && corners.contains(&b), "{line:?}");

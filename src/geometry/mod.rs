@@ -23,6 +23,6 @@ pub use lines::{Joined, Lines, Points};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
 pub use project::{ScreenVertex, project, signed_area};
-pub use transform::{Placed, Transform, place};
+pub use transform::{Placed, Transform, View, place};
 pub use vertex::{Corner, Face, Side, Varyings, VertexShader};
 pub use viewport::{Viewport, ViewportError};

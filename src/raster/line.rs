@@ -13,7 +13,7 @@
 //! # Source
 //! OpenGL 4.6, 14.5.1; Vulkan, "Basic Line Segment Rasterization"; Bresenham 1965 for the stepping.
 
-use super::PixelRect;
+use super::{PixelRect, first_centre};
 use super::edge::divide;
 use core::num::NonZeroU32;
 use core::ops::Range;
@@ -54,11 +54,6 @@ const fn diamond(point: (i32, i32), along_y: bool) -> Option<i32> {
     if sum < 128 || (sum == 128 && x > 0) { Some(if along_y { row } else { column }) } else { None }
 }
 
-/// The first pixel whose centre is at a coordinate or after it.
-#[inline]
-const fn first_centre(coordinate: i32) -> i32 {
-    (coordinate + 127) >> 8
-}
 
 impl Line {
     /// The line from `a` to `b`.

@@ -13,4 +13,4 @@ pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
 pub use point::square;
-pub use triangle::{PixelRect, pixel_rect, spans, trapezoids};
+pub use triangle::{PixelRect, Trapezoids, first_centre, pixel_rect, spans};
