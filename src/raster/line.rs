@@ -13,8 +13,8 @@
 //! # Source
 //! OpenGL 4.6, 14.5.1; Vulkan, "Basic Line Segment Rasterization"; Bresenham 1965 for the stepping.
 
-use super::{PixelRect, first_centre};
 use super::edge::divide;
+use super::{PixelRect, first_centre};
 use core::num::NonZeroU32;
 use core::ops::Range;
 
@@ -53,7 +53,6 @@ const fn diamond(point: (i32, i32), along_y: bool) -> Option<i32> {
     // On the border, moving by -ε leads inside from the right half; from the two tips in the middle it does not.
     if sum < 128 || (sum == 128 && x > 0) { Some(if along_y { row } else { column }) } else { None }
 }
-
 
 impl Line {
     /// The line from `a` to `b`.
@@ -218,6 +217,22 @@ pub struct LinePixels {
     height: u32,
     length: u32,
     left: u32,
+}
+
+impl LinePixels {
+    /// Leaves only the first `count` pixels: how many it took off.
+    #[inline]
+    pub(crate) fn shorten(&mut self, count: u32) -> u32 {
+        let rest = self.left.saturating_sub(count);
+        self.left -= rest;
+        rest
+    }
+
+    /// Puts back pixels that were taken off.
+    #[inline]
+    pub(crate) const fn lengthen(&mut self, count: u32) {
+        self.left += count;
+    }
 }
 
 impl Iterator for LinePixels {

@@ -2,6 +2,7 @@
 //! lines and points.
 
 mod along;
+mod direction;
 mod edge;
 mod gradient;
 mod line;
@@ -9,6 +10,7 @@ mod point;
 mod triangle;
 
 pub use along::Along;
+pub(crate) use direction::unit;
 pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
