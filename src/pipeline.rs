@@ -1,11 +1,12 @@
 //! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7, in `triangle` the rest;
-//! `lines` and `stroke` do the same for lines and points.
+//! `lines` and `stroke` do the same for lines and points, `canvas` for what is given on the screen.
 //!
 //! A frame is drawn by a closure that calls [`Scene::draw`]. The closure runs in one of three phases: it *records* a band
 //! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
 //! small even for one strip, it draws that strip *directly* (all stages at once).
 
 mod assembly;
+mod canvas;
 mod lines;
 mod stroke;
 mod triangle;
@@ -16,6 +17,7 @@ use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::raster::{PixelRect, first_centre};
 use assembly::Assembly;
+pub use canvas::{Canvas, ScreenPoint};
 use core::ops::Range;
 pub use stroke::{Dashed, Smooth, Stroke, Thick, Thin};
 use triangle::Painter;

@@ -1,6 +1,7 @@
 //! Span → pixels: the depth test, the fragment stage's seam, and the shaders that come with the crate.
 
 mod depth;
+mod depth_only;
 mod fill;
 mod flat;
 mod gouraud;
@@ -8,6 +9,7 @@ mod pixel;
 mod shader;
 
 pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use depth_only::DepthOnly;
 pub use fill::fill;
 pub use flat::Flat;
 pub use gouraud::Gouraud;
