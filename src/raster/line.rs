@@ -145,9 +145,9 @@ impl Line {
     ///
     /// ```
     /// use zstrip::raster::{Line, PixelRect};
-    /// let line = Line::new((128, 128), (1152, 640)); // from pixel (0, 0) to (4, 2), centre to centre
+    /// let line = Line::new((128, 128), (896, 384)); // from pixel (0, 0) to (3, 1), centre to centre
     /// let (_, pixels) = line.pixels(&PixelRect { x: 0..8, y: 0..8 });
-    /// assert_eq!(pixels.collect::<Vec<_>>(), [(0, 0), (1, 0), (2, 1), (3, 1)]);
+    /// assert_eq!(pixels.collect::<Vec<_>>(), [(0, 0), (1, 0), (2, 1)]);
     /// ```
     ///
     /// # Format
