@@ -105,6 +105,7 @@ mod tests {
         logged::<crate::math::ProjectionError>();
         logged::<crate::output::FramebufferError>();
         logged::<crate::output::RendererError>();
+        logged::<crate::output::PackerError>();
         logged::<crate::output::FrameError>();
         logged::<crate::output::Stats>();
         #[cfg(feature = "micromath")]

@@ -11,7 +11,7 @@ mod lines;
 mod stroke;
 mod triangle;
 
-use crate::fragment::{DepthState, Shader};
+use crate::fragment::{DepthBias, DepthState, Shader};
 use crate::geometry::{Bounds, DepthRange, Mesh, Positions, Transform, Varyings, View, Viewport};
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
@@ -57,12 +57,19 @@ pub struct State {
     pub depth: DepthState,
     /// What happens before the near and beyond the far plane.
     pub range: DepthRange,
+    /// What is added to depth.
+    pub bias: DepthBias,
 }
 
 impl State {
     /// The default, for constants: back faces culled, nearer fragments win, clipped at the near and the far plane.
-    pub const DEFAULT: Self =
-        Self { cull: Cull::Back, front: Winding::CounterClockwise, depth: DepthState::LESS, range: DepthRange::Clip };
+    pub const DEFAULT: Self = Self {
+        cull: Cull::Back,
+        front: Winding::CounterClockwise,
+        depth: DepthState::LESS,
+        range: DepthRange::Clip,
+        bias: DepthBias::NONE,
+    };
 }
 
 /// What the closure's calls do.
@@ -273,7 +280,8 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
         by as u32,
         bz as u32,
         stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20 | (state.front as u32) << 24,
-        state.depth.compare as u32 | u32::from(state.depth.write) << 8,
+        state.depth.compare as u32 | u32::from(state.depth.write) << 8 | (state.bias.constant as u32) << 16,
+        state.bias.slope.to_bits() as u32,
     ];
     // FNV-1a over words instead of bytes.
     let matrix = mvp.to_rows();

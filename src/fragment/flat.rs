@@ -1,5 +1,6 @@
 //! One colour a face.
 
+use super::dither::dithered_span;
 use super::fill::fill;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
 use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
@@ -73,22 +74,25 @@ const fn round(channel: i32) -> u8 {
 
 /// The colour of a face, from its word.
 #[inline(always)]
-fn unpacked<P: PixelFormat>(face: u32) -> P::Raw {
+const fn unpacked(face: u32) -> [u8; 3] {
     let [_, r, g, b] = face.to_be_bytes();
-    P::pack([r, g, b])
+    [r, g, b]
 }
 
 impl<P: PixelFormat> Shader<P> for Flat {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
-        Some(unpacked::<P>(fragment.face))
+        Some(P::pack_at(unpacked(fragment.face), fragment.position))
     }
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+        if P::DITHER.is_some() {
+            return dithered_span(unpacked(face), span, test);
+        }
         let Fragments { color, depth, mut z, steps, .. } = span;
         let dz_dx = steps.dz_dx;
-        let value = unpacked::<P>(face);
+        let value = P::pack(unpacked(face));
         if !D::ENABLED {
             return fill(color, value);
         }

@@ -26,7 +26,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             return;
         }
         let gradients = Gradients::new(v, area, self.screen);
-        let depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+        let mut depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+        if !self.state.bias.is_none() {
+            let depths = v[0].z.min(v[1].z).min(v[2].z)..v[0].z.max(v[1].z).max(v[2].z);
+            let steps = self.state.bias.steps(depths, depth.dx, depth.dy);
+            depth.base = depth.base.wrapping_add((steps as u32) << 16);
+        }
         let (mut corner, mut d_dx, mut d_dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
         let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
         for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut()).enumerate() {
