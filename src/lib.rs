@@ -87,7 +87,7 @@ pub mod raster;
 
 pub use embedded_graphics_core;
 pub use output::{Buffers, Framebuffer, Renderer};
-pub use pipeline::{Cull, Scene, State, Winding};
+pub use pipeline::{Canvas, Cull, Dashed, Scene, ScreenPoint, Smooth, State, Stroke, Thick, Thin, Winding};
 
 /// The README's program compiles.
 #[cfg(doctest)]

@@ -1,10 +1,14 @@
-//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7, in `triangle` the rest.
+//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7, in `triangle` the rest;
+//! `lines` and `stroke` do the same for lines and points, `canvas` for what is given on the screen.
 //!
 //! A frame is drawn by a closure that calls [`Scene::draw`]. The closure runs in one of three phases: it *records* a band
 //! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
 //! small even for one strip, it draws that strip *directly* (all stages at once).
 
 mod assembly;
+mod canvas;
+mod lines;
+mod stroke;
 mod triangle;
 
 use crate::fragment::{DepthBias, DepthState, Shader};
@@ -13,7 +17,9 @@ use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::raster::{PixelRect, first_centre};
 use assembly::Assembly;
+pub use canvas::{Canvas, ScreenPoint};
 use core::ops::Range;
+pub use stroke::{Dashed, Smooth, Stroke, Thick, Thin};
 use triangle::Painter;
 
 /// Which faces are not drawn.
@@ -121,7 +127,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         };
         let stride = S::WORDS + VERTEX_WORDS;
         if self.phase == Phase::Replay {
-            if self.find_draw(&state, mesh, mvp, stride) {
+            if self.find_draw(fingerprint(&state, mesh, mvp, &self.viewport, stride), stride) {
                 self.replay(&state, shader);
             }
             return;
@@ -218,9 +224,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Finds the records of a draw; `false` if they are not those of this one.
     #[inline(never)]
-    fn find_draw(&mut self, state: &State, mesh: &Mesh<'_>, mvp: &Projective, stride: usize) -> bool {
+    fn find_draw(&mut self, print: u32, stride: usize) -> bool {
         let draw = self.count_draw();
-        let print = fingerprint(state, mesh, mvp, &self.viewport, stride);
         let found = self.changed.is_none() && self.records.replay_draw(print, stride);
         if !found {
             self.changed = self.changed.or(Some(draw));

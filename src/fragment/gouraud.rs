@@ -27,6 +27,13 @@ impl Gouraud {
         Self { light: Some(light), lit: None }
     }
 
+    /// The varyings of a vertex that has this colour.
+    #[inline]
+    pub fn varyings(color: Rgb888) -> [i32; 3] {
+        let [r, g, b] = channels(color);
+        [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)]
+    }
+
     /// The colours of the mesh's vertices as they are.
     pub const fn colors_unlit() -> Self {
         Self { light: None, lit: None }

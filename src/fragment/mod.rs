@@ -2,6 +2,7 @@
 
 mod bias;
 mod depth;
+mod depth_only;
 mod dither;
 mod fill;
 mod flat;
@@ -11,6 +12,7 @@ mod shader;
 
 pub use bias::DepthBias;
 pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use depth_only::DepthOnly;
 pub use dither::dither_word;
 pub use fill::fill;
 pub use flat::Flat;

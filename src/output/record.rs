@@ -322,6 +322,11 @@ impl<'a> Records<'a> {
         self.get(header) == fingerprint
     }
 
+    /// Whether the draw that was found has no vertices.
+    pub(crate) fn is_draw_empty(&self) -> bool {
+        self.layout.front == self.layout.vertices
+    }
+
     /// The next triangle of the current draw in this strip.
     pub(crate) fn replay_triangle(&mut self) -> Option<TriangleRecord> {
         let number = self.layout.next;

@@ -85,7 +85,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline(never)]
-    fn shade(&mut self, index: usize) -> Slot {
+    pub(super) fn shade(&mut self, index: usize) -> Slot {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
         let placed = if S::DISPLACES {
             self.transform.place_clip(&self.transformed(index))
@@ -101,7 +101,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline]
-    fn transformed(&self, index: usize) -> ClipVertex {
+    pub(super) fn transformed(&self, index: usize) -> ClipVertex {
         if S::DISPLACES {
             self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
         } else {
@@ -241,7 +241,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
 /// The varyings as the records would give them back.
 #[inline(never)]
-fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
+pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let mut words = S::Varyings::ZERO;
     let words: &mut [u32] = bytemuck::cast_slice_mut(words.as_mut());
     let words = words.get_mut(..S::WORDS).unwrap_or_default();

@@ -6,8 +6,8 @@ use crate::geometry::{ScreenVertex, Varyings, signed_area};
 use crate::output::Framebuffer;
 use crate::raster::{Gradients, PixelRect, Trapezoids};
 
-/// What the triangles of a draw are drawn with.
-pub(super) struct Painter<'p, 't, F, S> {
+/// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
+pub struct Painter<'p, 't, F, S> {
     pub(super) target: &'p mut Target<'t, F>,
     pub(super) screen: (u16, u16),
     /// Pixels that may be drawn: on the screen, and in the strip.
