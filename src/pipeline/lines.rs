@@ -37,9 +37,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         stroke: &K,
     ) {
         if self.begin_walk(&state, lines.vertices(), mvp, stride::<S>(), lines.count(), stroke.reach(), S::DISPLACES) {
-            if let Some(mut walk) = Walk::new(self, &state, lines.vertices(), mvp, shader) {
-                walk.lines(lines, stroke);
-            }
+            Walk::new(self, &state, lines.vertices(), mvp, shader).lines(lines, stroke);
         }
     }
 
@@ -56,9 +54,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let reach = (size.min(1 << 24) >> 9) as i32 + 1;
         let count = points.vertices().vertex_count();
         if self.begin_walk(&state, points.vertices(), mvp, stride::<S>(), count, reach, S::DISPLACES) {
-            if let Some(mut walk) = Walk::new(self, &state, points.vertices(), mvp, shader) {
-                walk.points(size);
-            }
+            Walk::new(self, &state, points.vertices(), mvp, shader).points(size);
         }
     }
 
@@ -135,10 +131,9 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         vertices: &'s Mesh<'s>,
         mvp: &'s Projective,
         shader: &'s S,
-    ) -> Option<Self> {
-        let rows = scene.target.as_ref()?.rows.clone();
-        let clip = scene.clip_rect(&rows);
-        Some(Self { scene, state, vertices, mvp, shader, clip, transform: None })
+    ) -> Self {
+        let clip = scene.clip_rect(&scene.target.rows);
+        Self { scene, state, vertices, mvp, shader, clip, transform: None }
     }
 
     #[inline(never)]
@@ -185,9 +180,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
                 let number = index as u16;
                 let varyings = self.varyings(number);
                 let face = self.face([number, number], index);
-                if let Some(mut painter) = self.painter() {
-                    block(&mut painter, &rect, v.z, &varyings, face);
-                }
+                block(&mut self.painter(), &rect, v.z, &varyings, face);
             }
         }
     }
@@ -219,7 +212,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         self.shader.face(&Face::new(self.vertices, number, [a, b, b], Side::Front))
     }
 
-    fn painter(&mut self) -> Option<Painter<'_, 'a, F, S>> {
+    fn painter(&mut self) -> Painter<'_, 'a, F, S> {
         self.scene.painter(&self.clip, self.state, self.shader)
     }
 
@@ -232,9 +225,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         stroke: &K,
     ) {
         let face = self.face(corners, number);
-        if let Some(mut painter) = self.painter() {
-            stroke.draw(&mut painter, ends, face);
-        }
+        stroke.draw(&mut self.painter(), ends, face);
     }
 
     /// A line with an end outside: cut anew in each strip, which keeps the records as they are.
