@@ -28,6 +28,20 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 
     /// Draws lines by other rules, with a stroke of one's choice.
+    ///
+    /// **Lines on a surface.** A line has the depth of its own points; the surface it outlines has that of its pixels' centres,
+    /// up to half a pixel away in x and in y. So push the surface back, by one step and once its slope, and nothing of its
+    /// own hides a line on it, while what lies nearer still does:
+    ///
+    /// ```
+    /// # use zstrip::State;
+    /// # use zstrip::fragment::DepthBias;
+    /// # use zstrip::math::Scalar;
+    /// const SURFACE: State = State { bias: DepthBias { constant: 1, slope: Scalar::ONE }, ..State::DEFAULT };
+    /// ```
+    /// Where surfaces must keep their depths, pull lines forward instead, by a bias of `constant: -1` and more the steeper
+    /// the surface is. For a wireframe with hidden lines removed, draw the surface with
+    /// [`DepthOnly`](crate::fragment::DepthOnly) first.
     pub fn draw_lines_with<S: Shader<F::Format>, K: Stroke>(
         &mut self,
         state: State,
