@@ -102,6 +102,7 @@ mod tests {
         fn logged<T: defmt::Format>() {}
         logged::<crate::geometry::MeshError>();
         logged::<crate::geometry::ViewportError>();
+        logged::<crate::math::PrecisionError>();
         logged::<crate::math::ProjectionError>();
         logged::<crate::output::FramebufferError>();
         logged::<crate::output::RendererError>();

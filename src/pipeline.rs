@@ -12,7 +12,7 @@ mod stroke;
 mod triangle;
 
 use crate::fragment::{DepthBias, DepthState, Shader};
-use crate::geometry::{Bounds, DepthRange, Mesh, Positions, Transform, Varyings, View, Viewport};
+use crate::geometry::{Bounds, DepthRange, DepthScale, Mesh, Positions, Transform, Varyings, View, Viewport};
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::raster::{PixelRect, first_centre};
@@ -59,6 +59,8 @@ pub struct State {
     pub range: DepthRange,
     /// What is added to depth.
     pub bias: DepthBias,
+    /// How depth grows with distance.
+    pub depth_scale: DepthScale,
 }
 
 impl State {
@@ -69,6 +71,7 @@ impl State {
         depth: DepthState::LESS,
         range: DepthRange::Clip,
         bias: DepthBias::NONE,
+        depth_scale: DepthScale::Perspective,
     };
 }
 
@@ -100,7 +103,7 @@ pub struct Scene<'a, F> {
     pub(crate) strips: StripRows,
     /// Rows of the band that is recorded, replayed or drawn.
     pub(crate) band: Range<i32>,
-    pub(crate) target: Option<Target<'a, F>>,
+    pub(crate) target: Target<'a, F>,
     pub(crate) stats: &'a mut Stats,
     /// Number of the next draw, and the first that differed from what was recorded.
     pub(crate) draws: u16,
@@ -208,7 +211,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if !recording {
             self.records.begin_direct(mesh.vertex_count(), stride);
         }
-        Some(Transform::of(view, mesh, displaced))
+        let mut transform = Transform::of(view, mesh, displaced);
+        transform.set_depth_scale(state.depth_scale);
+        Some(transform)
     }
 
     fn end_draw(&mut self) {
@@ -237,31 +242,22 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Draws the recorded triangles of this draw in the current strip.
     fn replay<S: Shader<F::Format>>(&mut self, state: &State, shader: &S) {
-        let Some(rows) = self.target.as_ref().map(|target| target.rows.clone()) else {
-            return;
-        };
-        let clip = self.clip_rect(&rows);
+        let end = self.target.rows.end;
+        let clip = self.clip_rect(&self.target.rows);
         while let Some(triangle) = self.records.replay_triangle() {
             let [i, j, k] = triangle.corners;
             let (a, b, c) = (self.records.corner::<S>(i), self.records.corner::<S>(j), self.records.corner::<S>(k));
-            if first_centre(a.0.y.max(b.0.y).max(c.0.y)) > rows.end {
+            if first_centre(a.0.y.max(b.0.y).max(c.0.y)) > end {
                 self.records.move_on(&triangle);
             }
-            if let Some(mut painter) = self.painter(&clip, state, shader) {
-                painter.triangle(&[a.0, b.0, c.0], &[a.1, b.1, c.1], triangle.face);
-            }
+            let v = [a.0, b.0, c.0];
+            self.painter(&clip, state, shader).triangle(&v, &[a.1, b.1, c.1], triangle.face);
         }
     }
 
     /// What to draw triangles with, in the phases that draw.
-    fn painter<'p, S>(
-        &'p mut self,
-        clip: &'p PixelRect,
-        state: &'p State,
-        shader: &'p S,
-    ) -> Option<Painter<'p, 'a, F, S>> {
-        let screen = self.screen;
-        self.target.as_mut().map(|target| Painter { target, screen, clip, state, shader })
+    fn painter<'p, S>(&'p mut self, clip: &'p PixelRect, state: &'p State, shader: &'p S) -> Painter<'p, 'a, F, S> {
+        Painter { target: &mut self.target, screen: self.screen, clip, state, shader }
     }
 }
 
@@ -282,6 +278,10 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
         stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20 | (state.front as u32) << 24,
         state.depth.compare as u32 | u32::from(state.depth.write) << 8 | (state.bias.constant as u32) << 16,
         state.bias.slope.to_bits() as u32,
+        match state.depth_scale {
+            DepthScale::Perspective => 0,
+            DepthScale::Uniform { far } => far.to_bits() as u32,
+        },
     ];
     // FNV-1a over words instead of bytes.
     let matrix = mvp.to_rows();

@@ -22,7 +22,7 @@ pub use light::{Light, Lit, NORMAL_ONE};
 pub use lines::{Joined, Lines, Points};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
-pub use project::{ScreenVertex, project, signed_area};
+pub use project::{DepthScale, ScreenVertex, project, signed_area};
 pub use transform::{Placed, Transform, View, place};
 pub use vertex::{Corner, Face, Side, Varyings, VertexShader};
 pub use viewport::{Viewport, ViewportError};

@@ -93,7 +93,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// # Ok::<(), zstrip::output::RendererError>(())
     /// ```
     pub fn canvas(&mut self) -> Canvas<'_, 'a, F> {
-        let rows = self.target.as_ref().filter(|_| self.phase != Phase::Record).map_or(0..0, |t| t.rows.clone());
+        let rows = if self.phase == Phase::Record { 0..0 } else { self.target.rows.clone() };
         let clip = self.clip_rect(&rows);
         Canvas { clip: clip.clone(), all: clip, scene: self, state: PAINTED, z: 0 }
     }
@@ -132,9 +132,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         }
         let Self { scene, clip, state, z, .. } = self;
         let shader = Flat::unlit(color);
-        if let Some(mut painter) = scene.painter(clip, state, &shader) {
-            block(&mut painter, rect, *z, &[], word(color));
-        }
+        block(&mut scene.painter(clip, state, &shader), rect, *z, &[], word(color));
     }
 
     /// Fills a convex polygon; its corners may go round either way.
@@ -176,9 +174,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         for next in corners {
             let v = [first.0, last.0, next.0];
             if !pixel_rect(&v).intersection(clip).is_empty() {
-                if let Some(mut painter) = scene.painter(clip, state, shader) {
-                    painter.triangle(&v, &[first.1, last.1, next.1], face);
-                }
+                scene.painter(clip, state, shader).triangle(&v, &[first.1, last.1, next.1], face);
             }
             last = next;
         }
@@ -237,9 +233,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
             return;
         }
         let ends = [(ScreenVertex::new(a.x, a.y, *z), *from), (ScreenVertex::new(b.x, b.y, *z), *to)];
-        if let Some(mut painter) = scene.painter(clip, state, shader) {
-            stroke.draw(&mut painter, &ends, face);
-        }
+        stroke.draw(&mut scene.painter(clip, state, shader), &ends, face);
     }
 }
 

@@ -10,8 +10,8 @@ use super::triangle::Painter;
 use super::{Phase, Scene, State, Stroke, Thin, fingerprint};
 use crate::fragment::Shader;
 use crate::geometry::{
-    Corner, Face, Lines, Mesh, Outcode, Points, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader, View,
-    clip_line, project,
+    Corner, Face, Lines, Mesh, Outcode, Part, Points, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader,
+    View, clip_line,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot, VERTEX_WORDS};
@@ -51,9 +51,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         stroke: &K,
     ) {
         if self.begin_walk(&state, lines.vertices(), mvp, stride::<S>(), lines.count(), stroke.reach(), S::DISPLACES) {
-            if let Some(mut walk) = Walk::new(self, &state, lines.vertices(), mvp, shader) {
-                walk.lines(lines, stroke);
-            }
+            Walk::new(self, &state, lines.vertices(), mvp, shader).lines(lines, stroke);
         }
     }
 
@@ -70,9 +68,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let reach = (size.min(1 << 24) >> 9) as i32 + 1;
         let count = points.vertices().vertex_count();
         if self.begin_walk(&state, points.vertices(), mvp, stride::<S>(), count, reach, S::DISPLACES) {
-            if let Some(mut walk) = Walk::new(self, &state, points.vertices(), mvp, shader) {
-                walk.points(size);
-            }
+            Walk::new(self, &state, points.vertices(), mvp, shader).points(size);
         }
     }
 
@@ -149,10 +145,9 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         vertices: &'s Mesh<'s>,
         mvp: &'s Projective,
         shader: &'s S,
-    ) -> Option<Self> {
-        let rows = scene.target.as_ref()?.rows.clone();
-        let clip = scene.clip_rect(&rows);
-        Some(Self { scene, state, vertices, mvp, shader, clip, transform: None })
+    ) -> Self {
+        let clip = scene.clip_rect(&scene.target.rows);
+        Self { scene, state, vertices, mvp, shader, clip, transform: None }
     }
 
     #[inline(never)]
@@ -189,7 +184,8 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
             let place = if slot.is_on_screen() {
                 Some(slot.screen())
             } else if slot.outcode() & !self.state.range.clamped().0 == 0 {
-                project(&self.assembly().transformed(index))
+                let assembly = self.assembly();
+                assembly.transform.project(&assembly.transformed(index))
             } else {
                 None
             };
@@ -199,9 +195,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
                 let number = index as u16;
                 let varyings = self.varyings(number);
                 let face = self.face([number, number], index);
-                if let Some(mut painter) = self.painter() {
-                    block(&mut painter, &rect, v.z, &varyings, face);
-                }
+                block(&mut self.painter(), &rect, v.z, &varyings, face);
             }
         }
     }
@@ -218,7 +212,11 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     fn assembly(&mut self) -> Assembly<'_, 'a, F, S> {
         let Self { scene, state, vertices, mvp, shader, clip, transform } = self;
         let view = || View::new(mvp, &scene.viewport);
-        let transform = transform.get_or_insert_with(|| Transform::of(view(), vertices, S::DISPLACES));
+        let transform = transform.get_or_insert_with(|| {
+            let mut transform = Transform::of(view(), vertices, S::DISPLACES);
+            transform.set_depth_scale(state.depth_scale);
+            transform
+        });
         Assembly { scene, state, mesh: vertices, shader, transform, clip: clip.clone() }
     }
 
@@ -233,7 +231,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         self.shader.face(&Face::new(self.vertices, number, [a, b, b], Side::Front))
     }
 
-    fn painter(&mut self) -> Option<Painter<'_, 'a, F, S>> {
+    fn painter(&mut self) -> Painter<'_, 'a, F, S> {
         self.scene.painter(&self.clip, self.state, self.shader)
     }
 
@@ -246,9 +244,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         stroke: &K,
     ) {
         let face = self.face(corners, number);
-        if let Some(mut painter) = self.painter() {
-            stroke.draw(&mut painter, ends, face);
-        }
+        stroke.draw(&mut self.painter(), ends, face);
     }
 
     /// A line with an end outside: cut anew in each strip, which keeps the records as they are.
@@ -260,18 +256,25 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1]);
-        let [i, j] = corners.map(usize::from);
-        let assembly = self.assembly();
-        let end =
-            |index: usize| (assembly.transformed(index), assembly.shader.vertex(&Corner::new(assembly.mesh, index)));
-        let ends = [end(i), end(j)];
         for part in self.state.range.parts(all) {
-            let Some([a, b]) = clip_line(&ends, all, part) else { continue };
-            if let (Some(placed_a), Some(placed_b)) = (project(&a.0), project(&b.0)) {
-                // What the records would keep of the varyings, as for ends that are not cut.
-                let ends = [(placed_a, rounded::<S>(&a.1)), (placed_b, rounded::<S>(&b.1))];
+            if let Some(ends) = self.cut(corners, all, part) {
                 self.draw(&ends, corners, number, stroke);
             }
         }
+    }
+
+    /// What is left of a part of a line, on the screen. In a function of its own, so that its ends in clip space have left
+    /// the stack when it is drawn.
+    #[inline(never)]
+    fn cut(&mut self, corners: [u16; 2], codes: Outcode, part: Part) -> Option<[(ScreenVertex, S::Varyings); 2]> {
+        let assembly = self.assembly();
+        let ends = corners.map(|k| {
+            let index = usize::from(k);
+            (assembly.transformed(index), assembly.shader.vertex(&Corner::new(assembly.mesh, index)))
+        });
+        let [a, b] = clip_line(&ends, codes, part)?;
+        let (from, to) = (assembly.transform.project(&a.0)?, assembly.transform.project(&b.0)?);
+        // What the records would keep of the varyings, as for ends that are not cut.
+        Some([(from, rounded::<S>(&a.1)), (to, rounded::<S>(&b.1))])
     }
 }
