@@ -17,12 +17,15 @@ pub struct Memory<'m> {
     pub records: &'m mut [u32],
 }
 
+/// Takes a strip's bytes.
+pub type Sink<'s> = dyn FnMut(&[u8]) + 's;
+
 /// A scene in a format.
 pub struct FormatInfo {
     /// Its name in reports.
     pub name: &'static str,
     /// Hands each strip's bytes to a sink.
-    pub draw: fn(Memory<'_>, &mut dyn FnMut(&[u8])),
+    pub draw: fn(Memory<'_>, &mut Sink<'_>),
 }
 
 /// All of them.
@@ -47,11 +50,7 @@ pub const FORMATS: &[FormatInfo] = &[
 ];
 
 /// Draws 320×240 pixels of a format.
-fn direct<P: PixelFormat>(
-    memory: Memory<'_>,
-    sink: &mut dyn FnMut(&[u8]),
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
-) {
+fn direct<P: PixelFormat>(memory: Memory<'_>, sink: &mut Sink<'_>, draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>)) {
     let Memory { color, depth, records } = memory;
     let Ok(color) = bytemuck::try_cast_slice_mut(color) else { return };
     let Ok(mut renderer) = Renderer::<P>::new((320, 240), Buffers { color, depth, records }) else { return };
@@ -64,12 +63,7 @@ fn direct<P: PixelFormat>(
 }
 
 /// Draws the torus in greys and packs them.
-fn packed<F: PackedFormat>(
-    screen: (u16, u16),
-    dither: Dither<F::Color>,
-    memory: Memory<'_>,
-    sink: &mut dyn FnMut(&[u8]),
-) {
+fn packed<F: PackedFormat>(screen: (u16, u16), dither: Dither<F::Color>, memory: Memory<'_>, sink: &mut Sink<'_>) {
     let Memory { color, depth, records } = memory;
     // Half for greys, half for what they are packed to.
     let bytes: &mut [u8] = bytemuck::cast_slice_mut(color);
