@@ -11,7 +11,7 @@ use super::{Phase, Scene, State, Stroke, Thin, fingerprint};
 use crate::fragment::Shader;
 use crate::geometry::{
     Corner, Face, Lines, Mesh, Outcode, Points, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader, View,
-    clip_line, project,
+    clip_line, project, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot, VERTEX_WORDS};
@@ -239,14 +239,15 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         let all = Outcode(codes[0] | codes[1]);
         let [i, j] = corners.map(usize::from);
         let assembly = self.assembly();
-        let end =
-            |index: usize| (assembly.transformed(index), assembly.shader.vertex(&Corner::new(assembly.mesh, index)));
-        let ends = [end(i), end(j)];
+        let (ends, varyings) =
+            ([assembly.transformed(i), assembly.transformed(j)], [assembly.vertex(i), assembly.vertex(j)]);
+        let at_corners = [varyings[0], varyings[1], varyings[1]];
         for part in self.state.range.parts(all) {
-            let Some([a, b]) = clip_line(&ends, all, part) else { continue };
-            if let (Some(placed_a), Some(placed_b)) = (project(&a.0), project(&b.0)) {
+            let Some([a, b]) = clip_line(ends, all, part) else { continue };
+            if let (Some(placed_a), Some(placed_b)) = (project(&a.vertex), project(&b.vertex)) {
                 // What the records would keep of the varyings, as for ends that are not cut.
-                let ends = [(placed_a, rounded::<S>(&a.1)), (placed_b, rounded::<S>(&b.1))];
+                let varyings = |weights| rounded::<S>(&weighted(weights, &at_corners));
+                let ends = [(placed_a, varyings(&a.weights)), (placed_b, varyings(&b.weights))];
                 self.draw(&ends, corners, number, stroke);
             }
         }
