@@ -4,7 +4,9 @@
 //! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
 //! small even for one strip, it draws that strip *directly* (all stages at once).
 
-use crate::fragment::{AnyDepth, Compare, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
+use crate::fragment::{
+    AnyDepth, Compare, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps,
+};
 use crate::geometry::{
     Bounds, BoundsNode, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Part, Placed,
     Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
@@ -506,7 +508,9 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
     // 9. Spans; 10, 11: depth test and fragments, in a loop of its own for each kind of test.
     let columns = &clip.x;
     let width = screen.0 as usize;
-    trapezoids(v, area, &clip.y, |edges, y| match state.depth {
+    // Without a depth buffer, every test passes.
+    let test = if target.depth.is_empty() { DepthState::OFF } else { state.depth };
+    trapezoids(v, area, &clip.y, |edges, y| match test {
         DepthState { compare: Compare::Less, write: true } => {
             rows(target, width, columns, &surface, shader, face, LessWrite, edges, y);
         }
@@ -543,6 +547,7 @@ fn rows<F: Framebuffer, S: Shader<F::Format>, D: DepthTest>(
     let [mut left, mut right] = *edges;
     let depths = &mut *target.depth;
     let framebuffer = &mut *target.framebuffer;
+    let mut nothing = [(); MAX_SPAN];
     let steps = &surface.steps;
     let mut y = rows.start;
     // Column 0 of the row: where its depth is, and what is there.
@@ -555,8 +560,7 @@ fn rows<F: Framebuffer, S: Shader<F::Format>, D: DepthTest>(
             let (column, length) = (start as usize, length as usize);
             let color = framebuffer.span(y as u32, column, length);
             // As many depths as pixels, should the framebuffer be narrower than the screen.
-            let Some(depth) = depths.get_mut(row + column..) else { return };
-            let Some(depth) = depth.get_mut(..color.len()) else { return };
+            let depth = D::stored(depths, &mut nothing, row + column, color.len());
             let mut varyings = surface.varyings;
             let d_dx = steps.d_dx.as_ref().iter();
             for ((value, dx), dy) in varyings.as_mut().iter_mut().zip(d_dx).zip(surface.d_dy.as_ref()) {

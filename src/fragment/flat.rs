@@ -79,7 +79,7 @@ impl<P: PixelFormat> Shader<P> for Flat {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
         let Fragments { color, depth, mut z, steps, .. } = span;
         let dz_dx = steps.dz_dx;
         let value = Shader::<P>::fragment(self, face, &[]);

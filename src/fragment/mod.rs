@@ -7,7 +7,7 @@ mod gouraud;
 mod pixel;
 mod shader;
 
-pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, MAX_SPAN, NoDepth};
 pub use fill::fill;
 pub use flat::Flat;
 pub use gouraud::Gouraud;
