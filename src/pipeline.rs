@@ -16,6 +16,8 @@ use crate::output::{Framebuffer, Records, Slot, Stats};
 use crate::raster::{Edge, Gradients, PixelRect, pixel_rect, trapezoids};
 use core::ops::Range;
 
+mod overlay;
+
 /// Which faces are not drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

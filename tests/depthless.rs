@@ -109,8 +109,12 @@ fn convex_body_needs_no_depth() {
     let (deep, _) = strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle(9000)));
     let flat = without_depth::<Rgb565>(50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle(9000)));
     assert_ne!(difference(&flat, &deep, SCREEN.0), None);
-    let (deep, _) = strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| pillar(s));
-    let flat = without_depth::<Rgb565>(9, 20_000, scenes::BACKGROUND, |s| pillar(s));
+    let (deep, _) = strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| {
+        pillar(s);
+    });
+    let flat = without_depth::<Rgb565>(9, 20_000, scenes::BACKGROUND, |s| {
+        pillar(s);
+    });
     assert_eq!(difference(&flat, &deep, SCREEN.0), None);
     assert!(deep.iter().any(|p| *p != deep[0]), "an empty picture");
 }

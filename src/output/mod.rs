@@ -1,6 +1,7 @@
 //! Pixels → display: pixel formats, strips and other framebuffers, records, and the loop that makes a frame of strips.
 
 mod budget;
+mod draw_target;
 mod frame;
 mod framebuffer;
 mod pixel;
@@ -9,6 +10,7 @@ mod sink;
 mod stats;
 
 pub use budget::RamBudget;
+pub use draw_target::Canvas;
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use pixel::Rgb565Be;
