@@ -9,7 +9,8 @@ use crate::fragment::{
 };
 use crate::geometry::{
     Bounds, BoundsNode, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Part, Placed,
-    Positions, ScreenVertex, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project, signed_area,
+    Positions, ScreenVertex, Side, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project,
+    signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
@@ -56,6 +57,13 @@ pub struct State {
 }
 
 impl State {
+    /// The side that a triangle of this signed area, which is not 0, shows.
+    #[inline]
+    fn side(&self, area: i64) -> Side {
+        // y points down here: a positive area goes with the clock.
+        if (area > 0) == (self.front == Winding::CounterClockwise) { Side::Back } else { Side::Front }
+    }
+
     /// The default, for constants: back faces culled, nearer fragments win, clipped at the near and the far plane.
     pub const DEFAULT: Self =
         Self { cull: Cull::Back, front: Winding::CounterClockwise, depth: DepthState::LESS, range: DepthRange::Clip };
@@ -338,7 +346,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         for part in self.state.range.parts(all) {
             let mut fan = Fan::<S::Varyings>::new();
             self.cut(corners, all, part, &mut fan);
-            self.fan(&fan, &Face::new(self.mesh, number, corners));
+            self.fan(&fan, corners, number);
         }
     }
 
@@ -360,7 +368,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
 
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
-    fn fan(&mut self, fan: &Fan<S::Varyings>, face: &Face<'_>) {
+    fn fan(&mut self, fan: &Fan<S::Varyings>, corners: [u16; 3], number: usize) {
         let mut placed = fan.iter().copied();
         let recording = self.scene.phase == Phase::Record;
         let (Some(first), Some(mut last)) = (placed.next(), placed.next()) else {
@@ -375,8 +383,8 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         for next in placed {
             let next_index = if recording { self.push(&next) } else { 0 };
             let v = [first.0, last.0, next.0];
-            if let Some(visible) = self.visible(&v) {
-                let word = self.shader.face(face);
+            if let Some((visible, side)) = self.visible(&v) {
+                let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
                 if recording {
                     self.record(&visible, [first_index, last_index, next_index], word);
                 } else {
@@ -398,8 +406,8 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
     /// A triangle that needs no clipping.
     #[inline]
     fn screen_triangle(&mut self, v: &[ScreenVertex; 3], corners: [u16; 3], number: usize) {
-        let Some(visible) = self.visible(v) else { return };
-        let word = self.shader.face(&Face::new(self.mesh, number, corners));
+        let Some((visible, side)) = self.visible(v) else { return };
+        let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
         if self.scene.phase == Phase::Record {
             self.record(&visible, corners, word);
         } else {
@@ -415,17 +423,17 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         rounded::<S>(&self.shader.vertex(&Corner::new(self.mesh, index)))
     }
 
-    /// 5. Culling by winding, and of what covers no pixel: where the triangle can have pixels, if it can.
+    /// 5. Culling by winding, and of what covers no pixel: where the triangle can have pixels and which side it shows.
     #[inline]
-    fn visible(&mut self, v: &[ScreenVertex; 3]) -> Option<PixelRect> {
+    fn visible(&mut self, v: &[ScreenVertex; 3]) -> Option<(PixelRect, Side)> {
         let stats = &mut *self.scene.stats;
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area == 0 {
             stats.degenerate = stats.degenerate.wrapping_add(1);
             return None;
         }
-        // y points down here: a positive area goes with the clock.
-        let is_back = (area > 0) == (self.state.front == Winding::CounterClockwise);
+        let side = self.state.side(area);
+        let is_back = side == Side::Back;
         if (self.state.cull == Cull::Back && is_back) || (self.state.cull == Cull::Front && !is_back) {
             stats.back_facing = stats.back_facing.wrapping_add(1);
             return None;
@@ -441,7 +449,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
             return None;
         }
         stats.drawn = stats.drawn.wrapping_add(1);
-        Some(rect)
+        Some((rect, side))
     }
 
     /// 6, 7. Into the records, to the strip it begins in.
@@ -504,7 +512,7 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         dz_dy: depth.dy,
         varyings: corner,
         d_dy: dy,
-        steps: Steps { dz_dx: depth.dx, d_dx: dx, words },
+        steps: Steps { dz_dx: depth.dx, d_dx: dx, words, side: state.side(area) },
     };
 
     // 9. Spans; 10, 11: depth test and fragments, in a loop of its own for each kind of test.

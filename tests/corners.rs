@@ -10,7 +10,7 @@ use reference::scenes::depth_soup;
 use reference::subject::Subject;
 use std::cell::Cell;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{Compare, DepthState, Flat, Gouraud, Shader};
+use zstrip::fragment::{Compare, DepthState, Flat, Fragment, Gouraud, Shader};
 use zstrip::geometry::{
     BoundingBox, BoundingSphere, Bounds, Corner, DepthRange, Face, Mesh, MeshData, MeshError, Positions, Topology,
     VertexShader,
@@ -114,8 +114,8 @@ impl VertexShader for Normal {
 }
 
 impl Shader<Rgb565> for Normal {
-    fn fragment(&self, _: u32, _: &[i32; 0]) -> u16 {
-        1
+    fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<u16> {
+        Some(1)
     }
 }
 

@@ -15,7 +15,7 @@ use reference::snapped::{self, Shading, SnappedVertex};
 use scenes::{polygons, soup, torus};
 use support::{apply, matrix, position, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
-use zstrip::fragment::{DepthState, Gouraud, Shader};
+use zstrip::fragment::{DepthState, Fragment, Gouraud, Shader};
 use zstrip::geometry::{
     Corner, DepthRange, Face, Light, Mesh, MeshData, NORMAL_ONE, Positions, Topology, VertexShader, Viewport,
 };
@@ -120,9 +120,9 @@ impl VertexShader for Ids {
 }
 
 impl Shader<Rgb888> for Ids {
-    fn fragment(&self, face: u32, _: &[i32; 0]) -> [u8; 3] {
-        let [_, r, g, b] = face.to_be_bytes();
-        [r, g, b]
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<[u8; 3]> {
+        let [_, r, g, b] = fragment.face.to_be_bytes();
+        Some([r, g, b])
     }
 }
 

@@ -13,7 +13,7 @@
 pub mod reference;
 
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::fragment::{DepthState, DepthTest, Flat, Fragments, Gouraud, PixelFormat, Shader};
+use zstrip::fragment::{DepthState, DepthTest, Flat, Fragment, Fragments, Gouraud, PixelFormat, Shader};
 use zstrip::geometry::{Corner, Face, Light, Mesh, MeshData, Positions, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::output::{Buffers, Renderer, Stats, StripPixels};
@@ -150,8 +150,8 @@ impl VertexShader for FaceColors {
 
 impl<P: PixelFormat> Shader<P> for FaceColors {
     #[inline]
-    fn fragment(&self, face: u32, varyings: &[i32; 0]) -> P::Raw {
-        Shader::<P>::fragment(&self.0, face, varyings)
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
+        Shader::<P>::fragment(&self.0, fragment)
     }
 
     #[inline]

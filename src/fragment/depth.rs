@@ -51,12 +51,12 @@ pub const MAX_SPAN: usize = crate::geometry::Viewport::MAX_SIZE as usize;
 
 /// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
 pub trait DepthTest: Copy {
-    /// Whether depth plays a part at all; otherwise `passes` is not called.
+    /// Whether depth plays a part at all; otherwise neither `passes` nor `write` has to be called.
     const ENABLED: bool;
 
     /// What there is of a pixel's depth: `u16`, or nothing where depth plays no part, so that the same loops do without a
     /// depth buffer.
-    type Stored;
+    type Stored: Copy;
 
     /// What is stored of as many pixels from `start` on, or of fewer at the end of `depths`. `nothing` is for tests that
     /// need none.
@@ -67,8 +67,11 @@ pub trait DepthTest: Copy {
         length: usize,
     ) -> &'d mut [Self::Stored];
 
-    /// Tests `z` against `stored`, and replaces it if the fragment passes and writes.
-    fn passes(self, z: u16, stored: &mut Self::Stored) -> bool;
+    /// Compares `z` with the stored depth.
+    fn passes(self, z: u16, stored: Self::Stored) -> bool;
+
+    /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
+    fn write(self, z: u16, stored: &mut Self::Stored);
 }
 
 /// Depths from `start` on, `length` of them or as many as there are.
@@ -94,12 +97,13 @@ impl DepthTest for LessWrite {
     }
 
     #[inline(always)]
-    fn passes(self, z: u16, stored: &mut u16) -> bool {
-        let nearer = z < *stored;
-        if nearer {
-            *stored = z;
-        }
-        nearer
+    fn passes(self, z: u16, stored: u16) -> bool {
+        z < stored
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut u16) {
+        *stored = z;
     }
 }
 
@@ -118,9 +122,12 @@ impl DepthTest for NoDepth {
     }
 
     #[inline(always)]
-    fn passes(self, _: u16, (): &mut ()) -> bool {
+    fn passes(self, _: u16, (): ()) -> bool {
         true
     }
+
+    #[inline(always)]
+    fn write(self, _: u16, (): &mut ()) {}
 }
 
 /// Any other test.
@@ -156,15 +163,18 @@ impl DepthTest for AnyDepth {
     }
 
     #[inline(always)]
-    fn passes(self, z: u16, stored: &mut u16) -> bool {
-        let passes = match z.cmp(stored) {
+    fn passes(self, z: u16, stored: u16) -> bool {
+        match z.cmp(&stored) {
             core::cmp::Ordering::Less => self.less,
             core::cmp::Ordering::Equal => self.equal,
             core::cmp::Ordering::Greater => self.greater,
-        };
-        if passes && self.write {
+        }
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut u16) {
+        if self.write {
             *stored = z;
         }
-        passes
     }
 }

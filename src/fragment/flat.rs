@@ -1,7 +1,7 @@
 //! One colour a face.
 
 use super::fill::fill;
-use super::{DepthTest, Fragments, PixelFormat, Shader};
+use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
 use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
 
 /// Flat shading: each triangle in one colour, lit by its face normal.
@@ -71,23 +71,31 @@ const fn round(channel: i32) -> u8 {
     ((channel + 128) >> 8) as u8
 }
 
+/// The colour of a face, from its word.
+#[inline(always)]
+fn unpacked<P: PixelFormat>(face: u32) -> P::Raw {
+    let [_, r, g, b] = face.to_be_bytes();
+    P::pack([r, g, b])
+}
+
 impl<P: PixelFormat> Shader<P> for Flat {
     #[inline]
-    fn fragment(&self, face: u32, _: &[i32; 0]) -> P::Raw {
-        let [_, r, g, b] = face.to_be_bytes();
-        P::pack([r, g, b])
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
+        Some(unpacked::<P>(fragment.face))
     }
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
         let Fragments { color, depth, mut z, steps, .. } = span;
         let dz_dx = steps.dz_dx;
-        let value = Shader::<P>::fragment(self, face, &[]);
+        let value = unpacked::<P>(face);
         if !D::ENABLED {
             return fill(color, value);
         }
         for (color, depth) in color.iter_mut().zip(depth) {
-            if test.passes((z >> 16) as u16, depth) {
+            let near = (z >> 16) as u16;
+            if test.passes(near, *depth) {
+                test.write(near, depth);
                 *color = value;
             }
             z = z.wrapping_add_signed(dz_dx);

@@ -2,7 +2,7 @@
 
 use super::flat::channels;
 use super::shader::fragments;
-use super::{DepthTest, Fragments, PixelFormat, Shader};
+use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
 use crate::geometry::{Corner, Light, Lit, VertexShader};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
@@ -82,8 +82,8 @@ impl VertexShader for Gouraud {
 
 impl<P: PixelFormat> Shader<P> for Gouraud {
     #[inline]
-    fn fragment(&self, _: u32, rgb: &[i32; 3]) -> P::Raw {
-        P::pack(rgb.map(unsqueeze))
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
+        Some(P::pack(fragment.varyings.map(unsqueeze)))
     }
 
     #[inline]
@@ -199,7 +199,9 @@ impl Pen {
     /// Draws a pixel and steps to the next one.
     #[inline(always)]
     fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, color: &mut P::Raw, depth: &mut D::Stored) {
-        if !D::ENABLED || test.passes((self.z >> 16) as u16, depth) {
+        let z = (self.z >> 16) as u16;
+        if !D::ENABLED || test.passes(z, *depth) {
+            test.write(z, depth);
             *color = P::from_packed(self.word, self.mask);
         }
         self.z = self.z.wrapping_add_signed(self.dz_dx);

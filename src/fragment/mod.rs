@@ -12,4 +12,4 @@ pub use fill::fill;
 pub use flat::Flat;
 pub use gouraud::Gouraud;
 pub use pixel::PixelFormat;
-pub use shader::{Fragments, Shader, Steps};
+pub use shader::{Fragment, Fragments, Shader, Steps};

@@ -1,7 +1,22 @@
 //! The fragment stage's seam, and the loop over the pixels of a span.
 
 use super::{DepthTest, PixelFormat};
-use crate::geometry::VertexShader;
+use crate::geometry::{Side, VertexShader};
+
+/// A fragment that passed the depth test: what the fragment stage sees of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Fragment<'a, V> {
+    /// The triangle's word, from [`VertexShader::face`].
+    pub face: u32,
+    /// Varyings at the pixel's centre.
+    pub varyings: &'a V,
+    /// The pixel, from the screen's top left corner.
+    pub position: (i32, i32),
+    /// Depth, 0 near, 65,535 far.
+    pub depth: u16,
+    /// Which side of the triangle is seen.
+    pub side: Side,
+}
 
 /// The pixels of a span and everything that is interpolated along it.
 #[derive(Debug)]
@@ -29,14 +44,16 @@ pub struct Steps<V> {
     pub d_dx: V,
     /// What [`Shader::prepare`] made of them.
     pub words: [u32; 2],
+    /// Which side of the triangle is seen.
+    pub side: Side,
 }
 
 /// The programmable fragment stage: colours pixels of format `P`.
 ///
 /// A shader is compiled into the pixel loop; nothing is called indirectly.
 pub trait Shader<P: PixelFormat>: VertexShader {
-    /// The colour of a fragment, from the triangle's word and the varyings at the pixel's centre.
-    fn fragment(&self, face: u32, varyings: &Self::Varyings) -> P::Raw;
+    /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
+    fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
 
     /// Whatever of the span loop's work can be done once a triangle: called before its spans with the varyings at one of
     /// its pixels, which may be moved (all of its spans will be), and with their changes a pixel. Yields words for the
@@ -62,11 +79,17 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     span: Fragments<'_, P, S::Varyings, D::Stored>,
     test: D,
 ) {
-    let Fragments { color, depth, mut z, mut varyings, steps, .. } = span;
-    for (color, depth) in color.iter_mut().zip(depth) {
-        if !D::ENABLED || test.passes((z >> 16) as u16, depth) {
-            *color = shader.fragment(face, &varyings);
+    let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
+    let side = steps.side;
+    for (color, stored) in color.iter_mut().zip(depth) {
+        let depth = (z >> 16) as u16;
+        if !D::ENABLED || test.passes(depth, *stored) {
+            if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side }) {
+                test.write(depth, stored);
+                *color = value;
+            }
         }
+        position.0 = position.0.wrapping_add(1);
         z = z.wrapping_add_signed(steps.dz_dx);
         for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
             *value = value.wrapping_add(*step);

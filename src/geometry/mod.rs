@@ -18,5 +18,5 @@ pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
 pub use project::{ScreenVertex, project, signed_area};
 pub use transform::{Placed, Transform, place};
-pub use vertex::{Corner, Face, Varyings, VertexShader};
+pub use vertex::{Corner, Face, Side, Varyings, VertexShader};
 pub use viewport::{Viewport, ViewportError};

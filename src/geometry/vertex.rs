@@ -61,17 +61,34 @@ impl<'a> Corner<'a> {
     }
 }
 
+/// Which side of a triangle is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Side {
+    /// The front: its corners go round as [`State::front`](crate::State::front) says.
+    Front,
+    /// The back.
+    Back,
+}
+
 /// A triangle as the vertex shader sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Face<'a> {
     mesh: &'a Mesh<'a>,
     triangle: usize,
     corners: [u16; 3],
+    side: Side,
 }
 
 impl<'a> Face<'a> {
-    pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3]) -> Self {
-        Self { mesh, triangle, corners }
+    pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3], side: Side) -> Self {
+        Self { mesh, triangle, corners, side }
+    }
+
+    /// Which side is seen: faces that show their back are drawn if [`State::cull`](crate::State::cull) lets them, and may
+    /// be lit the other way round.
+    pub const fn side(&self) -> Side {
+        self.side
     }
 
     /// Number of the triangle in its mesh.

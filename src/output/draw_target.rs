@@ -113,6 +113,16 @@ impl<F: Framebuffer, D: DepthTest> Canvas<'_, F, D> {
     }
 }
 
+/// Tests a depth against the stored one, and leaves it if it passes.
+#[inline(always)]
+fn passes<D: DepthTest>(test: D, z: u16, stored: &mut D::Stored) -> bool {
+    let passes = test.passes(z, *stored);
+    if passes {
+        test.write(z, stored);
+    }
+    passes
+}
+
 impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
     type Color = Color<F>;
     type Error = Infallible;
@@ -134,7 +144,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
             // What is left of the columns wraps to the far right.
             let column = point.x.wrapping_sub(columns.start) as usize;
             if let Some(pixel) = colors.get_mut(column) {
-                if !D::ENABLED || depths.get_mut(column).is_none_or(|stored| test.passes(z, stored)) {
+                if !D::ENABLED || depths.get_mut(column).is_none_or(|stored| passes(test, z, stored)) {
                     *pixel = F::Format::from_color(color);
                 }
             }
@@ -168,7 +178,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
             skip = width.wrapping_sub(row.len());
             let mut depths = depths.iter_mut();
             for (pixel, color) in row.iter_mut().zip(&mut colors) {
-                if !D::ENABLED || depths.next().is_none_or(|stored| test.passes(z, stored)) {
+                if !D::ENABLED || depths.next().is_none_or(|stored| passes(test, z, stored)) {
                     *pixel = F::Format::from_color(color);
                 }
             }
@@ -188,7 +198,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
             let (row, depths) = self.row(&mut nothing, y, &part.x);
             if D::ENABLED && !depths.is_empty() {
                 for (pixel, stored) in row.iter_mut().zip(depths) {
-                    if test.passes(z, stored) {
+                    if passes(test, z, stored) {
                         *pixel = value;
                     }
                 }

@@ -6,7 +6,7 @@
 use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
 use std::cell::RefCell;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::fragment::{DepthState, DepthTest, Fragments, Shader};
+use zstrip::fragment::{DepthState, DepthTest, Fragment, Fragments, Shader};
 use zstrip::geometry::{Corner, Face, Mesh, MeshData, Positions, VertexShader};
 use zstrip::math::{Projective, Scalar};
 use zstrip::output::{FrameSlice, FramebufferRenderer};
@@ -40,8 +40,8 @@ impl VertexShader for Reached<'_> {
 }
 
 impl Shader<Rgb565> for Reached<'_> {
-    fn fragment(&self, _: u32, _: &[i32; 0]) -> u16 {
-        1
+    fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<u16> {
+        Some(1)
     }
 
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0], D::Stored>, _: D) {
@@ -69,8 +69,8 @@ impl VertexShader for Numbered {
 }
 
 impl Shader<Rgb565> for Numbered {
-    fn fragment(&self, face: u32, _: &[i32; 0]) -> u16 {
-        face as u16
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
+        Some(fragment.face as u16)
     }
 }
 

@@ -1,0 +1,102 @@
+//! The programmable fragment stage: what a shader of one's own sees, and what it can do.
+
+mod reference;
+mod support;
+
+use std::cell::RefCell;
+use support::{strips, whole};
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use zstrip::fragment::{Compare, DepthState, Fragment, Shader};
+use zstrip::geometry::{Corner, Face, Mesh, MeshData, Positions, Side, VertexShader};
+use zstrip::math::{Projective, Vec3};
+use zstrip::{Cull, State, Winding};
+
+const SCREEN: (u16, u16) = (32, 32);
+
+/// Two triangles that fill the view, without projection; the first shows its front, the second its back.
+static CORNERS: [Vec3; 4] =
+    [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(1, 1, 1), Vec3::from_ints(-1, 1, 1)];
+static SQUARE: Mesh<'static> =
+    Mesh::constant(MeshData { indices: Some(&[0, 1, 2, 0, 3, 2]), ..MeshData::new(Positions::Exact(&CORNERS)) });
+
+/// x, y, depth, side and the face's word.
+type Seen = (i32, i32, u16, Side, u32);
+
+/// Colours every other pixel, in a chequered pattern, with 1 and discards the others; notes what it has seen.
+#[derive(Default)]
+struct Chequers(RefCell<Vec<Seen>>);
+
+impl VertexShader for Chequers {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+        []
+    }
+
+    fn face(&self, face: &Face<'_>) -> u32 {
+        face.index() as u32 | u32::from(face.side() == Side::Back) << 16
+    }
+}
+
+impl Shader<Rgb565> for Chequers {
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
+        let (x, y) = fragment.position;
+        self.0.borrow_mut().push((x, y, fragment.depth, fragment.side, fragment.face));
+        ((x + y) % 2 == 0).then_some(1)
+    }
+}
+
+#[test]
+fn discarded_fragments_leave_colour_and_depth() {
+    let tests = [
+        DepthState::LESS,
+        DepthState { compare: Compare::LessEqual, write: true },
+        DepthState { compare: Compare::Always, write: true },
+        DepthState { compare: Compare::Always, write: false },
+    ];
+    for depth in tests {
+        let state = State { cull: Cull::None, depth, ..State::DEFAULT };
+        let shader = Chequers::default();
+        let (color, z, _) =
+            whole::<Rgb565>(SCREEN, Rgb565::BLACK, |s| s.draw_with(state, &SQUARE, &Projective::IDENTITY, &shader));
+        for (k, (color, z)) in color.iter().zip(z).enumerate() {
+            let (x, y) = (k as i32 % 32, k as i32 / 32);
+            let kept = (x + y) % 2 == 0;
+            assert_eq!(*color, u16::from(kept), "({x}, {y}) {depth:?}");
+            assert_eq!(z != u16::MAX, kept && depth.write, "({x}, {y}) {depth:?}");
+        }
+    }
+}
+
+#[test]
+fn fragments_know_where_they_are_and_which_side_is_seen() {
+    for front in [Winding::CounterClockwise, Winding::Clockwise] {
+        let state = State { cull: Cull::None, front, ..State::DEFAULT };
+        let shader = Chequers::default();
+        let (_, z, _) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| {
+            scene.draw_with(state, &SQUARE, &Projective::IDENTITY, &shader);
+        });
+        let mut seen = shader.0.into_inner();
+        assert_eq!(seen.len(), 32 * 32);
+        for &(x, y, depth, side, face) in &seen {
+            let is_back = (face & 1 == 1) == (front == Winding::CounterClockwise);
+            assert_eq!(face >> 16, u32::from(is_back), "({x}, {y}) {front:?}");
+            assert_eq!(side == Side::Back, is_back, "({x}, {y}) {front:?}");
+            if (x + y) % 2 == 0 {
+                assert_eq!(z[(y * 32 + x) as usize], depth, "({x}, {y})");
+            }
+        }
+        // And the same in strips, with records and without.
+        for records in [0, 1000] {
+            let shader = Chequers::default();
+            let _ = strips::<Rgb565>(SCREEN, 5, records, Rgb565::BLACK, |scene| {
+                scene.draw_with(state, &SQUARE, &Projective::IDENTITY, &shader)
+            });
+            let mut again = shader.0.into_inner();
+            let order = |&(x, y, ..): &Seen| (y, x);
+            seen.sort_by_key(order);
+            again.sort_by_key(order);
+            assert!(seen == again, "{records} records");
+        }
+    }
+}
