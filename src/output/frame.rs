@@ -276,6 +276,11 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         Ok(Self { engine: Engine::new(screen, rows, depth, records)?, color })
     }
 
+    /// Width and height of the screen.
+    pub fn screen(&self) -> (u16, u16) {
+        self.engine.screen()
+    }
+
     /// Rows of a strip; the last one may have fewer.
     pub const fn strip_rows(&self) -> u16 {
         self.engine.strip_rows
@@ -293,7 +298,22 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         background: P::Color,
         draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
     ) -> Result<Stats, FrameError<D::Error>> {
-        self.frame_to(OnDisplay(display), background, draw)
+        self.frame_to(OnDisplay::new(display), background, draw)
+    }
+
+    /// Draws a frame on a part of an embedded-graphics display, as large as the renderer's screen and with its corner at
+    /// `top_left`; the rest of the display is left to others. See also [`View`](super::View).
+    ///
+    /// # Errors
+    /// As [`frame`](Self::frame).
+    pub fn frame_at<D: DrawTarget<Color = P::Color>>(
+        &mut self,
+        display: &mut D,
+        top_left: Point,
+        background: P::Color,
+        draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    ) -> Result<Stats, FrameError<D::Error>> {
+        self.frame_to(OnDisplay::at(display, top_left), background, draw)
     }
 
     /// Draws a frame, each finished strip going to a sink.

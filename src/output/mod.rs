@@ -8,6 +8,7 @@ mod pixel;
 mod record;
 mod sink;
 mod stats;
+mod view;
 
 pub use budget::RamBudget;
 pub use draw_target::Canvas;
@@ -18,3 +19,4 @@ pub use record::records_len;
 pub(crate) use record::{Records, Slot, VERTEX as VERTEX_WORDS};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
+pub use view::View;
