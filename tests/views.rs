@@ -16,7 +16,7 @@ use support::{Soup, strips};
 use zstrip::fragment::{Gouraud, PixelFormat};
 use zstrip::geometry::Mesh;
 use zstrip::math::Projective;
-use zstrip::output::{Buffers, FrameError, Rgb565Be, View};
+use zstrip::output::{Buffers, FrameError, FrameView, Rgb565Be};
 use zstrip::{Cull, Framebuffer, Renderer, Scene, State};
 
 const DISPLAY: (i32, i32) = (90, 60);
@@ -86,7 +86,7 @@ fn view_shows_the_frame_wherever_it_is() {
             let stats = renderer.frame_at(&mut shown, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh)).expect("a frame");
             assert_pasted(&shown, &expected, at, &format!("frame_at, {what}"));
 
-            let view = View::new(&mut renderer, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
+            let view = FrameView::new(&mut renderer, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
             assert_eq!(view.bounding_box(), Rectangle::new(at, Size::new(40, 33)));
             for again in 0..2 {
                 let mut shown = display();
@@ -111,7 +111,7 @@ fn view_is_drawn_within_another_frame() {
             let mut inner = (vec![0; 40 * 8], vec![0; 40 * 8], vec![0; 3000]);
             let buffers = Buffers { color: &mut inner.0, depth: &mut inner.1, records: &mut inner.2 };
             let mut renderer = Renderer::<Rgb565>::new(VIEW, buffers).expect("a renderer");
-            let view = View::new(&mut renderer, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
+            let view = FrameView::new(&mut renderer, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
             let shown = display();
             let (picture, _) = strips::<Rgb565>((90, 60), rows, 50, Rgb565::BLACK, |scene| {
                 let all = shown.bounding_box();
@@ -155,7 +155,7 @@ fn what_goes_wrong_in_a_view_is_told_and_the_next_frame_is_right() {
     let mut renderer = Renderer::<Rgb565>::new(VIEW, buffers).expect("a renderer");
     let draws = Cell::new(0);
     let changing = Cell::new(false);
-    let view = View::new(&mut renderer, Point::zero(), Rgb565::CSS_NAVY, |s| {
+    let view = FrameView::new(&mut renderer, Point::zero(), Rgb565::CSS_NAVY, |s| {
         draws.set(draws.get() + 1);
         draw(s, &mesh);
         if changing.get() && draws.get() == 3 {

@@ -175,7 +175,7 @@ static WEATHER: [u8; WEATHER_SIZE * WEATHER_SIZE * 2] = {
             sum = [sum[0] + r, sum[1] + g, sum[2] + b];
             sample += 1;
         }
-        let pixel = (sum[0] / 128 << 11 | sum[1] / 64 << 5 | sum[2] / 128) as u16;
+        let pixel = (sum[0] / 128 * 2048 + sum[1] / 64 * 32 + sum[2] / 128) as u16;
         [bytes[2 * k], bytes[2 * k + 1]] = pixel.to_le_bytes();
         k += 1;
     }

@@ -17,6 +17,6 @@ pub use light::{Light, Lit, NORMAL_ONE};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
 pub use project::{ScreenVertex, project, signed_area};
-pub use transform::{Placed, Transform, place};
+pub use transform::{Placed, Transform, View, place};
 pub use vertex::{Corner, Face, Side, Varyings, VertexShader};
 pub use viewport::{Viewport, ViewportError};

@@ -3,20 +3,21 @@
 mod budget;
 mod draw_target;
 mod frame;
+mod frame_view;
 mod framebuffer;
 mod pixel;
 mod record;
 mod sink;
 mod stats;
-mod view;
 
 pub use budget::RamBudget;
 pub use draw_target::Canvas;
+pub(crate) use frame::StripRows;
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
+pub use frame_view::FrameView;
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use pixel::Rgb565Be;
 pub use record::records_len;
 pub(crate) use record::{Records, Slot, VERTEX as VERTEX_WORDS};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
-pub use view::View;

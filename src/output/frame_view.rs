@@ -20,7 +20,7 @@ use embedded_graphics_core::primitives::Rectangle;
 /// # use zstrip::fragment::Flat;
 /// # use zstrip::geometry::{Mesh, MeshData, Positions};
 /// # use zstrip::math::{Projective, Vec3};
-/// # use zstrip::{Buffers, Renderer, output::View};
+/// # use zstrip::{Buffers, Renderer, output::FrameView};
 /// # static CORNERS: [Vec3; 3] = [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(0, 1, 0)];
 /// # static TRIANGLE: Mesh<'static> = Mesh::constant(MeshData::new(Positions::Exact(&CORNERS)));
 /// # let mut display = MockDisplay::<Rgb565>::new();
@@ -28,14 +28,14 @@ use embedded_graphics_core::primitives::Rectangle;
 /// let (color, depth, records) = (&mut [0; 24 * 4], &mut [0; 24 * 4], &mut [0; 64]);
 /// let mut renderer = Renderer::<Rgb565>::new((24, 16), Buffers { color, depth, records })?;
 /// let shader = Flat::unlit(embedded_graphics::pixelcolor::Rgb888::CSS_ORANGE);
-/// let view = View::new(&mut renderer, Point::new(30, 10), Rgb565::BLACK, |scene| {
+/// let view = FrameView::new(&mut renderer, Point::new(30, 10), Rgb565::BLACK, |scene| {
 ///     scene.draw(&TRIANGLE, &Projective::IDENTITY, &shader);
 /// });
 /// let stats = view.draw(&mut display)??;
 /// assert_eq!((stats.strips, stats.drawn), (4, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct View<'v, 'b, P: PixelFormat, F> {
+pub struct FrameView<'v, 'b, P: PixelFormat, F> {
     /// Taken out while it draws: `draw` has only a shared reference.
     renderer: Cell<Option<&'v mut Renderer<'b, P>>>,
     area: Rectangle,
@@ -43,7 +43,7 @@ pub struct View<'v, 'b, P: PixelFormat, F> {
     draw: F,
 }
 
-impl<'v, 'b, P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> View<'v, 'b, P, F> {
+impl<'v, 'b, P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> FrameView<'v, 'b, P, F> {
     /// The renderer's whole screen, with its corner at `top_left` of whatever it is drawn on.
     pub fn new(renderer: &'v mut Renderer<'b, P>, top_left: Point, background: P::Color, draw: F) -> Self {
         let (width, height) = renderer.screen();
@@ -52,13 +52,13 @@ impl<'v, 'b, P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> View<'v, 'b, P
     }
 }
 
-impl<P: PixelFormat, F> Dimensions for View<'_, '_, P, F> {
+impl<P: PixelFormat, F> Dimensions for FrameView<'_, '_, P, F> {
     fn bounding_box(&self) -> Rectangle {
         self.area
     }
 }
 
-impl<P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> Drawable for View<'_, '_, P, F> {
+impl<P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> Drawable for FrameView<'_, '_, P, F> {
     type Color = P::Color;
     type Output = Result<Stats, FrameError>;
 
@@ -77,8 +77,8 @@ impl<P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> Drawable for View<'_, 
     }
 }
 
-impl<P: PixelFormat, F> fmt::Debug for View<'_, '_, P, F> {
+impl<P: PixelFormat, F> fmt::Debug for FrameView<'_, '_, P, F> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("View").field("area", &self.area).finish_non_exhaustive()
+        f.debug_struct("FrameView").field("area", &self.area).finish_non_exhaustive()
     }
 }
