@@ -6,15 +6,15 @@ mod support;
 use embedded_graphics::Drawable;
 use embedded_graphics::framebuffer::Framebuffer as Full;
 use embedded_graphics::geometry::{AnchorPoint, AngleUnit};
-use embedded_graphics::image::{GetPixel, Image, ImageDrawableExt, ImageRawBE};
+use embedded_graphics::image::{GetPixel, Image, ImageDrawableExt, ImageRaw, ImageRawBE};
 use embedded_graphics::mono_font::{MonoTextStyle, MonoTextStyleBuilder, ascii};
-use embedded_graphics::pixelcolor::{Gray8, Rgb565, Rgb888, WebColors, raw::LittleEndian};
+use embedded_graphics::pixelcolor::{BinaryColor, Gray8, Rgb565, Rgb888, WebColors, raw::LittleEndian};
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::*;
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyleBuilder};
 use reference::rng::Rng;
 use support::strips;
-use zstrip::fragment::{NoDepth, PixelFormat};
+use zstrip::fragment::{DepthState, NoDepth, PixelFormat};
 use zstrip::output::{Buffers, Canvas, FrameSlice, FramebufferRenderer, Renderer, Rgb565Be, StripPixels};
 
 const WIDTH: usize = 96;
@@ -214,6 +214,46 @@ fn drawing_in_strips_is_the_drawing_in_a_framebuffer() {
     everything!(Rgb565Be, Rgb565);
     everything!(Rgb888, Rgb888);
     everything!(Gray8, Gray8);
+}
+
+#[test]
+fn images_are_drawn_by_the_part_in_the_strip() {
+    let bytes = image_bytes();
+    let raw = ImageRawBE::<Rgb888>::new(&bytes, 24);
+    let sub = raw.sub_image(&Rectangle::new(Point::new(5, 3), Size::new(13, 11)));
+    let bits = ImageRaw::<BinaryColor>::new(&bytes, 21);
+    let places: Vec<_> = {
+        let mut rng = Rng::new(8);
+        let near = (0..25).map(|_| Point::new(rng.between(-30, 100), rng.between(-30, 75)));
+        near.chain([Point::new(i32::MIN, 0), Point::new(3, i32::MAX), Point::new(i32::MAX, i32::MIN)]).collect()
+    };
+    for (rows, deep) in [(1, false), (7, false), (16, true), (HEIGHT, false)] {
+        let mut full = FullScreen::<Rgb565>::new();
+        let (picture, _) = strips::<Rgb565>(SCREEN, rows, 0, Rgb565::BLACK, |scene| {
+            for (k, at) in places.iter().enumerate() {
+                // Nearer and nearer, so that the last one shows at a depth, too.
+                let mut canvas =
+                    scene.at_depth_with(1000 - k as u16, if deep { DepthState::LESS } else { DepthState::OFF });
+                match k % 3 {
+                    0 => canvas.draw_image(&raw, *at),
+                    1 => canvas.draw_image(&sub, *at),
+                    _ => canvas.draw_image(&bits, *at),
+                }
+            }
+        });
+        for (k, at) in places.iter().take(25).enumerate() {
+            let Ok(()) = match k % 3 {
+                0 => Image::new(&raw, *at).draw(&mut full.color_converted()),
+                1 => Image::new(&sub, *at).draw(&mut full.color_converted()),
+                _ => Image::new(&bits, *at).draw(&mut full.color_converted()),
+            };
+        }
+        for (k, raw) in picture.iter().enumerate() {
+            let at = Point::new((k % WIDTH) as i32, (k / WIDTH) as i32);
+            assert_eq!(Some(Rgb565::to_color(*raw)), full.pixel(at), "{at:?}, {rows} rows, deep: {deep}");
+        }
+        assert!(picture.iter().filter(|p| **p != 0).count() > 1000, "{rows} rows: the picture is empty");
+    }
 }
 
 #[test]

@@ -270,11 +270,7 @@ fn nothing_is_drawn_while_recording() {
         (walks.get(), framebuffer.spans, colors.get())
     };
     let (walks, spans, colors) = frame(0);
-    assert_eq!(
-        (walks, spans, colors),
-        (1, 10 + 11, 200),
-        "directly: ten rows, and ten more beside the first row of all"
-    );
+    assert_eq!((walks, spans, colors), (1, 20, 200), "directly: ten rows for the area, and for the pixels ten more");
     assert_eq!(frame(100), (2, spans, colors), "recorded and replayed: only the second walk draws");
 }
 

@@ -99,7 +99,7 @@ fn note<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, mvp: &Project
     let point = scene.project(at(600, 0, 0), mvp);
     let mut overlay = scene.overlay();
     if let Some(place) = point {
-        let line = Line::new(Point::new(68, 18), place.pixel());
+        let line = Line::new(Point::new(79, 18), place.pixel());
         overlay.draw(&line.into_styled(PrimitiveStyle::with_stroke(Rgb565::new(20, 40, 20), 1)));
         overlay.draw(&Circle::with_center(place.pixel(), 5).into_styled(PrimitiveStyle::with_fill(Rgb565::WHITE)));
     }

@@ -8,9 +8,12 @@ use super::Framebuffer;
 use crate::fragment::{DepthTest, MAX_SPAN, PixelFormat, fill};
 use crate::raster::PixelRect;
 use core::convert::Infallible;
+use core::marker::PhantomData;
 use core::ops::Range;
 use embedded_graphics_core::draw_target::DrawTarget;
-use embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Size};
+use embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Point, Size};
+use embedded_graphics_core::image::ImageDrawable;
+use embedded_graphics_core::pixelcolor::PixelColor;
 use embedded_graphics_core::primitives::Rectangle;
 use embedded_graphics_core::{Drawable, Pixel};
 
@@ -81,6 +84,62 @@ impl<'c, F: Framebuffer, D: DepthTest> Canvas<'c, F, D> {
             let Ok(_) = drawable.draw(&mut part);
         }
     }
+
+    /// Draws an image with its corner at `top_left`, and of it only the part that is in the strip: embedded-graphics' own
+    /// `Image` walks through all that is above. Colours are converted where they are of another type.
+    pub fn draw_image<T: ImageDrawable<Color: Into<Color<F>>>>(&mut self, image: &T, top_left: Point) {
+        let area = pixels(&Rectangle::new(top_left, image.size()));
+        let part = self.clip.intersection(&area);
+        if part.is_empty() {
+            return;
+        }
+        let corner = Point::new(part.x.start, part.y.start);
+        let size = Size::new((part.x.end - part.x.start) as u32, (part.y.end - part.y.start) as u32);
+        let offset = Point::new(corner.x.wrapping_sub(top_left.x), corner.y.wrapping_sub(top_left.y));
+        let mut moved = Moved { canvas: self, origin: corner, color: PhantomData };
+        let Ok(()) = image.draw_sub_image(&mut moved, &Rectangle::new(offset, size));
+    }
+}
+
+/// A canvas with its origin elsewhere and its colours converted: what images draw on.
+struct Moved<'m, 'c, F, D, C> {
+    canvas: &'m mut Canvas<'c, F, D>,
+    origin: Point,
+    color: PhantomData<C>,
+}
+
+impl<F: Framebuffer, D: DepthTest, C> Dimensions for Moved<'_, '_, F, D, C> {
+    fn bounding_box(&self) -> Rectangle {
+        self.moved(&self.canvas.bounding_box(), Point::new(self.origin.x.wrapping_neg(), self.origin.y.wrapping_neg()))
+    }
+}
+
+impl<F, D, C> Moved<'_, '_, F, D, C> {
+    fn moved(&self, area: &Rectangle, by: Point) -> Rectangle {
+        Rectangle::new(plus(area.top_left, by), area.size)
+    }
+}
+
+fn plus(a: Point, b: Point) -> Point {
+    Point::new(a.x.wrapping_add(b.x), a.y.wrapping_add(b.y))
+}
+
+impl<F: Framebuffer, D: DepthTest, C: PixelColor + Into<Color<F>>> DrawTarget for Moved<'_, '_, F, D, C> {
+    type Color = C;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<C>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        let origin = self.origin;
+        self.canvas.draw_iter(pixels.into_iter().map(|Pixel(at, color)| Pixel(plus(at, origin), color.into())))
+    }
+
+    fn fill_contiguous<I: IntoIterator<Item = C>>(&mut self, area: &Rectangle, colors: I) -> Result<(), Infallible> {
+        self.canvas.fill_contiguous(&self.moved(area, self.origin), colors.into_iter().map(Into::into))
+    }
+
+    fn fill_solid(&mut self, area: &Rectangle, color: C) -> Result<(), Infallible> {
+        self.canvas.fill_solid(&self.moved(area, self.origin), color.into())
+    }
 }
 
 /// The pixels of an area; cut at what 32 bits hold.
@@ -92,25 +151,23 @@ fn pixels(area: &Rectangle) -> PixelRect {
     }
 }
 
-impl<F: Framebuffer, D: DepthTest> Canvas<'_, F, D> {
-    /// Columns of a row, which lie on the screen: the pixels that there are, and what is stored of their depths; none
-    /// outside of the rows that are drawn, and no depths where there is no depth buffer.
-    #[inline(never)]
-    fn row<'r>(
-        &'r mut self,
-        nothing: &'r mut [(); MAX_SPAN],
-        y: i32,
-        columns: &Range<i32>,
-    ) -> (&'r mut [Raw<F>], &'r mut [D::Stored]) {
-        match &mut self.framebuffer {
-            Some(framebuffer) if self.clip.y.contains(&y) => {
-                let (column, length) = (columns.start as usize, columns.len());
-                let row = (y - self.first_row) as usize * usize::from(self.screen.0);
-                (framebuffer.span(y as u32, column, length), D::stored(self.depth, nothing, row + column, length))
-            }
-            _ => Default::default(),
-        }
-    }
+/// Columns of a row of the strip: the pixels that there are.
+#[inline(never)]
+fn colors<'r, F: Framebuffer>(framebuffer: &'r mut F, y: i32, columns: &Range<i32>) -> &'r mut [Raw<F>] {
+    framebuffer.span(y as u32, columns.start as usize, (columns.end - columns.start) as usize)
+}
+
+/// What is stored of their depths; nothing where there is no depth buffer.
+#[inline(always)]
+fn depths<'r, D: DepthTest>(
+    depth: &'r mut [u16],
+    nothing: &'r mut [(); MAX_SPAN],
+    row: i32,
+    width: u16,
+    columns: &Range<i32>,
+) -> &'r mut [D::Stored] {
+    let start = (row as usize).wrapping_mul(usize::from(width)).wrapping_add(columns.start as usize);
+    D::stored(depth, nothing, start, (columns.end - columns.start) as usize)
 }
 
 /// Tests a depth against the stored one, and leaves it if it passes.
@@ -129,22 +186,26 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
 
     /// Pixels that follow one another in a row cost two comparisons each, and a row is looked up once.
     fn draw_iter<I: IntoIterator<Item = Pixel<Self::Color>>>(&mut self, pixels: I) -> Result<(), Infallible> {
-        if self.clip.is_empty() {
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test } = self else {
             return Ok(());
-        }
-        let (test, z, columns) = (self.test, self.z, self.clip.x.clone());
+        };
+        let (left, top, height) = (clip.x.start, clip.y.start, (clip.y.end - clip.y.start).max(0) as u32);
         let mut nothing = [(); MAX_SPAN];
-        let mut y = self.clip.y.start;
-        let (mut colors, mut depths) = self.row(&mut nothing, y, &columns);
+        let mut y = i32::MIN;
+        let (mut row, mut stored): (&mut [_], &mut [_]) = Default::default();
         for Pixel(point, color) in pixels {
             if point.y != y {
+                if point.y.wrapping_sub(top) as u32 >= height {
+                    continue;
+                }
                 y = point.y;
-                (colors, depths) = self.row(&mut nothing, y, &columns);
+                row = colors(*framebuffer, y, &clip.x);
+                stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &clip.x);
             }
             // What is left of the columns wraps to the far right.
-            let column = point.x.wrapping_sub(columns.start) as usize;
-            if let Some(pixel) = colors.get_mut(column) {
-                if !D::ENABLED || depths.get_mut(column).is_none_or(|stored| passes(test, z, stored)) {
+            let column = point.x.wrapping_sub(left) as usize;
+            if let Some(pixel) = row.get_mut(column) {
+                if !D::ENABLED || stored.get_mut(column).is_none_or(|stored| passes(*test, *z, stored)) {
                     *pixel = F::Format::from_color(color);
                 }
             }
@@ -152,33 +213,36 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
         Ok(())
     }
 
-    /// Colours of pixels that are not drawn are passed over by `Iterator::nth`, which most images have a short way for.
+    /// Colours of pixels that are not drawn are passed over by `Iterator::nth`.
     fn fill_contiguous<I: IntoIterator<Item = Self::Color>>(
         &mut self,
         area: &Rectangle,
-        colors: I,
+        colors_of_all: I,
     ) -> Result<(), Infallible> {
         let all = pixels(area);
         let part = self.clip.intersection(&all);
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
+            return Ok(());
+        };
         if part.is_empty() {
             return Ok(());
         }
-        let (test, z, width) = (self.test, self.z, area.size.width as usize);
+        let width = area.size.width as usize;
         let mut nothing = [(); MAX_SPAN];
-        let mut colors = colors.into_iter();
+        let mut new = colors_of_all.into_iter();
         let rows_above = part.y.start.wrapping_sub(all.y.start) as usize;
         let columns_left = part.x.start.wrapping_sub(all.x.start) as usize;
         let mut skip = rows_above.saturating_mul(width).saturating_add(columns_left);
         for y in part.y {
-            if skip > 0 && colors.nth(skip - 1).is_none() {
+            if skip > 0 && new.nth(skip - 1).is_none() {
                 return Ok(());
             }
-            let (row, depths) = self.row(&mut nothing, y, &part.x);
-            // Less than the whole area's width has been drawn, or all of it.
+            let row = colors(*framebuffer, y, &part.x);
+            // Less than the whole area's width is drawn, or all of it.
             skip = width.wrapping_sub(row.len());
-            let mut depths = depths.iter_mut();
-            for (pixel, color) in row.iter_mut().zip(&mut colors) {
-                if !D::ENABLED || depths.next().is_none_or(|stored| passes(test, z, stored)) {
+            let mut stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x).iter_mut();
+            for (pixel, color) in row.iter_mut().zip(&mut new) {
+                if !D::ENABLED || stored.next().is_none_or(|stored| passes(*test, *z, stored)) {
                     *pixel = F::Format::from_color(color);
                 }
             }
@@ -189,16 +253,20 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
     #[inline(never)]
     fn fill_solid(&mut self, area: &Rectangle, color: Self::Color) -> Result<(), Infallible> {
         let part = self.clip.intersection(&pixels(area));
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
+            return Ok(());
+        };
         if part.is_empty() {
             return Ok(());
         }
-        let (test, z, value) = (self.test, self.z, F::Format::from_color(color));
+        let value = F::Format::from_color(color);
         let mut nothing = [(); MAX_SPAN];
         for y in part.y {
-            let (row, depths) = self.row(&mut nothing, y, &part.x);
-            if D::ENABLED && !depths.is_empty() {
-                for (pixel, stored) in row.iter_mut().zip(depths) {
-                    if passes(test, z, stored) {
+            let row = colors(*framebuffer, y, &part.x);
+            let stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x);
+            if D::ENABLED && !stored.is_empty() {
+                for (pixel, stored) in row.iter_mut().zip(stored) {
+                    if passes(*test, *z, stored) {
                         *pixel = value;
                     }
                 }
