@@ -26,13 +26,13 @@ mod counting {
     use embedded_graphics::text::{Baseline, Text};
     use semihosting::println;
     use zstrip::fragment::DepthTest;
-    use zstrip::output::{Buffers, Canvas, Renderer, Strip, StripPixels};
+    use zstrip::output::{Buffers, Overlay, Renderer, Strip, StripPixels};
 
     const WIDTH: usize = 320;
     const HEIGHT: usize = 240;
     type Full = Framebuffer<Rgb565, RawU16, LittleEndian, WIDTH, HEIGHT, { buffer_size::<Rgb565>(WIDTH, HEIGHT) }>;
 
-    /// Takes drawables: a framebuffer as they are, a canvas by their bounding boxes, and images by what is in the strip.
+    /// Takes drawables: a framebuffer as they are, an overlay by their bounding boxes, and images by what is in the strip.
     trait Put {
         fn put<T: Drawable<Color = Rgb565> + Dimensions>(&mut self, drawable: &T);
         fn put_image<T: ImageDrawable<Color = Rgb565>>(&mut self, image: &T, top_left: Point);
@@ -47,7 +47,7 @@ mod counting {
         }
     }
 
-    impl<D: DepthTest> Put for Canvas<'_, Strip<'_, Rgb565>, D> {
+    impl<D: DepthTest> Put for Overlay<'_, Strip<'_, Rgb565>, D> {
         fn put<T: Drawable<Color = Rgb565> + Dimensions>(&mut self, drawable: &T) {
             self.draw(drawable);
         }

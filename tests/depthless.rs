@@ -7,12 +7,14 @@ mod support;
 
 use reference::rng::Rng;
 use support::{Soup, difference, strips};
+use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
+use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::fragment::{DepthState, Flat, Gouraud, PixelFormat, Shader};
-use zstrip::geometry::Mesh;
+use zstrip::geometry::{Joined, Lines, Mesh, Points};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::output::{Buffers, FrameSlice, FramebufferRenderer, RamBudget, Renderer, Strip, StripPixels};
-use zstrip::{Cull, Framebuffer, Scene, State};
+use zstrip::{Cull, Dashed, Framebuffer, Scene, ScreenPoint, Smooth, State, Thin};
 
 const SCREEN: (u16, u16) = (77, 50);
 
@@ -43,11 +45,25 @@ where
     Flat: Shader<F::Format>,
 {
     let state = State { cull: Cull::None, depth, ..State::DEFAULT };
-    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+    let mvp = &Projective::IDENTITY;
+    scene.draw_with(state, mesh, mvp, &Gouraud::colors_unlit());
     let turned = Projective::from(Affine::rotation_z(Angle(9999)));
     scene.draw_with(state, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
     let turned = Projective::from(Affine::rotation_z(Angle(40_000)));
     scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
+    // Lines, points and shapes on the screen.
+    let data = *mesh.data();
+    let lines = Lines::new(Joined::Strip, data).expect("vertices are lines");
+    scene.draw_lines_with(state, &lines, mvp, &Gouraud::colors_unlit(), &Thin);
+    scene.draw_lines_with(state, &lines, mvp, &Flat::unlit(Rgb888::CSS_TEAL), &Dashed(0xF0F0_3333));
+    scene.draw_lines_with(state, &lines, &turned, &Flat::unlit(Rgb888::CSS_GOLD), &Smooth::px(2));
+    let points = Points::new(data).expect("vertices are points");
+    scene.draw_points(state, &points, &turned, &Gouraud::colors_unlit(), 700);
+    let mut canvas = scene.canvas();
+    canvas.set_depth(9000, depth);
+    canvas.rectangle(&Rectangle::new(Point::new(50, 3), Size::new(9, 40)), Rgb888::CSS_PLUM);
+    canvas.line(ScreenPoint::center(-3, 40), ScreenPoint::center(70, 9), Rgb888::WHITE);
+    canvas.polygon(&[(4, 30), (20, 32), (9, 49)].map(|(x, y)| ScreenPoint::corner(x, y)), Rgb888::CSS_PERU);
 }
 
 fn check<P: PixelFormat>(background: P::Color)

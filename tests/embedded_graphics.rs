@@ -15,7 +15,7 @@ use embedded_graphics::text::{Alignment, Baseline, Text, TextStyleBuilder};
 use reference::rng::Rng;
 use support::strips;
 use zstrip::fragment::{DepthState, NoDepth, PixelFormat};
-use zstrip::output::{Buffers, Canvas, FrameSlice, FramebufferRenderer, Renderer, Rgb565Be, StripPixels};
+use zstrip::output::{Buffers, FrameSlice, FramebufferRenderer, Overlay, Renderer, Rgb565Be, StripPixels};
 
 const WIDTH: usize = 96;
 const HEIGHT: usize = 70;
@@ -39,7 +39,7 @@ impl<D: DrawTarget<Error = core::convert::Infallible>> Put<D::Color> for AsItIs<
     }
 }
 
-struct Cut<'t, 'c, F>(&'t mut Canvas<'c, F, NoDepth>);
+struct Cut<'t, 'c, F>(&'t mut Overlay<'c, F, NoDepth>);
 
 impl<F: zstrip::Framebuffer> Put<<F::Format as PixelFormat>::Color> for Cut<'_, '_, F> {
     fn put<T: Drawable<Color = <F::Format as PixelFormat>::Color> + Dimensions>(&mut self, drawable: &T) {
@@ -171,7 +171,7 @@ macro_rules! check {
                 check(&picture, &format!("{what}, cut"));
                 assert_eq!((stats.draws, stats.drawn), (0, 0), "nothing of it is counted");
             }
-            // Without a depth buffer, where a canvas at a depth is an overlay.
+            // Without a depth buffer, where an overlay at a depth is an overlay.
             let mut color = vec![Default::default(); WIDTH * rows];
             let buffers = Buffers::<$format> { color: &mut color, depth: &mut [], records: &mut [] };
             let mut renderer = Renderer::new(SCREEN, buffers).expect("depth may be empty");
@@ -232,12 +232,12 @@ fn images_are_drawn_by_the_part_in_the_strip() {
         let (picture, _) = strips::<Rgb565>(SCREEN, rows, 0, Rgb565::BLACK, |scene| {
             for (k, at) in places.iter().enumerate() {
                 // Nearer and nearer, so that the last one shows at a depth, too.
-                let mut canvas =
+                let mut overlay =
                     scene.at_depth_with(1000 - k as u16, if deep { DepthState::LESS } else { DepthState::OFF });
                 match k % 3 {
-                    0 => canvas.draw_image(&raw, *at),
-                    1 => canvas.draw_image(&sub, *at),
-                    _ => canvas.draw_image(&bits, *at),
+                    0 => overlay.draw_image(&raw, *at),
+                    1 => overlay.draw_image(&sub, *at),
+                    _ => overlay.draw_image(&bits, *at),
                 }
             }
         });
@@ -259,6 +259,6 @@ fn images_are_drawn_by_the_part_in_the_strip() {
 #[test]
 fn pixels_in_no_order_and_far_away_are_those_in_a_framebuffer() {
     let colors = [Rgb565::CSS_TAN, Rgb565::CSS_TEAL, Rgb565::WHITE];
-    let plain = |canvas: &mut Canvas<'_, zstrip::output::Strip<'_, Rgb565>, _>| sprinkle(canvas, &colors);
+    let plain = |overlay: &mut Overlay<'_, zstrip::output::Strip<'_, Rgb565>, _>| sprinkle(overlay, &colors);
     check!(Rgb565, Rgb565, |target: &mut _| sprinkle(target, &colors), plain);
 }

@@ -152,7 +152,7 @@ fn labels_among_meshes_are_the_same_in_any_strips() {
             let mut rng = Rng::new(seed);
             for _ in 0..3 {
                 rng.next_u64();
-                // The same random numbers, on a canvas of another scene's size: nothing.
+                // The same random numbers, on an overlay of another scene's size: nothing.
                 areas(
                     &mut Model { colors: vec![0; PIXELS], depths: vec![0; PIXELS], z: 0, state: DepthState::OFF },
                     &mut rng,
@@ -170,7 +170,7 @@ fn labels_among_meshes_are_the_same_in_any_strips() {
             let found = difference(&picture, &expected, SCREEN.0);
             assert_eq!(found, None, "seed {seed}, {rows} rows, {records} records");
             if (rows, records) == (7, 20_000) {
-                assert_eq!(stats, without, "seed {seed}: canvases change no counter");
+                assert_eq!(stats, without, "seed {seed}: overlays change no counter");
             }
         }
     }
@@ -257,14 +257,14 @@ fn nothing_is_drawn_while_recording() {
         let mut renderer = FramebufferRenderer::new(SCREEN, &mut depth, &mut records).expect("a renderer");
         let stats = renderer.frame(&mut framebuffer, None, |scene| {
             walks.set(walks.get() + 1);
-            let mut canvas = scene.at_depth(7);
+            let mut overlay = scene.at_depth(7);
             let area = Rectangle::new(Point::new(3, 4), Size::new(20, 10));
-            let Ok(()) = canvas.fill_solid(&area, Rgb565::RED);
+            let Ok(()) = overlay.fill_solid(&area, Rgb565::RED);
             let counted = area.points().map(|at| {
                 colors.set(colors.get() + 1);
                 Pixel(at, Rgb565::RED)
             });
-            let Ok(()) = canvas.draw_iter(counted);
+            let Ok(()) = overlay.draw_iter(counted);
         });
         assert_eq!(stats.expect("a frame").walks, walks.get());
         (walks.get(), framebuffer.spans, colors.get())
@@ -275,7 +275,7 @@ fn nothing_is_drawn_while_recording() {
 }
 
 #[test]
-fn canvas_covers_the_screen_in_every_strip_and_says_what_is_visible() {
+fn overlay_covers_the_screen_in_every_strip_and_says_what_is_visible() {
     let strip = Cell::new(0);
     let (mut color, mut depth) = (vec![0; 64 * 10], vec![0; 64 * 10]);
     let buffers = Buffers::<Rgb565> { color: &mut color, depth: &mut depth, records: &mut [] };
@@ -284,17 +284,17 @@ fn canvas_covers_the_screen_in_every_strip_and_says_what_is_visible() {
     while frame
         .next_strip(|scene| {
             let top = 10 * strip.get();
-            let canvas = scene.overlay();
-            assert_eq!(canvas.bounding_box(), Rectangle::new(Point::zero(), Size::new(64, 48)));
+            let overlay = scene.overlay();
+            assert_eq!(overlay.bounding_box(), Rectangle::new(Point::zero(), Size::new(64, 48)));
             for y in -5..60 {
                 for (x, inside) in [(-3, false), (-2, true), (63, true), (64, false)] {
-                    let visible = canvas.is_visible(&Rectangle::new(Point::new(x, y), Size::new(3, 2)));
+                    let visible = overlay.is_visible(&Rectangle::new(Point::new(x, y), Size::new(3, 2)));
                     assert_eq!(visible, inside && y + 2 > top && y < (top + 10).min(48), "({x}, {y}) at {top}");
                 }
             }
-            assert!(!canvas.is_visible(&Rectangle::new(Point::new(5, top), Size::new(0, 5))));
+            assert!(!overlay.is_visible(&Rectangle::new(Point::new(5, top), Size::new(0, 5))));
             let all = Rectangle::new(Point::new(i32::MIN, i32::MIN), Size::new(u32::MAX, u32::MAX));
-            assert!(canvas.is_visible(&all));
+            assert!(overlay.is_visible(&all));
         })
         .expect("a strip")
         .is_some()

@@ -10,10 +10,10 @@ use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBui
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::fragment::NoDepth;
 use zstrip::math::Angle;
-use zstrip::output::Canvas;
+use zstrip::output::Overlay;
 use zstrip::{Framebuffer, Scene};
 
-type On<'c, F> = Canvas<'c, F, NoDepth>;
+type On<'c, F> = Overlay<'c, F, NoDepth>;
 
 const BACK: Rgb565 = Rgb565::new(1, 3, 3);
 const BAR: Rgb565 = Rgb565::new(3, 9, 8);
@@ -26,19 +26,19 @@ const BLUE: Rgb565 = Rgb565::new(8, 40, 30);
 
 /// Draws the instruments on a screen of 320×240; `turn` is the time.
 pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let canvas = &mut scene.overlay();
-    let Ok(()) = canvas.clear(BACK);
-    header(canvas, turn);
+    let overlay = &mut scene.overlay();
+    let Ok(()) = overlay.clear(BACK);
+    header(overlay, turn);
     let speed = 118 + wave(turn, 1, 60) + wave(turn, 5, 14);
-    gauge(canvas, Point::new(74, 100), "km/h", speed, 200);
+    gauge(overlay, Point::new(74, 100), "km/h", speed, 200);
     let power = 47 + wave(turn + Angle(9000), 2, 38);
-    gauge(canvas, Point::new(246, 100), "kW", power, 100);
-    canvas.draw(&Image::new(&ImageRawLE::<Rgb565>::new(&WEATHER, WEATHER_SIZE as u32), Point::new(140, 34)));
-    label(canvas, Point::new(160, 84), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, "19 C");
-    plot(canvas, Rectangle::new(Point::new(10, 176), Size::new(186, 54)), turn);
+    gauge(overlay, Point::new(246, 100), "kW", power, 100);
+    overlay.draw(&Image::new(&ImageRawLE::<Rgb565>::new(&WEATHER, WEATHER_SIZE as u32), Point::new(140, 34)));
+    label(overlay, Point::new(160, 84), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, "19 C");
+    plot(overlay, Rectangle::new(Point::new(10, 176), Size::new(186, 54)), turn);
     for (k, (name, color)) in [("cell", GREEN), ("coil", AMBER), ("oil", BLUE)].into_iter().enumerate() {
         let share = 50 + wave(turn + Angle(k as u16 * 20_000), 1 + k as u16, 45);
-        bar(canvas, Point::new(206, 178 + 18 * k as i32), name, share, color);
+        bar(overlay, Point::new(206, 178 + 18 * k as i32), name, share, color);
     }
 }
 
@@ -56,7 +56,7 @@ fn around(center: Point, angle: Angle, radius: i32) -> Point {
 }
 
 fn label<F: Framebuffer<Format = Rgb565>>(
-    canvas: &mut On<'_, F>,
+    overlay: &mut On<'_, F>,
     at: Point,
     font: &MonoFont<'_>,
     color: Rgb565,
@@ -64,7 +64,7 @@ fn label<F: Framebuffer<Format = Rgb565>>(
     text: &str,
 ) {
     let style: TextStyle = TextStyleBuilder::new().alignment(alignment).baseline(Baseline::Middle).build();
-    canvas.draw(&Text::with_text_style(text, at, MonoTextStyle::new(font, color), style));
+    overlay.draw(&Text::with_text_style(text, at, MonoTextStyle::new(font, color), style));
 }
 
 /// Decimal digits of a number below 1000, right-aligned.
@@ -81,60 +81,60 @@ fn digits(number: i32, text: &mut [u8; 3]) -> &str {
     text.get(first..).and_then(|digits| core::str::from_utf8(digits).ok()).unwrap_or("")
 }
 
-fn header<F: Framebuffer<Format = Rgb565>>(canvas: &mut On<'_, F>, turn: Angle) {
-    let Ok(()) = canvas.fill_solid(&Rectangle::new(Point::zero(), Size::new(320, 22)), BAR);
-    label(canvas, Point::new(8, 11), &ascii::FONT_7X13_BOLD, TEXT, Alignment::Left, "zstrip dashboard");
+fn header<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, turn: Angle) {
+    let Ok(()) = overlay.fill_solid(&Rectangle::new(Point::zero(), Size::new(320, 22)), BAR);
+    label(overlay, Point::new(8, 11), &ascii::FONT_7X13_BOLD, TEXT, Alignment::Left, "zstrip dashboard");
     let minutes = (i32::from(turn.0) * 90) >> 16;
     let (mut hours, mut text) = ([0; 3], [0; 3]);
     let hours = digits(10 + minutes / 60, &mut hours);
-    label(canvas, Point::new(288, 11), &ascii::FONT_7X13, TEXT, Alignment::Right, hours);
-    label(canvas, Point::new(292, 10), &ascii::FONT_7X13, TEXT, Alignment::Center, ":");
+    label(overlay, Point::new(288, 11), &ascii::FONT_7X13, TEXT, Alignment::Right, hours);
+    label(overlay, Point::new(292, 10), &ascii::FONT_7X13, TEXT, Alignment::Center, ":");
     let text = digits(100 + minutes % 60, &mut text).get(1..).unwrap_or("");
-    label(canvas, Point::new(310, 11), &ascii::FONT_7X13, TEXT, Alignment::Right, text);
+    label(overlay, Point::new(310, 11), &ascii::FONT_7X13, TEXT, Alignment::Right, text);
 }
 
 /// A round instrument: 270 degrees from its lower left to its lower right.
-fn gauge<F: Framebuffer<Format = Rgb565>>(canvas: &mut On<'_, F>, center: Point, unit: &str, value: i32, full: u16) {
+fn gauge<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, center: Point, unit: &str, value: i32, full: u16) {
     const RADIUS: i32 = 64;
     let style = PrimitiveStyleBuilder::new().fill_color(BAR).stroke_color(DIM).stroke_width(3).build();
-    canvas.draw(&Circle::with_center(center, 2 * RADIUS as u32 + 1).into_styled(style));
+    overlay.draw(&Circle::with_center(center, 2 * RADIUS as u32 + 1).into_styled(style));
     let angle = |tenths: i32| Angle::from_degrees(-135 + 27 * tenths);
     for tenth in 0..=10 {
         let color = [GREEN, AMBER, RED][usize::from(tenth > 6) + usize::from(tenth > 8)];
         let (from, to) = (around(center, angle(tenth), RADIUS - 12), around(center, angle(tenth), RADIUS - 5));
-        canvas.draw(&Line::new(from, to).into_styled(PrimitiveStyle::with_stroke(color, 3)));
+        overlay.draw(&Line::new(from, to).into_styled(PrimitiveStyle::with_stroke(color, 3)));
         if tenth % 2 == 0 {
             let mut text = [0; 3];
             let text = digits(tenth * i32::from(full) / 10, &mut text);
             let at = around(center, angle(tenth), RADIUS - 23);
-            label(canvas, at, &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, text);
+            label(overlay, at, &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, text);
         }
     }
     let mut text = [0; 3];
     let text = digits(value, &mut text);
-    label(canvas, center + Point::new(0, 36), &ascii::FONT_10X20, TEXT, Alignment::Center, text);
-    label(canvas, center + Point::new(0, 52), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, unit);
+    label(overlay, center + Point::new(0, 36), &ascii::FONT_10X20, TEXT, Alignment::Center, text);
+    label(overlay, center + Point::new(0, 52), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, unit);
     // 270 degrees are three quarters of 65,536.
     let share = (value.clamp(0, i32::from(full)) << 16) / i32::from(full.max(1));
     let needle = Angle::from_degrees(-135) + Angle((share * 3 / 4) as u16);
     let quarter = Angle::from_degrees(90);
     let tip = around(center, needle, RADIUS - 14);
     let (left, right) = (around(center, needle + quarter, 4), around(center, needle - quarter, 4));
-    canvas.draw(&Triangle::new(tip, left, right).into_styled(PrimitiveStyle::with_fill(RED)));
-    canvas.draw(&Circle::with_center(center, 13).into_styled(PrimitiveStyle::with_fill(TEXT)));
-    canvas.draw(&Circle::with_center(center, 7).into_styled(PrimitiveStyle::with_fill(BAR)));
+    overlay.draw(&Triangle::new(tip, left, right).into_styled(PrimitiveStyle::with_fill(RED)));
+    overlay.draw(&Circle::with_center(center, 13).into_styled(PrimitiveStyle::with_fill(TEXT)));
+    overlay.draw(&Circle::with_center(center, 7).into_styled(PrimitiveStyle::with_fill(BAR)));
 }
 
 /// The last minutes of something that swings.
-fn plot<F: Framebuffer<Format = Rgb565>>(canvas: &mut On<'_, F>, area: Rectangle, turn: Angle) {
+fn plot<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, area: Rectangle, turn: Angle) {
     let frame = PrimitiveStyleBuilder::new().fill_color(BAR).stroke_color(DIM).stroke_width(1).build();
-    canvas.draw(&area.into_styled(frame));
+    overlay.draw(&area.into_styled(frame));
     let Point { x: left, y: top } = area.top_left;
     let (width, height) = (area.size.width as i32, area.size.height as i32);
     for k in 1..4 {
         let y = top + height * k / 4;
         let line = Line::new(Point::new(left + 1, y), Point::new(left + width - 2, y));
-        canvas.draw(&line.into_styled(PrimitiveStyle::with_stroke(DIM, 1)));
+        overlay.draw(&line.into_styled(PrimitiveStyle::with_stroke(DIM, 1)));
     }
     for (color, k, size) in [(BLUE, 3, 12), (AMBER, 2, 20)] {
         let mut points = [Point::zero(); 45];
@@ -144,20 +144,20 @@ fn plot<F: Framebuffer<Format = Rgb565>>(canvas: &mut On<'_, F>, area: Rectangle
             let y = wave(past, k, size) + wave(past, 7 * k, size / 5);
             *point = Point::new(left + 4 + 4 * n, top + height / 2 - y);
         }
-        canvas.draw(&Polyline::new(&points).into_styled(PrimitiveStyle::with_stroke(color, 2)));
+        overlay.draw(&Polyline::new(&points).into_styled(PrimitiveStyle::with_stroke(color, 2)));
     }
 }
 
 /// A bar of per cents with its name.
-fn bar<F: Framebuffer<Format = Rgb565>>(canvas: &mut On<'_, F>, at: Point, name: &str, share: i32, color: Rgb565) {
-    label(canvas, at + Point::new(0, 6), &ascii::FONT_6X10, DIM_TEXT, Alignment::Left, name);
+fn bar<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, at: Point, name: &str, share: i32, color: Rgb565) {
+    label(overlay, at + Point::new(0, 6), &ascii::FONT_6X10, DIM_TEXT, Alignment::Left, name);
     let corners = CornerRadii::new(Size::new_equal(4));
     let bar = |width: i32, color| {
         let area = Rectangle::new(at + Point::new(30, 1), Size::new(width as u32, 11));
         RoundedRectangle::new(area, corners).into_styled(PrimitiveStyle::with_fill(color))
     };
-    canvas.draw(&bar(74, BAR));
-    canvas.draw(&bar(8 + share.clamp(0, 100) * 66 / 100, color));
+    overlay.draw(&bar(74, BAR));
+    overlay.draw(&bar(8 + share.clamp(0, 100) * 66 / 100, color));
 }
 
 const WEATHER_SIZE: usize = 40;

@@ -3,9 +3,9 @@
 //! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
 #![allow(dead_code)] // each program uses its part
 
-pub mod canvas;
 pub mod dashboard;
 pub mod labels;
+pub mod overlay;
 pub mod polygons;
 pub mod soup;
 pub mod torus;
@@ -38,7 +38,7 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "cycle", draw: |scene, turn| cycle(scene, turn) },
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
-    SceneInfo { name: "canvas", draw: |scene, turn| canvas::draw(scene, turn) },
+    SceneInfo { name: "overlay", draw: |scene, turn| overlay::draw(scene, turn) },
     // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
     #[cfg(not(proof = "all"))]
     SceneInfo { name: "dashboard", draw: |scene, turn| dashboard::draw(scene, turn) },

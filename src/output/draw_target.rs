@@ -1,7 +1,7 @@
 //! 2-D drawing into the strip: an embedded-graphics target over whatever is being drawn just now.
 //!
 //! Its bounding box is the whole screen, so that what is drawn does not depend on strips; pixels outside of the current
-//! strip are left out. Areas are cut before their pixels are looked at, [`Canvas::draw`] leaves out what has no pixel in the
+//! strip are left out. Areas are cut before their pixels are looked at, [`Overlay::draw`] leaves out what has no pixel in the
 //! strip, and single pixels cost a comparison.
 
 use super::Framebuffer;
@@ -26,11 +26,11 @@ type Color<F> = <<F as Framebuffer>::Format as PixelFormat>::Color;
 ///
 /// While the closure is only recorded there are no pixels, and drawing does nothing.
 #[derive(Debug)]
-pub struct Canvas<'c, F, D> {
+pub struct Overlay<'o, F, D> {
     /// None while the closure is recorded.
-    framebuffer: Option<&'c mut F>,
+    framebuffer: Option<&'o mut F>,
     /// Depths of the strip's rows, one after the other; empty where there are none, so that every test passes.
-    depth: &'c mut [u16],
+    depth: &'o mut [u16],
     first_row: i32,
     screen: (u16, u16),
     /// Pixels that are drawn: never outside of the strip.
@@ -39,10 +39,10 @@ pub struct Canvas<'c, F, D> {
     test: D,
 }
 
-impl<'c, F: Framebuffer, D: DepthTest> Canvas<'c, F, D> {
+impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     /// Over `rows` of a screen.
     pub(crate) fn new(
-        target: Option<(&'c mut F, &'c mut [u16], Range<i32>)>,
+        target: Option<(&'o mut F, &'o mut [u16], Range<i32>)>,
         screen: (u16, u16),
         z: u16,
         test: D,
@@ -72,7 +72,7 @@ impl<'c, F: Framebuffer, D: DepthTest> Canvas<'c, F, D> {
         let area = drawable.bounding_box();
         if self.is_visible(&area) {
             let clip = self.clip.intersection(&pixels(&area));
-            let mut part = Canvas {
+            let mut part = Overlay {
                 framebuffer: self.framebuffer.as_deref_mut(),
                 depth: self.depth,
                 clip,
@@ -96,21 +96,21 @@ impl<'c, F: Framebuffer, D: DepthTest> Canvas<'c, F, D> {
         let corner = Point::new(part.x.start, part.y.start);
         let size = Size::new((part.x.end - part.x.start) as u32, (part.y.end - part.y.start) as u32);
         let offset = Point::new(corner.x.wrapping_sub(top_left.x), corner.y.wrapping_sub(top_left.y));
-        let mut moved = Moved { canvas: self, origin: corner, color: PhantomData };
+        let mut moved = Moved { overlay: self, origin: corner, color: PhantomData };
         let Ok(()) = image.draw_sub_image(&mut moved, &Rectangle::new(offset, size));
     }
 }
 
-/// A canvas with its origin elsewhere and its colours converted: what images draw on.
-struct Moved<'m, 'c, F, D, C> {
-    canvas: &'m mut Canvas<'c, F, D>,
+/// An overlay with its origin elsewhere and its colours converted: what images draw on.
+struct Moved<'m, 'o, F, D, C> {
+    overlay: &'m mut Overlay<'o, F, D>,
     origin: Point,
     color: PhantomData<C>,
 }
 
 impl<F: Framebuffer, D: DepthTest, C> Dimensions for Moved<'_, '_, F, D, C> {
     fn bounding_box(&self) -> Rectangle {
-        self.moved(&self.canvas.bounding_box(), Point::new(self.origin.x.wrapping_neg(), self.origin.y.wrapping_neg()))
+        self.moved(&self.overlay.bounding_box(), Point::new(self.origin.x.wrapping_neg(), self.origin.y.wrapping_neg()))
     }
 }
 
@@ -130,15 +130,15 @@ impl<F: Framebuffer, D: DepthTest, C: PixelColor + Into<Color<F>>> DrawTarget fo
 
     fn draw_iter<I: IntoIterator<Item = Pixel<C>>>(&mut self, pixels: I) -> Result<(), Infallible> {
         let origin = self.origin;
-        self.canvas.draw_iter(pixels.into_iter().map(|Pixel(at, color)| Pixel(plus(at, origin), color.into())))
+        self.overlay.draw_iter(pixels.into_iter().map(|Pixel(at, color)| Pixel(plus(at, origin), color.into())))
     }
 
     fn fill_contiguous<I: IntoIterator<Item = C>>(&mut self, area: &Rectangle, colors: I) -> Result<(), Infallible> {
-        self.canvas.fill_contiguous(&self.moved(area, self.origin), colors.into_iter().map(Into::into))
+        self.overlay.fill_contiguous(&self.moved(area, self.origin), colors.into_iter().map(Into::into))
     }
 
     fn fill_solid(&mut self, area: &Rectangle, color: C) -> Result<(), Infallible> {
-        self.canvas.fill_solid(&self.moved(area, self.origin), color.into())
+        self.overlay.fill_solid(&self.moved(area, self.origin), color.into())
     }
 }
 
@@ -180,7 +180,7 @@ fn passes<D: DepthTest>(test: D, z: u16, stored: &mut D::Stored) -> bool {
     passes
 }
 
-impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
+impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
     type Color = Color<F>;
     type Error = Infallible;
 
@@ -278,7 +278,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Canvas<'_, F, D> {
     }
 }
 
-impl<F, D> OriginDimensions for Canvas<'_, F, D> {
+impl<F, D> OriginDimensions for Overlay<'_, F, D> {
     fn size(&self) -> Size {
         Size::new(u32::from(self.screen.0), u32::from(self.screen.1))
     }
