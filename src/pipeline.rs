@@ -6,13 +6,13 @@
 
 use crate::fragment::{AnyDepth, Compare, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
 use crate::geometry::{
-    Bounds, BoundsNode, ClipVertex, Containment, Corner, DepthRange, Face, Frustum, Mesh, Outcode, Part, Placed,
-    Positions, ScreenVertex, Side, Transform, Varyings, VertexShader, Viewport, clip_triangle, place, project,
-    signed_area,
+    Bounds, BoundsNode, ClipVertex, Containment, Corner, Correction, DepthRange, Face, Frustum, Mesh, Outcode, Part,
+    Placed, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader, Viewport, clip_triangle, inverse_w,
+    place, project, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Slot, Stats};
-use crate::raster::{Edge, Gradients, PixelRect, pixel_rect, trapezoids};
+use crate::raster::{Edge, Gradients, PixelRect, homogenize, pixel_rect, trapezoids, widen};
 use core::ops::Range;
 
 /// Which faces are not drawn.
@@ -113,6 +113,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         const {
             assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
             assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
+            assert!(S::ZERO_BITS == 0 || S::Varyings::PERSPECTIVE == 0, "perspective takes all bits of varyings");
             assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
         };
         let draw = self.draws;
@@ -314,7 +315,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         };
         let slot = Slot::new(&placed);
         if self.cached {
-            let varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+            let varyings = self.vertex(index);
             self.scene.records.keep::<S>(index, slot, &varyings);
         }
         slot
@@ -327,6 +328,16 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         } else {
             self.transform.vertex(&self.mesh.data().positions, index)
         }
+    }
+
+    /// The varyings of a vertex, with 1 / w if they take it.
+    #[inline]
+    fn vertex(&self, index: usize) -> S::Varyings {
+        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+        if S::Varyings::PERSPECTIVE > 0 {
+            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
+        }
+        varyings
     }
 
     /// 4. Clipping, of a triangle with a vertex outside.
@@ -356,8 +367,12 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         });
         clip_triangle(&triangle, codes, part, |(vertex, varyings)| {
             if let Some(placed) = project(vertex) {
+                let mut varyings = *varyings;
+                if S::Varyings::PERSPECTIVE > 0 {
+                    varyings.set_inverse_w(inverse_w(vertex));
+                }
                 // There are no more corners than places.
-                let _ = fan.push((placed, *varyings));
+                let _ = fan.push((placed, varyings));
             }
         });
     }
@@ -416,7 +431,7 @@ impl<'s, 'a, 'm, F: Framebuffer, S: Shader<F::Format>> Assembly<'s, 'a, 'm, F, S
         if self.cached {
             return self.scene.records.varyings::<S>(index);
         }
-        rounded::<S>(&self.shader.vertex(&Corner::new(self.mesh, index)))
+        rounded::<S>(&self.vertex(index))
     }
 
     /// 5. Culling by winding, and of what covers no pixel: where the triangle can have pixels and which side it shows.
@@ -495,7 +510,15 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
     let depth =
         gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16).from_corner(gradients.origin());
     let (mut corner, mut dx, mut dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
+    let mut correction = <S::Varyings as Varyings>::Correction::NONE;
+    let homogeneous;
+    let mut varyings = varyings;
+    if S::Varyings::PERSPECTIVE > 0 {
+        (homogeneous, correction) = homogenize(varyings, v, screen);
+        varyings = &homogeneous;
+    }
     let values = varyings.each_ref().map(|v| v.as_ref());
+    widen(&gradients, &values, &mut correction);
     for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(dx.as_mut()).zip(dy.as_mut()).enumerate() {
         let values = values.map(|v| v.get(k).copied().unwrap_or(0) >> S::ZERO_BITS);
         let plane = gradients.plane(values, S::ZERO_BITS).from_corner(gradients.origin());
@@ -508,7 +531,7 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
         dz_dy: depth.dy,
         varyings: corner,
         d_dy: dy,
-        steps: Steps { dz_dx: depth.dx, d_dx: dx, words, side: state.side(area) },
+        steps: Steps { dz_dx: depth.dx, d_dx: dx, words, side: state.side(area), correction },
     };
 
     // 9. Spans; 10, 11: depth test and fragments, in a loop of its own for each kind of test.
@@ -526,7 +549,7 @@ fn rasterize<F: Framebuffer, S: Shader<F::Format>>(
 }
 
 /// What is interpolated over a triangle: values at the screen's corner and their changes, all modulo 2³².
-struct Surface<V> {
+struct Surface<V: Varyings> {
     z: u32,
     dz_dy: i32,
     varyings: V,

@@ -4,6 +4,7 @@ mod depth;
 mod fill;
 mod flat;
 mod gouraud;
+mod perspective;
 mod pixel;
 mod shader;
 
@@ -11,5 +12,6 @@ pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
 pub use fill::fill;
 pub use flat::Flat;
 pub use gouraud::Gouraud;
+pub use perspective::Corrected;
 pub use pixel::PixelFormat;
 pub use shader::{Fragment, Fragments, Shader, Steps};

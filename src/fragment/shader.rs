@@ -1,7 +1,8 @@
 //! The fragment stage's seam, and the loop over the pixels of a span.
 
+use super::perspective::corrected_fragments;
 use super::{DepthTest, PixelFormat};
-use crate::geometry::{Side, VertexShader};
+use crate::geometry::{Side, Varyings, VertexShader};
 
 /// A fragment that passed the depth test: what the fragment stage sees of it.
 #[derive(Clone, Copy, Debug)]
@@ -20,14 +21,14 @@ pub struct Fragment<'a, V> {
 
 /// The pixels of a span and everything that is interpolated along it.
 #[derive(Debug)]
-pub struct Fragments<'a, P: PixelFormat, V> {
+pub struct Fragments<'a, P: PixelFormat, V: Varyings> {
     /// Colours, to be written where the depth test passes.
     pub color: &'a mut [P::Raw],
     /// Stored depths, as many.
     pub depth: &'a mut [u16],
     /// Depth at the first pixel, 16.16, with the half that rounds it already added.
     pub z: u32,
-    /// Varyings at the first pixel.
+    /// Varyings at the first pixel; perspective-correct ones as what is linear on the screen, for [`Corrected`](super::Corrected).
     pub varyings: V,
     /// How depth and varyings change.
     pub steps: &'a Steps<V>,
@@ -37,11 +38,13 @@ pub struct Fragments<'a, P: PixelFormat, V> {
 
 /// What all spans of a triangle share.
 #[derive(Clone, Copy, Debug)]
-pub struct Steps<V> {
+pub struct Steps<V: Varyings> {
     /// Change of depth a pixel, modulo 2³².
     pub dz_dx: i32,
     /// Change of the varyings a pixel, modulo 2³².
     pub d_dx: V,
+    /// What to make of perspective-correct ones.
+    pub correction: V::Correction,
     /// What [`Shader::prepare`] made of them.
     pub words: [u32; 2],
     /// Which side of the triangle is seen.
@@ -52,6 +55,11 @@ pub struct Steps<V> {
 ///
 /// A shader is compiled into the pixel loop; nothing is called indirectly.
 pub trait Shader<P: PixelFormat>: VertexShader {
+    /// For how many pixels perspective-correct varyings are taken as linear: 1 divides at each pixel; 4, 8, 16 or 32 at
+    /// every so many of them and at both ends of a span, which is faster, and off by little: see
+    /// [`Perspective`](crate::geometry::Perspective).
+    const STEP: usize = 1;
+
     /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
 
@@ -79,6 +87,9 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     span: Fragments<'_, P, S::Varyings>,
     test: D,
 ) {
+    if S::Varyings::PERSPECTIVE > 0 {
+        return corrected_fragments(shader, face, span, test);
+    }
     let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
     let side = steps.side;
     for (color, stored) in color.iter_mut().zip(depth) {

@@ -7,6 +7,7 @@ mod light;
 mod mesh;
 mod project;
 mod transform;
+mod varyings;
 mod vertex;
 mod viewport;
 
@@ -16,7 +17,8 @@ pub use frustum::{Containment, Frustum, Plane};
 pub use light::{Light, Lit, NORMAL_ONE};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
-pub use project::{ScreenVertex, project, signed_area};
+pub use project::{ScreenVertex, inverse_w, project, signed_area};
 pub use transform::{Placed, Transform, place};
-pub use vertex::{Corner, Face, Side, Varyings, VertexShader};
+pub use varyings::{Correction, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
+pub use vertex::{Corner, Face, Side, VertexShader};
 pub use viewport::{Viewport, ViewportError};

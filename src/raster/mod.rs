@@ -2,8 +2,10 @@
 
 mod edge;
 mod gradient;
+mod perspective;
 mod triangle;
 
 pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
+pub use perspective::{homogenize, widen};
 pub use triangle::{PixelRect, pixel_rect, spans, trapezoids};
