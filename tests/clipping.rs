@@ -47,7 +47,7 @@ fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Pol
     let mut polygons = Vec::new();
     for part in range.parts(Outcode(codes)) {
         let mut polygon = Vec::new();
-        clip_triangle(triangle, Outcode(codes), part, |corner| polygon.push(*corner));
+        clip_triangle(*triangle, Outcode(codes), part, |corner| polygon.push(*corner));
         if !polygon.is_empty() {
             polygons.push(polygon);
         }

@@ -14,6 +14,10 @@ pub trait PixelFormat {
     /// Packs red, green and blue of 8 bits; surplus bits are cut.
     fn pack(rgb: [u8; 3]) -> Self::Raw;
 
+    /// Red, green and blue of a pixel in 8 bits, black 0 and white 255: channels of fewer bits are repeated in the lower
+    /// ones. [`pack`](Self::pack) leads back to the same pixel.
+    fn unpack(raw: Self::Raw) -> [u8; 3];
+
     /// Whether [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
     const PACKED: bool = false;
 

@@ -129,19 +129,19 @@ impl DepthRange {
 /// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on the corners of what is
 /// left in one part of it: a convex polygon, or nothing.
 pub fn clip_triangle<V: Varyings>(
-    triangle: &[(ClipVertex, V); 3],
+    triangle: impl IntoIterator<Item = (ClipVertex, V)>,
     codes: Outcode,
     part: Part,
     emit: impl FnMut(&(ClipVertex, V)),
 ) {
-    // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
-    if triangle.iter().any(|(v, _)| *v == ClipVertex::default()) {
-        return;
-    }
     let mut polygon = Polygon::new();
     for vertex in triangle {
+        // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
+        if vertex.0 == ClipVertex::default() {
+            return;
+        }
         // Three fit eleven; the same holds for every push below.
-        let _ = polygon.push_back(*vertex);
+        let _ = polygon.push_back(vertex);
     }
     for plane in 0..PLANES {
         if codes.0 & (1 << plane) != 0 {
@@ -259,7 +259,7 @@ mod tests {
         let triangle = triangle.map(|[x, y, z, w]| (ClipVertex { x, y, z, w }, [0; 0]));
         let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
         let mut corners = 0;
-        clip_triangle(&triangle, Outcode(codes), Part::Between, |_| corners += 1);
+        clip_triangle(triangle, Outcode(codes), Part::Between, |_| corners += 1);
         corners
     }
 
@@ -280,7 +280,7 @@ mod tests {
         let project = |v: &ClipVertex| [v.x, v.y].map(|c| c as f64 / v.w as f64 * 131_072.0);
         let [x, y] = project(&triangle[0].0);
         let mut near = 0;
-        clip_triangle(&triangle, Outcode(codes), Part::Between, |(v, _)| {
+        clip_triangle(triangle, Outcode(codes), Part::Between, |(v, _)| {
             near += u32::from((project(v)[0] - x).hypot(project(v)[1] - y) < 0.5);
         });
         // Both ends of what is left of the edge.

@@ -18,7 +18,7 @@ pub use light::{Light, Lit, NORMAL_ONE};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
 pub use project::{ScreenVertex, inverse_w, project, signed_area};
-pub use transform::{Placed, Transform, place};
+pub use transform::{Placed, Transform, View, place};
 pub use varyings::{Correction, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
 pub use vertex::{Corner, Face, Side, VertexShader};
 pub use viewport::{Viewport, ViewportError};

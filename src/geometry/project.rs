@@ -45,30 +45,26 @@ pub(crate) fn small(difference: i32) -> bool {
 
 /// Divides by w and snaps; `None` unless w > 0.
 ///
-/// x, y must lie in the guard band and z in 0..=w (both are clamped, for what rounding in the clipper may leave over).
+/// x, y must lie in the guard band and z in 0..=w (all are clamped, for what rounding in the clipper may leave over).
 ///
 /// # Format
 /// Positions: within 2⁻⁶ of 1/256 px, plus rounding to nearest. w is normalized to 2³¹..2³² (cut bits: 2⁻³¹), x to
 /// 2⁻²⁵ of w, and x / w = x' · (2⁶³ / w') with a reciprocal good to 2⁻²⁹: on the guard band, 2²³ steps, 2⁻⁶ in all.
 /// Depth: 65,535 z / w rounded to nearest, within 2⁻¹² of a step besides.
-#[inline]
+#[inline(never)]
 pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     if v.w <= 0 {
         return None;
     }
-    let shift = v.w.leading_zeros();
-    let w = ((v.w << (shift - 1)) >> 31) as u32;
-    let inv_w = reciprocal(w);
     // w' = w 2^shift / 2³². x' keeps 7 bits of headroom for the guard band: x 2^shift / 2³⁹, below 2³¹.
+    let shift = v.w.leading_zeros();
     let position = |c: i64| {
         let c = if shift >= 39 { c << (shift - 39) } else { c >> (39 - shift) };
-        // Rounded in two shifts, as far outside of the guard band the sum would not fit.
-        ((mul_high_signed(c.clamp(-0x7FFF_FFFF, 0x7FFF_FFFF) as i32, inv_w) >> 6) + 1) >> 1
+        c.clamp(-0x7FFF_FF00, 0x7FFF_FF00) as i32
     };
-    let z = v.z.clamp(0, v.w);
-    let z = (((z << (shift - 1)) as u64) >> 31) as u32;
-    let z = depth(z, inv_w);
-    Some(ScreenVertex { x: position(v.x).clamp(-LIMIT, LIMIT), y: position(v.y).clamp(-LIMIT, LIMIT), z })
+    let depth = |c: i64| (((c << (shift - 1)) as u64) >> 31) as u32;
+    let placed = divide(position(v.x), position(v.y), depth(v.z.clamp(0, v.w)), depth(v.w));
+    Some(ScreenVertex { x: placed.x.clamp(-LIMIT, LIMIT), y: placed.y.clamp(-LIMIT, LIMIT), ..placed })
 }
 
 /// 1 / w of a vertex, on a scale that all vertices of a draw share; 0 unless w > 0.
@@ -90,9 +86,15 @@ pub fn inverse_w(v: &ClipVertex) -> u32 {
 pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
     // 2 to 5; counted by comparisons, as small cores have no instruction for it.
     let zeros = 2 + u32::from(w < 1 << 29) + u32::from(w < 1 << 28) + u32::from(w < 1 << 27);
-    let inv_w = reciprocal((w as u32) << zeros);
-    let position = |c: i32| (mul_high_signed(c >> (7 - zeros), inv_w) + 64) >> 7;
-    ScreenVertex { x: position(x), y: position(y), z: depth((z as u32) << zeros, inv_w) }
+    divide(x >> (7 - zeros), y >> (7 - zeros), (z as u32) << zeros, (w as u32) << zeros)
+}
+
+/// The division itself: x and y with 7 bits less than w and z, w in 2³¹..2³².
+#[inline(never)]
+fn divide(x: i32, y: i32, z: u32, w: u32) -> ScreenVertex {
+    let inv_w = reciprocal(w);
+    let position = |c: i32| (mul_high_signed(c, inv_w) + 64) >> 7;
+    ScreenVertex { x: position(x), y: position(y), z: depth(z, inv_w) }
 }
 
 /// 65,535 z / w rounded to nearest, from z and 2⁶³ / w in the scale that puts w into 2³¹..2³².

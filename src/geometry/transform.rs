@@ -8,30 +8,35 @@ use super::clip::{ClipVertex, Outcode};
 use super::project::{ScreenVertex, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
 use crate::math::{Projective, Vec3};
+use core::ops::Range;
+
+/// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// Rows x, y, z, w; the largest entry has 45 bits.
+    rows: [[i64; 4]; 4],
+}
 
 /// A vertex transform, made once a draw.
 #[derive(Clone, Copy, Debug)]
 pub struct Transform {
-    /// Entries with 16 fractional bits, below 2⁴⁰ (rows x, y, z, w).
-    entries: [[i64; 4]; 4],
-    /// What the constant 1 contributes; below 2⁵⁵.
-    translation: [i64; 4],
-    /// The 32-bit path, where its error stays within the promise.
-    short: Option<Short>,
+    /// Rows x, y, z, w.
+    rows: [Row; 4],
+    /// Whether they are those of the 32-bit path.
+    short: bool,
 }
 
-/// Rows for 32-bit arithmetic on quantized positions: c = (Σ mᵢ qᵢ + t) / 2¹⁵ with mᵢ = 2¹⁵ high + low.
+/// A row of the matrix, its entries in two parts.
+///
+/// # Format
+/// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵. The short path, for
+/// quantized positions q, computes Σ m q / 2¹⁵, with m = 2¹⁵ high + low below 2³⁰, low in -2¹⁴..2¹⁴ but for the last: that
+/// entry, for q = 1, is the translation, and its low half has the half that rounds.
 #[derive(Clone, Copy, Debug, Default)]
-struct Short {
-    rows: [ShortRow; 4],
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-struct ShortRow {
-    high: [i32; 3],
-    low: [i32; 3],
-    translation_high: i32,
-    translation_low: i32,
+struct Row {
+    high: [i32; 4],
+    low: [i32; 4],
+    translation: i64,
 }
 
 /// Where a vertex is.
@@ -44,7 +49,7 @@ pub enum Placed {
 }
 
 /// Outcodes, projection and snapping of a vertex in clip space.
-#[inline]
+#[inline(never)]
 pub fn place(vertex: &ClipVertex) -> Placed {
     let code = Outcode::of(vertex);
     match project(vertex) {
@@ -63,25 +68,77 @@ fn scale(value: i64, shift: i32) -> i64 {
     }
 }
 
-/// `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶: below 2⁶¹.
+/// `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶ and |b| ≤ 2³¹: at most 2⁶¹.
 #[inline(never)]
-fn times(a: i64, b: i32) -> i64 {
-    (a >> 16) * i64::from(b) + (((a & 0xFFFF) * i64::from(b)) >> 16)
+fn times(a: i64, b: i64) -> i64 {
+    (a >> 16) * b + (((a & 0xFFFF) * b) >> 16)
 }
 
 /// Shifts that bring the largest of `values` below 2^`bits`; negative ones if they are smaller.
-fn excess<'v>(values: impl Iterator<Item = &'v i64>, bits: i32) -> i32 {
-    let all = values.fold(0, |all, v| all | v.unsigned_abs());
+#[inline(never)]
+fn excess(values: &[i64], bits: i32) -> i32 {
+    let all = values.iter().fold(0, |all, v| all | v.unsigned_abs());
     64 - all.leading_zeros() as i32 - bits
 }
 
-/// The least w in a box, from the row of w; on the scale of that row's last entry.
-fn least_w(row: &[i64; 4], aabb: &BoundingBox) -> i64 {
-    let mut least = row[3];
+/// The least value in a box that a row takes, or the largest for `sign` -1, on the scale of the row's last entry.
+///
+/// # Format
+/// Entries below 2⁴⁵: six products of at most 2⁶⁰.
+#[inline(never)]
+fn extreme(row: &[i64; 4], aabb: &BoundingBox, sign: i64) -> i64 {
+    let mut value = row[3];
     for ((r, center), half) in row.iter().zip(aabb.center.to_bits()).zip(aabb.half.to_bits()) {
-        least += times(*r, center) - times(r.abs(), half);
+        value += times(*r, i64::from(center)) - sign * times(r.abs(), i64::from(half));
     }
-    least
+    value
+}
+
+impl View {
+    /// Folds a viewport into the matrix that takes object space to clip space.
+    #[inline(never)]
+    pub fn new(mvp: &Projective, viewport: &Viewport) -> Self {
+        let mut rows = mvp.to_rows();
+        // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
+        let shift = excess(rows.as_flattened(), 44).max(0);
+        // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
+        let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
+        let (cx2, cy2) = (2 * i64::from(viewport.x()) + width, 2 * i64::from(viewport.y()) + height);
+        let [rx, ry, rz, rw] = &mut rows;
+        for (((rx, ry), rz), rw) in rx.iter_mut().zip(ry).zip(rz).zip(rw) {
+            let w = scale(*rw, shift);
+            *rx = width * scale(*rx, shift) + cx2 * w;
+            *ry = cy2 * w - height * scale(*ry, shift);
+            *rz = scale(*rz, shift) << 10;
+            *rw = w << 10;
+        }
+        let shift = excess(rows.as_flattened(), 45);
+        for entry in rows.as_flattened_mut() {
+            *entry = scale(*entry, shift);
+        }
+        Self { rows }
+    }
+
+    /// Whether any of a box may be seen in a rectangle of the screen, in pixels at most 2¹⁴ from its corner. The depth
+    /// planes in `clamped` do not count. Errs on the side of `true`.
+    ///
+    /// # Format
+    /// Planes are sums of rows, such as 512 x - left w ≥ 0, below 2⁶¹, and cut to 43 bits: entries are off by less than two
+    /// units, over 2¹⁵ in three directions by less than 2¹⁸.
+    #[inline(never)]
+    pub fn sees(&self, aabb: &BoundingBox, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
+        let [x, y, z, w] = &self.rows;
+        let near = if clamped.0 & Outcode::NEAR != 0 { None } else { Some((z, 512, 0)) };
+        let far = if clamped.0 & Outcode::FAR != 0 { None } else { Some((z, -512, 512)) };
+        let sides = [(x, 512, -columns.start), (x, -512, columns.end), (y, 512, -lines.start), (y, -512, lines.end)];
+        sides.into_iter().chain(near).chain(far).all(|(row, a, b)| {
+            let mut plane = [0; 4];
+            for ((plane, r), w) in plane.iter_mut().zip(row).zip(w) {
+                *plane = (r * a + w * i64::from(b)) >> 18;
+            }
+            extreme(&plane, aabb, -1) >= -(1 << 18)
+        })
+    }
 }
 
 impl Transform {
@@ -89,90 +146,98 @@ impl Transform {
     ///
     /// `displaced` asks for a transform of 16.16 positions whatever the mesh's own format is, for vertex shaders that
     /// move vertices.
+    pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
+        Self::of(View::new(mvp, viewport), mesh, displaced)
+    }
+
+    /// [`new`](Self::new) from a matrix that has the viewport in it.
     ///
     /// # Format
     /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
-    pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
-        let positions = &mesh.data().positions;
-        // All in one matrix, in place: r first, e in the end.
-        let mut result = Self { entries: mvp.to_rows(), translation: [0; 4], short: None };
-        let Self { entries: r, translation: t, .. } = &mut result;
-
-        // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
-        let shift = excess(r.iter().flatten(), 44).max(0);
-        // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
-        let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
-        let (cx2, cy2) = (2 * i64::from(viewport.x()) + width, 2 * i64::from(viewport.y()) + height);
-        let [rx, ry, rz, rw] = &mut *r;
-        for (((rx, ry), rz), rw) in rx.iter_mut().zip(ry).zip(rz).zip(rw) {
-            let (x, y, z, w) = (scale(*rx, shift), scale(*ry, shift), scale(*rz, shift), scale(*rw, shift));
-            *rx = width * x + cx2 * w;
-            *ry = cy2 * w - height * y;
-            *rz = z << 10;
-            *rw = w << 10;
-        }
-        let shift = excess(r.iter().flatten(), 45);
-        for entry in r.iter_mut().flatten() {
-            *entry = scale(*entry, shift);
-        }
-
-        // 3. What the mesh makes of its numbers. Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats
+    pub fn of(view: View, mesh: &Mesh<'_>, displaced: bool) -> Self {
+        let View { rows: mut r } = view;
+        let aabb = &mesh.bounds().aabb;
+        // 1. What the mesh makes of its numbers. Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats
         //    written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
-        let least_w = least_w(&r[3], &mesh.bounds().aabb);
-        for (r, t) in r.iter_mut().zip(t.iter_mut()) {
-            match positions {
-                Positions::Quantized { scale, offset, .. } if !displaced => {
-                    *t = r[3];
-                    for (r, offset) in r.iter_mut().zip(offset.to_bits()) {
-                        *t += times(*r, offset);
-                        *r = times(*r, scale.to_bits());
-                    }
-                    r[3] = 0;
-                }
-                _ => {
-                    if displaced || !matches!(positions, Positions::Homogeneous(_)) {
-                        *t = r[3];
-                        r[3] = 0;
-                    }
-                    r.iter_mut().for_each(|r| *r <<= 15);
-                }
+        let (scaled, offset, quantized) = match mesh.data().positions {
+            Positions::Quantized { scale, offset, .. } if !displaced => {
+                (i64::from(scale.to_bits()), offset.to_bits(), true)
+            }
+            _ => (1 << 31, [0; 3], false),
+        };
+        let homogeneous = !displaced && matches!(mesh.data().positions, Positions::Homogeneous(_));
+        let least_w = extreme(&r[3], aabb, 1);
+        let mut t = [0; 4];
+        // A quarter of the largest value that each row can reach.
+        let mut reach = [0; 4];
+        for ((r, t), reach) in r.iter_mut().zip(&mut t).zip(&mut reach) {
+            if !homogeneous {
+                *t = r[3];
+                r[3] = 0;
+            }
+            for (r, offset) in r.iter().zip(offset) {
+                *t += times(*r, i64::from(offset));
+            }
+            *reach = t.unsigned_abs() as i64 >> 2;
+            for r in r {
+                *r = times(*r, scaled);
+                *reach += (r.abs() >> 2) + 2;
             }
         }
 
-        // 4. One shift for all, so that the largest reachable value is just below 2⁵⁵; a quarter of it is summed up here.
-        let mut reach = [0_i64; 4];
-        for (reach, (e, t)) in reach.iter_mut().zip(r.iter().zip(t.iter())) {
-            *reach = e.iter().chain([t]).fold(0, |sum, v| sum + (v.unsigned_abs() >> 2) as i64 + 1);
+        // 2. One shift for all, so that the largest reachable value is just below 2⁵⁵.
+        let shift = excess(&reach, 53);
+        let short = quantized && scale(least_w, shift) >= Self::SHORT_W;
+        let mut rows = [Row::default(); 4];
+        for ((row, r), t) in rows.iter_mut().zip(&r).zip(&t) {
+            row.translation = scale(*t, shift);
+            for ((high, low), r) in row.high.iter_mut().zip(&mut row.low).zip(r) {
+                // 16 fractional bits: e / 2³¹ · 2¹⁶.
+                let e = scale(*r, shift + 15);
+                (*high, *low) = ((e >> 16) as i32, (e & 0xFFFF) as i32);
+                if short {
+                    // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
+                    let m = ((e + (1 << 9)) >> 10) as i32;
+                    *low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
+                    *high = (m - *low) >> 15;
+                }
+            }
+            if short {
+                let t = (row.translation + (1 << 9)) >> 10;
+                row.high[3] = (t >> 15) as i32;
+                row.low[3] = (t & 0x7FFF) as i32 + (1 << 14);
+            }
         }
-        let shift = excess(reach.iter(), 53);
-        // 16 fractional bits: e / 2³¹ · 2¹⁶.
-        r.iter_mut().flatten().for_each(|e| *e = scale(*e, shift + 15));
-        t.iter_mut().for_each(|t| *t = scale(*t, shift));
-        if let (Positions::Quantized { .. }, false) = (positions, displaced) {
-            result.short = Short::new(r, t, scale(least_w, shift));
-        }
-        result
+        Self { rows, short }
     }
 
+    /// The least w, on the scale of the long path, for which quantized positions take the short one.
+    ///
+    /// # Format
+    /// Values of the short path are those of the long one / 2²⁵, below 2³⁰, off by at most 3: half a unit from each of three
+    /// entries, half from the constant and one from the cut. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is
+    /// off by at most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it
+    /// be, which is well inside the guard band.
+    const SHORT_W: i64 = 1 << 51;
+
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
-    #[inline]
+    #[inline(never)]
     pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> ClipVertex {
         match positions {
             Positions::Quantized { points, .. } => {
                 let q = points.get(index).copied().unwrap_or_default();
-                match &self.short {
-                    Some(short) => {
-                        let [x, y, z, w] = short.apply(q).map(i64::from);
-                        ClipVertex { x, y, z, w }
-                    }
-                    None => self.apply([i32::from(q[0]) << 16, i32::from(q[1]) << 16, i32::from(q[2]) << 16, 0]),
+                if self.short {
+                    let [x, y, z, w] = self.apply_short(q);
+                    return ClipVertex { x: x.into(), y: y.into(), z: z.into(), w: w.into() };
                 }
+                self.apply([i32::from(q[0]) << 16, i32::from(q[1]) << 16, i32::from(q[2]) << 16, 0])
             }
             Positions::Exact(points) => self.point(points.get(index).copied().unwrap_or_default()),
             Positions::Homogeneous(points) => {
-                self.apply(points.get(index).copied().unwrap_or_default().map(|c| c.to_bits()))
+                let [x, y, z, w] = points.get(index).copied().unwrap_or_default();
+                self.apply([x.to_bits(), y.to_bits(), z.to_bits(), w.to_bits()])
             }
         }
     }
@@ -180,9 +245,9 @@ impl Transform {
     /// Where a mesh vertex is on the screen, or which planes keep it off.
     #[inline]
     pub fn place(&self, positions: &Positions<'_>, index: usize) -> Placed {
-        if let (Positions::Quantized { points, .. }, Some(short)) = (positions, &self.short) {
-            let clip = short.apply(points.get(index).copied().unwrap_or_default());
-            // In `Short::new`'s range of w, only the near and the far plane are left to be outside of.
+        if let (Positions::Quantized { points, .. }, true) = (positions, self.short) {
+            let clip = self.apply_short(points.get(index).copied().unwrap_or_default());
+            // In the short path's range of w, only the near and the far plane are left to be outside of.
             let [_, _, z, w] = clip;
             return if (z as u32) <= w as u32 {
                 Placed::Screen(project_short(clip))
@@ -201,61 +266,36 @@ impl Transform {
 
     /// Whether vertices take the 32-bit path.
     pub const fn is_short(&self) -> bool {
-        self.short.is_some()
+        self.short
     }
 
-    /// # Format
-    /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded in `new`; fractions below 2¹⁶ · 2³¹.
-    #[inline(never)]
-    fn apply(&self, p: [i32; 4]) -> ClipVertex {
-        let row = |entries: &[i64; 4], translation: i64| {
-            let mut whole = 0_i64;
-            let mut fraction = 0_i64;
-            for (e, p) in entries.iter().zip(p) {
-                whole += (e >> 16) * i64::from(p);
-                fraction += (e & 0xFFFF) * i64::from(p);
-            }
-            translation + whole + (fraction >> 16)
-        };
-        let ([x, y, z, w], [tx, ty, tz, tw]) = (&self.entries, self.translation);
-        ClipVertex { x: row(x, tx), y: row(y, ty), z: row(z, tz), w: row(w, tw) }
-    }
-}
-
-impl Short {
-    /// The 32-bit path, if w stays large enough for it in the whole of the mesh.
+    /// The long path.
     ///
     /// # Format
-    /// Values are those of the long path / 2²⁵, below 2³⁰, off by at most 3: half a unit from each of three entries,
-    /// half from the constant and one from the cut. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at
-    /// most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it be,
-    /// which is well inside the guard band.
-    fn new(entries: &[[i64; 4]; 4], translation: &[i64; 4], least_w: i64) -> Option<Self> {
-        if least_w < 1 << 51 {
-            return None;
-        }
-        let mut short = Self::default();
-        for (row, (entries, translation)) in short.rows.iter_mut().zip(entries.iter().zip(translation)) {
-            for ((high, low), entry) in row.high.iter_mut().zip(&mut row.low).zip(entries) {
-                // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
-                let m = ((entry + (1 << 9)) >> 10) as i32;
-                *low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
-                *high = (m - *low) >> 15;
+    /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded in `of`; fractions below 2¹⁶ · 2³¹.
+    #[inline(never)]
+    fn apply(&self, p: [i32; 4]) -> ClipVertex {
+        let mut clip = [0_i64; 4];
+        for (value, row) in clip.iter_mut().zip(&self.rows) {
+            let mut fraction = 0_i64;
+            *value = row.translation;
+            for ((high, low), p) in row.high.iter().zip(&row.low).zip(p) {
+                *value += i64::from(*high) * i64::from(p);
+                fraction += i64::from(*low) * i64::from(p);
             }
-            let t = (translation + (1 << 9)) >> 10;
-            row.translation_high = (t >> 15) as i32;
-            row.translation_low = (t & 0x7FFF) as i32 + (1 << 14);
+            *value += fraction >> 16;
         }
-        Some(short)
+        let [x, y, z, w] = clip;
+        ClipVertex { x, y, z, w }
     }
 
+    /// The short path; see [`Row`].
     #[inline]
-    fn apply(&self, q: [i16; 3]) -> [i32; 4] {
+    fn apply_short(&self, q: [i16; 3]) -> [i32; 4] {
         let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
-        let apply = |row: &ShortRow| {
-            let ([hx, hy, hz], [lx, ly, lz]) = (row.high, row.low);
-            let low = lx * x + ly * y + lz * z + row.translation_low;
-            hx * x + hy * y + hz * z + row.translation_high + (low >> 15)
+        let apply = |row: &Row| {
+            let ([hx, hy, hz, ht], [lx, ly, lz, lt]) = (row.high, row.low);
+            hx * x + hy * y + hz * z + ht + ((lx * x + ly * y + lz * z + lt) >> 15)
         };
         // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
         let [a, b, c, d] = &self.rows;

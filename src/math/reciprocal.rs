@@ -58,7 +58,7 @@ const fn seed() -> [u16; 256] {
 ///
 /// # Source
 /// Newton's iteration r' = r (2 - x r).
-#[inline]
+#[inline(never)]
 pub const fn reciprocal(x: u32) -> u32 {
     // Only a caller's error could leave the top bit clear; it would cost precision, nothing else.
     let x = x | 1 << 31;

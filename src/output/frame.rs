@@ -68,11 +68,36 @@ impl<E: fmt::Display> fmt::Display for FrameError<E> {
 
 impl<E: fmt::Debug + fmt::Display> core::error::Error for FrameError<E> {}
 
+/// Rows of a strip, and a division by them without a divider.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct StripRows {
+    rows: u16,
+    factor: u32,
+    shift: u32,
+}
+
+impl StripRows {
+    /// # Format
+    /// row / rows = row factor / 2^shift with factor = ⌈2^shift / rows⌉ ≤ 2¹³: too large by less than row / 2^shift, which is below
+    /// 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below 2¹².
+    fn new(rows: u16) -> Self {
+        let rows = rows.max(1);
+        let shift = 12 + (u32::from(rows) - 1).checked_ilog2().map_or(0, |bits| bits + 1);
+        Self { rows, factor: (1_u32 << shift).div_ceil(u32::from(rows)), shift }
+    }
+
+    /// The strip that a row is in.
+    #[inline]
+    pub(crate) const fn of(&self, row: u32) -> usize {
+        (row.wrapping_mul(self.factor) >> self.shift) as usize
+    }
+}
+
 /// What all renderers share: the screen, its strips, depth and records.
 #[derive(Debug)]
 struct Engine<'b> {
     viewport: Viewport,
-    strip_rows: u16,
+    strips: StripRows,
     depth: &'b mut [u16],
     records: &'b mut [u32],
 }
@@ -89,7 +114,7 @@ impl<'b> Engine<'b> {
             return Err(RendererError::DepthTooShort(depth.len(), screen.0));
         };
         let strip_rows = rows.min(depth_rows).min(usize::from(screen.1)) as u16;
-        Ok(Self { viewport, strip_rows, depth, records })
+        Ok(Self { viewport, strips: StripRows::new(strip_rows), depth, records })
     }
 
     fn screen(&self) -> (u16, u16) {
@@ -133,7 +158,7 @@ impl Engine<'_> {
             viewport: self.viewport,
             phase,
             records: Records::resume(self.records, progress.layout),
-            strip_rows: self.strip_rows,
+            strips: self.strips,
             band: i32::from(band.0)..i32::from(band.1),
             target: framebuffer.map(|framebuffer| Target { framebuffer, depth: self.depth, rows }),
             stats: &mut progress.stats,
@@ -155,17 +180,18 @@ impl Engine<'_> {
 
     /// Height of the strip that begins at `row`.
     fn rows_at(&self, row: u16) -> u16 {
-        self.strip_rows.min(self.viewport.height() - row)
+        self.strips.rows.min(self.viewport.height() - row)
     }
 
     /// Records a band that begins at the current strip: all the rest of the screen, or half of what was tried last,
     /// until it fits. `false` if not even one strip does.
     fn record<F: Framebuffer>(&mut self, progress: &mut Progress, draw: &mut impl FnMut(&mut Scene<'_, F>)) -> bool {
         let height = self.viewport.height();
-        let left = (height - progress.row).div_ceil(self.strip_rows.max(1));
+        let left = self.strips.of(u32::from(height - progress.row) - 1) as u16 + 1;
         let mut strips = progress.strips.min(left);
         loop {
-            let end = (u32::from(progress.row) + u32::from(strips) * u32::from(self.strip_rows)).min(u32::from(height));
+            let end =
+                (u32::from(progress.row) + u32::from(strips) * u32::from(self.strips.rows)).min(u32::from(height));
             let band = (progress.row, end as u16);
             let mut records = Records::resume(self.records, progress.layout);
             records.begin_band(usize::from(strips));
@@ -208,9 +234,9 @@ impl Engine<'_> {
             depth.fill(u16::MAX);
         }
         let changed = if recorded {
-            let strip = (row - progress.band.0).checked_div(self.strip_rows).unwrap_or(0);
+            let strip = self.strips.of(u32::from(row - progress.band.0));
             let mut records = Records::resume(self.records, progress.layout);
-            records.begin_replay(usize::from(strip));
+            records.begin_replay(strip);
             progress.layout = records.layout();
             self.walk(progress, Phase::Replay, progress.band, Some(framebuffer), draw)
         } else {
@@ -274,7 +300,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
 
     /// Rows of a strip; the last one may have fewer.
     pub const fn strip_rows(&self) -> u16 {
-        self.engine.strip_rows
+        self.engine.strips.rows
     }
 
     /// Draws a frame on an embedded-graphics display.
@@ -436,5 +462,20 @@ impl<'b> FramebufferRenderer<'b> {
         {
         }
         Ok(progress.stats)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_row_is_in_its_strip() {
+        for rows in 1..=Viewport::MAX_SIZE {
+            let strips = StripRows::new(rows);
+            let wrong =
+                (0..u32::from(Viewport::MAX_SIZE)).find(|row| strips.of(*row) != (row / u32::from(rows)) as usize);
+            assert_eq!(wrong, None, "strips of {rows} rows");
+        }
     }
 }

@@ -9,6 +9,7 @@ mod sink;
 mod stats;
 
 pub use budget::RamBudget;
+pub(crate) use frame::StripRows;
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use pixel::Rgb565Be;

@@ -24,71 +24,67 @@ const fn rgb565_from_packed(word: u32, green: u32) -> u16 {
     (red_blue ^ (red_blue ^ word << 1) & green) as u16
 }
 
-/// 16-bit pixels in the processor's byte order.
-impl PixelFormat for Rgb565 {
-    type Raw = u16;
-    type Color = Rgb565;
-
-    #[inline(always)]
-    fn pack(rgb: [u8; 3]) -> u16 {
-        rgb565(rgb)
-    }
-
-    const PACKED: bool = true;
-
-    #[inline(always)]
-    fn packed_mask() -> u32 {
-        green_mask()
-    }
-
-    #[inline(always)]
-    fn from_packed(word: u32, mask: u32) -> u16 {
-        rgb565_from_packed(word, mask)
-    }
-
-    fn from_color(color: Rgb565) -> u16 {
-        color.into_storage()
-    }
-
-    fn to_color(raw: u16) -> Rgb565 {
-        Rgb565::from(RawU16::new(raw))
-    }
+/// 5, 6, 5 bits to 8, the upper ones repeated below.
+#[inline(always)]
+const fn from_rgb565(raw: u16) -> [u8; 3] {
+    let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
+    [(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8]
 }
+
+/// The two formats of RGB565, which differ in how the 16 bits come into memory, and back.
+macro_rules! rgb565_format {
+    ($(#[$doc:meta])* $format:ty, $store:path, $load:path) => {
+        $(#[$doc])*
+        impl PixelFormat for $format {
+            type Raw = u16;
+            type Color = Rgb565;
+
+            #[inline(always)]
+            fn pack(rgb: [u8; 3]) -> u16 {
+                $store(rgb565(rgb))
+            }
+
+            #[inline(always)]
+            fn unpack(raw: u16) -> [u8; 3] {
+                from_rgb565($load(raw))
+            }
+
+            const PACKED: bool = true;
+
+            #[inline(always)]
+            fn packed_mask() -> u32 {
+                green_mask()
+            }
+
+            #[inline(always)]
+            fn from_packed(word: u32, mask: u32) -> u16 {
+                $store(rgb565_from_packed(word, mask))
+            }
+
+            fn from_color(color: Rgb565) -> u16 {
+                $store(color.into_storage())
+            }
+
+            fn to_color(raw: u16) -> Rgb565 {
+                Rgb565::from(RawU16::new($load(raw)))
+            }
+        }
+    };
+}
+
+rgb565_format!(
+    /// 16-bit pixels in the processor's byte order.
+    Rgb565,
+    core::convert::identity,
+    core::convert::identity
+);
 
 /// RGB565 with the high byte first in memory: what displays expect on their SPI bus, so that
 /// [`StripPixels::bytes`](crate::output::StripPixels::bytes) goes out as it is.
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb565Be;
 
-impl PixelFormat for Rgb565Be {
-    type Raw = u16;
-    type Color = Rgb565;
-
-    #[inline(always)]
-    fn pack(rgb: [u8; 3]) -> u16 {
-        rgb565(rgb).to_be()
-    }
-
-    const PACKED: bool = true;
-
-    #[inline(always)]
-    fn packed_mask() -> u32 {
-        green_mask()
-    }
-
-    #[inline(always)]
-    fn from_packed(word: u32, mask: u32) -> u16 {
-        rgb565_from_packed(word, mask).to_be()
-    }
-
-    fn from_color(color: Rgb565) -> u16 {
-        color.into_storage().to_be()
-    }
-
-    fn to_color(raw: u16) -> Rgb565 {
-        Rgb565::from(RawU16::new(u16::from_be(raw)))
-    }
-}
+rgb565_format!(Rgb565Be, u16::to_be, u16::from_be);
 
 /// 24-bit pixels: red, green, blue.
 impl PixelFormat for Rgb888 {
@@ -98,6 +94,11 @@ impl PixelFormat for Rgb888 {
     #[inline(always)]
     fn pack(rgb: [u8; 3]) -> [u8; 3] {
         rgb
+    }
+
+    #[inline(always)]
+    fn unpack(raw: [u8; 3]) -> [u8; 3] {
+        raw
     }
 
     fn from_color(color: Rgb888) -> [u8; 3] {
@@ -119,11 +120,47 @@ impl PixelFormat for Gray8 {
         ((rgb[0] as u32 * 77 + rgb[1] as u32 * 150 + rgb[2] as u32 * 29) >> 8) as u8
     }
 
+    #[inline(always)]
+    fn unpack(raw: u8) -> [u8; 3] {
+        [raw; 3]
+    }
+
     fn from_color(color: Gray8) -> u8 {
         color.luma()
     }
 
     fn to_color(raw: u8) -> Gray8 {
         Gray8::new(raw)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Packing what was unpacked leads back, black is 0 and white 255, and embedded-graphics' colours convert alike.
+    fn check<P: PixelFormat<Raw: PartialEq + core::fmt::Debug>>(
+        raws: impl Iterator<Item = P::Raw>,
+        rgb888: impl Fn(P::Color) -> Rgb888,
+    ) {
+        assert_eq!(P::unpack(P::pack([255; 3])), [255; 3]);
+        assert_eq!(P::unpack(P::pack([0; 3])), [0; 3]);
+        for raw in raws {
+            assert_eq!(P::pack(P::unpack(raw)), raw);
+            assert_eq!(P::from_color(P::to_color(raw)), raw);
+            let oracle = rgb888(P::to_color(raw));
+            for (channel, exact) in P::unpack(raw).into_iter().zip([oracle.r(), oracle.g(), oracle.b()]) {
+                // The conversions of embedded-graphics round v 255 / 31; repeated bits are within 1 of that.
+                assert!(channel.abs_diff(exact) <= 1, "{raw:?}: {channel}, {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn packing_is_the_inverse_of_unpacking() {
+        check::<Rgb565>(0..=u16::MAX, Rgb888::from);
+        check::<Rgb565Be>(0..=u16::MAX, Rgb888::from);
+        check::<Gray8>(0..=u8::MAX, Rgb888::from);
+        check::<Rgb888>((0..=255).flat_map(|v| [[v, 0, !v], [!v, v, 7]]), |color| color);
     }
 }

@@ -207,15 +207,28 @@ impl<'a> Records<'a> {
         self.set(self.layout.header + 3, self.layout.front as u32);
     }
 
-    /// Lends all the words to the vertices of one draw that is drawn directly; whether they fit.
-    pub(crate) fn begin_direct(&mut self, vertices: usize, stride: usize) -> bool {
-        self.layout = Layout::default();
-        self.reserve(vertices, stride)
+    /// Lends all the words to the vertices of one draw that is drawn directly, if they fit.
+    pub(crate) fn begin_direct(&mut self, vertices: usize, stride: usize) {
+        // Behind the end: all vertices read as unshaded.
+        self.layout = Layout { vertices: self.words.len(), ..Layout::default() };
+        self.reserve(vertices, stride);
+    }
+
+    /// Whether there is a place for each vertex of the current draw.
+    #[inline]
+    pub(crate) fn has_vertices(&self) -> bool {
+        self.layout.stride > 0
+    }
+
+    /// What is known of where a vertex of the current draw is.
+    #[inline]
+    pub(crate) fn slot(&self, index: usize) -> Slot {
+        Slot::read(self.words.get(self.layout.vertices + index * self.layout.stride..).unwrap_or_default())
     }
 
     /// The words of a vertex of the current draw.
     #[inline]
-    pub(crate) fn vertex(&self, index: usize) -> &[u32] {
+    fn vertex(&self, index: usize) -> &[u32] {
         let start = self.layout.vertices + index * self.layout.stride;
         self.words.get(start..).and_then(|rest| rest.get(..self.layout.stride)).unwrap_or_default()
     }
@@ -233,12 +246,6 @@ impl<'a> Records<'a> {
             [*a, *b] = slot.0;
             S::store(varyings, rest);
         }
-    }
-
-    /// The varyings of a vertex of the current draw.
-    #[inline]
-    pub(crate) fn varyings<S: VertexShader>(&self, index: usize) -> S::Varyings {
-        S::load(self.vertex(index).get(VERTEX..).unwrap_or_default())
     }
 
     /// Where a vertex of the current draw is on the screen, and its varyings.

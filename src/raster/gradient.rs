@@ -30,7 +30,7 @@ pub struct Gradients {
     /// 512 px.
     reciprocal: u32,
     shift: i32,
-    /// The pixel that plane values refer to: the one that holds vertex 0, for large triangles brought onto the screen.
+    /// The pixel at which planes are evaluated: the one that holds vertex 0, for large triangles brought onto the screen.
     origin: (i32, i32),
 }
 
@@ -41,7 +41,7 @@ pub struct PlaneEquation {
     pub dx: i32,
     /// Change from one row to the next.
     pub dy: i32,
-    /// Value at the centre of the pixel at the origin of its [`Gradients`].
+    /// Value at the centre of the screen's first pixel: at pixel (x, y) it is `base + dx x + dy y`.
     pub base: u32,
 }
 
@@ -73,19 +73,21 @@ impl Gradients {
         Self { x, y, to, area, is_small, reciprocal, shift, origin }
     }
 
-    /// The pixel that [`PlaneEquation::base`] refers to.
-    #[inline]
-    pub const fn origin(&self) -> (i32, i32) {
-        self.origin
-    }
-
     /// The plane through the values at the three vertices times 2^`scale`, modulo 2³²; usually 16.16.
     ///
     /// # Format
     /// Any values, `scale` up to 16. Evaluated at a pixel inside the triangle and on the screen, the result is within 2¹³ of
     /// the exact plane: 2⁻³ of a unit in 16.16.
-    #[inline]
+    #[inline(never)]
     pub fn plane(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
+        let plane = self.plane_at_origin(values, scale);
+        let along = plane.dx.wrapping_mul(self.origin.0).wrapping_add(plane.dy.wrapping_mul(self.origin.1));
+        PlaneEquation { base: plane.base.wrapping_sub(along as u32), ..plane }
+    }
+
+    /// The same, with its base at the origin.
+    #[inline]
+    fn plane_at_origin(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
         let (v1, v2) = (values[1].wrapping_sub(values[0]), values[2].wrapping_sub(values[0]));
         let base = (values[0] as u32) << scale;
         if v1 | v2 == 0 {
@@ -253,16 +255,6 @@ fn divide_modulo(n: Wide, den: u64, bits: u32) -> u32 {
         }
     }
     quotient ^ flip
-}
-
-impl PlaneEquation {
-    /// The same plane with its base moved from the pixel at `origin` to the screen's corner, modulo 2³²: the value at
-    /// pixel (x, y) is `base + dx x + dy y`.
-    #[inline]
-    pub const fn from_corner(self, origin: (i32, i32)) -> Self {
-        let along = self.dx.wrapping_mul(origin.0).wrapping_add(self.dy.wrapping_mul(origin.1));
-        Self { base: self.base.wrapping_sub(along as u32), ..self }
-    }
 }
 
 #[cfg(test)]

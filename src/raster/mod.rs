@@ -8,4 +8,4 @@ mod triangle;
 pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
 pub use perspective::{homogenize, widen};
-pub use triangle::{PixelRect, pixel_rect, spans, trapezoids};
+pub use triangle::{PixelRect, Trapezoids, first_centre, pixel_rect, spans};

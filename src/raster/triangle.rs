@@ -40,7 +40,7 @@ impl PixelRect {
 
 /// The first pixel whose centre is at or behind a 24.8 coordinate.
 #[inline]
-const fn first_centre(coordinate: i32) -> i32 {
+pub const fn first_centre(coordinate: i32) -> i32 {
     (coordinate + 127) >> 8
 }
 
@@ -70,61 +70,81 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 /// ```
 #[inline]
 pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl FnMut(i32, Range<i32>)) {
-    trapezoids(v, area, &clip.y, |[left, right], rows| {
+    let mut parts = Trapezoids::new(v, area, &clip.y);
+    while let Some(rows) = parts.next() {
         for y in rows {
-            let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
+            let x = parts.left.pixel().max(clip.x.start)..parts.right.pixel().min(clip.x.end);
             if x.start < x.end {
                 span(y, x);
             }
-            left.step();
-            right.step();
+            parts.left.step();
+            parts.right.step();
         }
-    });
+    }
 }
 
-/// Takes a triangle apart into the rows above and below its bend: calls `part(edges, rows)` for each that has rows in
-/// `clip`, with the left and the right edge at the first of them; `part` has to step both edges once a row.
-///
-/// Parameters are those of [`spans`].
-#[inline]
-pub fn trapezoids(
-    v: &[ScreenVertex; 3],
-    area: i64,
-    clip: &Range<i32>,
-    mut part: impl FnMut(&mut [Edge; 2], Range<i32>),
-) {
-    let [a, b, c] = v;
-    let (mut a, mut b, mut c) = ((a.x, a.y), (b.x, b.y), (c.x, c.y));
-    // Whether the bend is to the right of the long edge: the sign of the area, changed by each exchange.
-    let mut bend_right = area > 0;
-    if b.1 < a.1 {
-        (a, b) = (b, a);
-        bend_right = !bend_right;
-    }
-    if c.1 < b.1 {
-        (b, c) = (c, b);
-        bend_right = !bend_right;
+/// A triangle, taken apart into the rows above and below its bend.
+#[derive(Debug)]
+pub struct Trapezoids {
+    /// The edges, at the first row of the part at hand; both have to be stepped once a row.
+    pub left: Edge,
+    /// See `left`.
+    pub right: Edge,
+    /// Vertices by height.
+    a: (i32, i32),
+    b: (i32, i32),
+    c: (i32, i32),
+    /// Whether the bend is to the right of the long edge.
+    bend_right: bool,
+    /// The first row that is not done, the first below the bend, and that behind the last.
+    row: i32,
+    bend: i32,
+    end: i32,
+}
+
+impl Trapezoids {
+    /// The rows of a triangle that are in `clip`. Other parameters are those of [`spans`].
+    #[inline]
+    pub fn new(v: &[ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
+        let [a, b, c] = v;
+        let (mut a, mut b, mut c) = ((a.x, a.y), (b.x, b.y), (c.x, c.y));
+        // The sign of the area, changed by each exchange.
+        let mut bend_right = area > 0;
         if b.1 < a.1 {
             (a, b) = (b, a);
             bend_right = !bend_right;
         }
+        if c.1 < b.1 {
+            (b, c) = (c, b);
+            bend_right = !bend_right;
+            if b.1 < a.1 {
+                (a, b) = (b, a);
+                bend_right = !bend_right;
+            }
+        }
+        let row = first_centre(a.1).max(clip.start);
+        let end = if area == 0 { row } else { first_centre(c.1).min(clip.end) };
+        let bend = first_centre(b.1).min(end);
+        let long = if row < end { Edge::new(a, c, row) } else { Edge::EMPTY };
+        Self { left: long, right: long, a, b, c, bend_right, row, bend, end }
     }
-    let mut row = first_centre(a.1).max(clip.start);
-    let end = first_centre(c.1).min(clip.end);
-    if area == 0 || row >= end {
-        return;
-    }
-    let bend = first_centre(b.1).min(end);
-    let short = usize::from(bend_right);
-    let mut edges = [Edge::EMPTY; 2];
-    edges[1 - short] = Edge::new(a, c, row);
-    if row < bend {
-        edges[short] = Edge::new(a, b, row);
-        part(&mut edges, row..bend);
-        row = bend;
-    }
-    if row < end {
-        edges[short] = Edge::new(b, c, row);
-        part(&mut edges, row..end);
+
+    /// The next part that has rows.
+    #[inline]
+    #[expect(clippy::should_implement_trait, reason = "the edges are read and stepped between the calls")]
+    pub fn next(&mut self) -> Option<Range<i32>> {
+        let row = self.row;
+        if row >= self.end {
+            return None;
+        }
+        let (from, to, end) = if row < self.bend { (self.a, self.b, self.bend) } else { (self.b, self.c, self.end) };
+        let short = Edge::new(from, to, row);
+        if self.bend_right {
+            self.right = short;
+        } else {
+            self.left = short;
+        }
+        self.row = end;
+        Some(row..end)
     }
 }

@@ -188,7 +188,7 @@ pub fn snapped<const K: usize>(
         } else {
             for part in range.parts(all) {
                 let mut corners = Vec::new();
-                clip_triangle(&vertices, all, part, |corner| corners.extend(placed(corner)));
+                clip_triangle(vertices, all, part, |corner| corners.extend(placed(corner)));
                 fan(corners);
             }
         }

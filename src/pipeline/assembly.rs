@@ -1,0 +1,266 @@
+//! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
+
+use super::{Phase, Scene, State};
+use crate::fragment::Shader;
+use crate::geometry::{
+    BoundsNode, ClipVertex, Corner, Face, Mesh, Outcode, Part, Placed, ScreenVertex, Side, Transform, Varyings,
+    VertexShader, View, clip_triangle, inverse_w, place, project, signed_area,
+};
+use crate::math::Projective;
+use crate::output::{Framebuffer, Slot};
+use crate::raster::{PixelRect, pixel_rect};
+use crate::{Cull, Winding};
+use core::ops::Range;
+
+/// The corners of a clipped polygon on the screen.
+type Fan<V> = heapless::Vec<(ScreenVertex, V), 10>;
+
+/// One draw.
+pub(super) struct Assembly<'s, 'a, F, S> {
+    pub(super) scene: &'s mut Scene<'a, F>,
+    pub(super) state: &'s State,
+    pub(super) mesh: &'s Mesh<'s>,
+    pub(super) shader: &'s S,
+    pub(super) transform: &'s Transform,
+    /// Pixels that can be drawn in this phase.
+    pub(super) clip: PixelRect,
+}
+
+impl State {
+    /// The side that a triangle of this signed area, which is not 0, shows.
+    #[inline]
+    pub(super) fn side(&self, area: i64) -> Side {
+        // y points down here: a positive area goes with the clock.
+        if (area > 0) == (self.front == Winding::CounterClockwise) { Side::Back } else { Side::Front }
+    }
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
+    /// Takes the parts of a mesh that can be seen.
+    #[inline(never)]
+    pub(super) fn parts(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
+        let view = View::new(mvp, &self.scene.viewport);
+        let mut k = 0;
+        while let Some(node) = nodes.get(k) {
+            if self.scene.sees(&view, &node.bounds, self.state.range) {
+                let first = usize::from(node.first_triangle);
+                self.triangles(first..first + usize::from(node.triangles));
+                k += 1;
+            } else {
+                self.scene.stats.culled = self.scene.stats.culled.wrapping_add(1);
+                k = usize::from(node.skip);
+            }
+        }
+    }
+
+    /// Takes triangles one by one.
+    #[inline(never)]
+    pub(super) fn triangles(&mut self, numbers: Range<usize>) {
+        for number in numbers {
+            if self.scene.records.overflowed() {
+                return;
+            }
+            // 2. Primitive assembly.
+            let Some(corners) = self.mesh.triangle(number) else {
+                return;
+            };
+            self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
+            // 3. Vertex stage, once a vertex where there are records to keep the result.
+            // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
+            let [i, j, k] = corners;
+            let (a, b, c) = (self.slot(usize::from(i)), self.slot(usize::from(j)), self.slot(usize::from(k)));
+            if a.is_on_screen() & b.is_on_screen() & c.is_on_screen() {
+                self.screen_triangle(&[a.screen(), b.screen(), c.screen()], corners, number);
+            } else {
+                self.clip([a.outcode(), b.outcode(), c.outcode()], corners, number);
+            }
+        }
+    }
+
+    /// The vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
+    #[inline]
+    fn slot(&mut self, index: usize) -> Slot {
+        let slot = self.scene.records.slot(index);
+        if slot.is_unshaded() { self.shade(index) } else { slot }
+    }
+
+    #[inline(never)]
+    fn shade(&mut self, index: usize) -> Slot {
+        self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
+        let placed = if S::DISPLACES {
+            place(&self.transformed(index))
+        } else {
+            self.transform.place(&self.mesh.data().positions, index)
+        };
+        let slot = Slot::new(&placed);
+        if self.scene.records.has_vertices() {
+            let varyings = self.vertex(index);
+            self.scene.records.keep::<S>(index, slot, &varyings);
+        }
+        slot
+    }
+
+    #[inline]
+    fn transformed(&self, index: usize) -> ClipVertex {
+        if S::DISPLACES {
+            self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
+        } else {
+            self.transform.vertex(&self.mesh.data().positions, index)
+        }
+    }
+
+    /// The varyings of a vertex, with 1 / w if they take it.
+    #[inline]
+    fn vertex(&self, index: usize) -> S::Varyings {
+        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+        if S::Varyings::PERSPECTIVE > 0 {
+            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
+        }
+        varyings
+    }
+
+    /// 4. Clipping, of a triangle with a vertex outside.
+    #[inline(never)]
+    fn clip(&mut self, codes: [u8; 3], corners: [u16; 3], number: usize) {
+        let clamped = self.state.range.clamped().0;
+        if codes[0] & codes[1] & codes[2] & !clamped != 0 {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            return;
+        }
+        self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
+        let all = Outcode(codes[0] | codes[1] | codes[2]);
+        for part in self.state.range.parts(all) {
+            let mut fan = Fan::<S::Varyings>::new();
+            self.cut(corners, all, part, &mut fan);
+            self.fan(&fan, corners, number);
+        }
+    }
+
+    /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
+    /// has left the stack when it is drawn.
+    #[inline(never)]
+    fn cut(&self, corners: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan<S::Varyings>) {
+        let triangle = corners.iter().map(|k| {
+            let index = usize::from(*k);
+            (self.transformed(index), self.shader.vertex(&Corner::new(self.mesh, index)))
+        });
+        clip_triangle(triangle, codes, part, |(vertex, varyings)| {
+            if let Some(placed) = project(vertex) {
+                let mut varyings = *varyings;
+                if S::Varyings::PERSPECTIVE > 0 {
+                    varyings.set_inverse_w(inverse_w(vertex));
+                }
+                // There are no more corners than places.
+                let _ = fan.push((placed, varyings));
+            }
+        });
+    }
+
+    /// Draws a clipped polygon as a fan of triangles.
+    #[inline(never)]
+    fn fan(&mut self, fan: &Fan<S::Varyings>, corners: [u16; 3], number: usize) {
+        let recording = self.scene.phase == Phase::Record;
+        let mut first_index = 0;
+        let mut last_index = 0;
+        for (k, next) in fan.iter().enumerate() {
+            let mut next_index = 0;
+            if recording {
+                next_index = self.scene.records.push_vertex();
+                let slot = Slot::new(&Placed::Screen(next.0));
+                self.scene.records.keep::<S>(usize::from(next_index), slot, &next.1);
+            }
+            if k == 0 {
+                first_index = next_index;
+            } else if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k - 1)) {
+                let v = [first.0, last.0, next.0];
+                if let Some((row, side)) = self.visible(&v) {
+                    let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
+                    if recording {
+                        self.record(row, [first_index, last_index, next_index], word);
+                    } else {
+                        // What the records would keep of the varyings, so that the picture is the same without them.
+                        let varyings = [rounded::<S>(&first.1), rounded::<S>(&last.1), rounded::<S>(&next.1)];
+                        self.draw(&v, &varyings, word);
+                    }
+                }
+            }
+            last_index = next_index;
+        }
+    }
+
+    /// A triangle that needs no clipping.
+    #[inline]
+    fn screen_triangle(&mut self, v: &[ScreenVertex; 3], corners: [u16; 3], number: usize) {
+        let Some((row, side)) = self.visible(v) else { return };
+        let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
+        if self.scene.phase == Phase::Record {
+            self.record(row, corners, word);
+        } else {
+            let [i, j, k] = corners;
+            self.draw(v, &[self.varyings(i), self.varyings(j), self.varyings(k)], word);
+        }
+    }
+
+    fn varyings(&self, index: u16) -> S::Varyings {
+        if self.scene.records.has_vertices() {
+            return self.scene.records.corner::<S>(index).1;
+        }
+        rounded::<S>(&self.vertex(usize::from(index)))
+    }
+
+    /// 5. Culling by winding, and of what covers no pixel: in which row the triangle can begin, and which side it shows.
+    #[inline(never)]
+    fn visible(&mut self, v: &[ScreenVertex; 3]) -> Option<(u16, Side)> {
+        let stats = &mut *self.scene.stats;
+        let area = signed_area(&v[0], &v[1], &v[2]);
+        let side = self.state.side(area);
+        let culled = match self.state.cull {
+            Cull::Back => side == Side::Back,
+            Cull::Front => side == Side::Front,
+            Cull::None => false,
+        };
+        if area == 0 {
+            stats.degenerate = stats.degenerate.wrapping_add(1);
+            return None;
+        }
+        if culled {
+            stats.back_facing = stats.back_facing.wrapping_add(1);
+            return None;
+        }
+        let rect = pixel_rect(v);
+        if rect.is_empty() {
+            stats.empty = stats.empty.wrapping_add(1);
+            return None;
+        }
+        let rect = rect.intersection(&self.clip);
+        if rect.is_empty() {
+            stats.outside = stats.outside.wrapping_add(1);
+            return None;
+        }
+        stats.drawn = stats.drawn.wrapping_add(1);
+        Some((rect.y.start as u16, side))
+    }
+
+    /// 6, 7. Into the records, to the strip it begins in.
+    fn record(&mut self, row: u16, corners: [u16; 3], face: u32) {
+        let row = i32::from(row) - self.scene.band.start;
+        let strip = self.scene.strips.of(row as u32);
+        self.scene.records.push_triangle(corners, face, strip);
+    }
+
+    fn draw(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
+        if let Some(mut painter) = self.scene.painter(&self.clip, self.state, self.shader) {
+            painter.triangle(v, varyings, face);
+        }
+    }
+}
+
+/// The varyings as the records would give them back.
+#[inline(never)]
+fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
+    let mut words = S::Varyings::ZERO;
+    let words: &mut [u32] = bytemuck::cast_slice_mut(words.as_mut());
+    let words = words.get_mut(..S::WORDS).unwrap_or_default();
+    S::store(varyings, words);
+    S::load(words)
+}
