@@ -18,14 +18,8 @@ pub struct Corrected<'a, V: Varyings> {
     steps: &'a Steps<V>,
     /// d q, linear ones, q.
     at: V,
-    /// The same in 64 bits, for triangles that take them.
-    wide: Wide<V>,
-}
-
-/// Values at the pixel in `base`.
-#[derive(Clone, Copy, Debug)]
-struct Wide<V: Varyings> {
-    varyings: V::Correction,
+    /// The same in 64 bits, for triangles that take them: the values are the `base` of planes.
+    wide: V::Correction,
 }
 
 impl<'a, V: Varyings> Corrected<'a, V> {
@@ -39,7 +33,7 @@ impl<'a, V: Varyings> Corrected<'a, V> {
                 plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(x)).wrapping_add(plane.dy.wrapping_mul(y));
             }
         }
-        Self { steps, at: varyings, wide: Wide { varyings: wide } }
+        Self { steps, at: varyings, wide }
     }
 
     /// Goes on by as many pixels.
@@ -48,7 +42,7 @@ impl<'a, V: Varyings> Corrected<'a, V> {
         for (value, step) in self.at.as_mut().iter_mut().zip(self.steps.d_dx.as_ref()) {
             *value = value.wrapping_add(step.wrapping_mul(pixels));
         }
-        if let Some((PerspectiveClass::Wide, w, lanes)) = self.wide.varyings.lanes() {
+        if let Some((PerspectiveClass::Wide, w, lanes)) = self.wide.lanes() {
             for plane in lanes.iter_mut().map(|lane| &mut lane.plane).chain([w]) {
                 plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(i64::from(pixels)));
             }
@@ -59,7 +53,7 @@ impl<'a, V: Varyings> Corrected<'a, V> {
     #[inline]
     pub fn varyings(&self) -> V {
         let mut varyings = self.at;
-        let lanes = self.wide.varyings.varyings();
+        let lanes = self.wide.varyings();
         match self.steps.correction.class() {
             PerspectiveClass::Affine => correct(varyings.as_mut(), lanes, |h, _| h),
             PerspectiveClass::Narrow => {
@@ -68,7 +62,7 @@ impl<'a, V: Varyings> Corrected<'a, V> {
                 correct(varyings.as_mut(), lanes, |dq, _| mul_high_signed(dq << shift, inv_q));
             }
             PerspectiveClass::Wide => {
-                let q = self.wide.varyings.wide_w().base as u64;
+                let q = self.wide.wide_w().base as u64;
                 let shift = q.leading_zeros() & 63;
                 let inv_q = reciprocal(((q << shift) >> 32) as u32);
                 correct(varyings.as_mut(), lanes, |_, lane| {

@@ -33,9 +33,8 @@ pub fn homogenize<V: Varyings>(
 /// The planes of d q and q in 64 bits, where 32 are too few.
 #[inline]
 pub fn widen<C: Correction>(gradients: &Gradients, values: &[&[i32]; 3], correction: &mut C) {
-    match correction.lanes() {
-        Some((PerspectiveClass::Wide, wide_w, lanes)) => planes(gradients, values, wide_w, lanes),
-        _ => {}
+    if let Some((PerspectiveClass::Wide, wide_w, lanes)) = correction.lanes() {
+        planes(gradients, values, wide_w, lanes);
     }
 }
 
