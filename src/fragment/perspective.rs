@@ -10,7 +10,7 @@
 
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader, Steps};
 use crate::geometry::{Correction, Lane, PerspectiveClass, Varyings};
-use crate::math::{mul_high_signed, reciprocal};
+use crate::math::{Divisor, mul_high_signed};
 
 /// Perspective-correct varyings at a pixel, and a way to the next ones.
 #[derive(Clone, Copy, Debug)]
@@ -58,27 +58,20 @@ impl<'a, V: Varyings> Corrected<'a, V> {
             PerspectiveClass::Affine => correct(varyings.as_mut(), lanes, |h, _| h),
             PerspectiveClass::Narrow => {
                 let [.., q] = varyings.as_ref() else { return varyings };
-                let (shift, inv_q) = normalized(*q as u32);
-                correct(varyings.as_mut(), lanes, |dq, _| mul_high_signed(dq << shift, inv_q));
+                let q = Divisor::new(*q as u32);
+                correct(varyings.as_mut(), lanes, |dq, _| q.divide(dq));
             }
             PerspectiveClass::Wide => {
                 let q = self.wide.wide_w().base as u64;
                 let shift = q.leading_zeros() & 63;
-                let inv_q = reciprocal(((q << shift) >> 32) as u32);
+                let q = Divisor::new(((q << shift) >> 32) as u32);
                 correct(varyings.as_mut(), lanes, |_, lane| {
-                    mul_high_signed(((lane.plane.base << shift) >> 32) as i32, inv_q)
+                    q.divide_shifted(((lane.plane.base << shift) >> 32) as i32)
                 });
             }
         }
         varyings
     }
-}
-
-/// The shift that brings `q`, which is not 0, to 2³¹..2³², and 2⁶³ over what it is there.
-#[inline]
-fn normalized(q: u32) -> (u32, u32) {
-    let shift = q.leading_zeros() & 31;
-    (shift, reciprocal(q << shift))
 }
 
 /// Replaces each value by what it says of the varying: h, from `quotient`, scaled back.
@@ -119,7 +112,7 @@ pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: Dept
 ) {
     const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };
     let Fragments { mut color, mut depth, mut z, varyings, steps, mut position } = span;
-    let side = steps.side;
+    let (side, level) = (steps.side, steps.level);
     let mut ahead = Corrected::new(varyings, steps, position);
     let mut varyings = ahead.varyings();
     while !color.is_empty() {
@@ -138,7 +131,8 @@ pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: Dept
         for (color, stored) in colors.iter_mut().zip(depths) {
             let depth = (z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
-                if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side }) {
+                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+                if let Some(value) = shader.fragment(&fragment) {
                     test.write(depth, stored);
                     *color = value;
                 }

@@ -17,6 +17,8 @@ pub struct Fragment<'a, V> {
     pub depth: u16,
     /// Which side of the triangle is seen.
     pub side: Side,
+    /// What [`Shader::level`] made of the triangle.
+    pub level: u32,
 }
 
 /// The pixels of a span and everything that is interpolated along it.
@@ -49,6 +51,8 @@ pub struct Steps<V: Varyings> {
     pub words: [u32; 2],
     /// Which side of the triangle is seen.
     pub side: Side,
+    /// What [`Shader::level`] made of it.
+    pub level: u32,
 }
 
 /// The programmable fragment stage: colours pixels of format `P`.
@@ -62,6 +66,14 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 
     /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
+
+    /// A word for the fragments of a triangle, from the varyings at its vertices and twice its area in 2⁻¹⁶ px²: a level of
+    /// detail.
+    #[inline(always)]
+    fn level(&self, corners: &[Self::Varyings; 3], area: u64) -> u32 {
+        let _ = (corners, area);
+        0
+    }
 
     /// Whatever of the span loop's work can be done once a triangle: called before its spans with the varyings at one of
     /// its pixels, which may be moved (all of its spans will be), and with their changes a pixel. Yields words for the
@@ -91,11 +103,12 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
         return corrected_fragments(shader, face, span, test);
     }
     let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
-    let side = steps.side;
+    let (side, level) = (steps.side, steps.level);
     for (color, stored) in color.iter_mut().zip(depth) {
         let depth = (z >> 16) as u16;
         if !D::ENABLED || test.passes(depth, *stored) {
-            if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side }) {
+            if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side, level })
+            {
                 test.write(depth, stored);
                 *color = value;
             }

@@ -17,5 +17,5 @@ pub use format::{Scalar, Wide};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
 pub use projective::{ProjectionError, Projective};
-pub use reciprocal::{mul_high, mul_high_signed, reciprocal};
+pub use reciprocal::{Divisor, mul_high, mul_high_signed, reciprocal};
 pub use vector::Vec3;

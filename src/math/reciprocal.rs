@@ -76,9 +76,76 @@ pub const fn reciprocal(x: u32) -> u32 {
     if r2 < 1 << 30 { u32::MAX } else { r2 }
 }
 
+/// A number to divide others by: a reciprocal of 16 bits, and what is wrong with it.
+///
+/// Cheaper than [`reciprocal`] where products of 32 × 32 bits are not at hand.
+#[derive(Clone, Copy, Debug)]
+pub struct Divisor {
+    /// Brings the divisor to 2³¹..2³².
+    shift: u32,
+    /// 2⁴⁷ / x of the divisor x there, within 2⁻¹⁴·⁹: in 2¹⁵..=2¹⁶, and a little.
+    reciprocal: i32,
+    /// 2³¹ - x `reciprocal` / 2¹⁶: below 2¹⁶·¹.
+    defect: i32,
+}
+
+impl Divisor {
+    /// Of a number, which is not 0.
+    #[inline(always)]
+    pub fn new(q: u32) -> Self {
+        let shift = q.leading_zeros() & 31;
+        let x = q << shift;
+        let r0 = SEED[(x >> 23) as usize & 0xFF] as i32;
+        // The first step of `reciprocal`, rounded to 16 bits.
+        let x16 = (x >> 16) + ((x >> 15) & 1);
+        let defect = (1_i32 << 31).wrapping_sub((x16 as i32).wrapping_mul(r0));
+        let r = r0 + ((r0 * (defect >> 8) + (1 << 22)) >> 23);
+        let product = (x >> 16).wrapping_mul(r as u32).wrapping_add((x & 0xFFFF).wrapping_mul(r as u32) >> 16);
+        Self { shift, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(product as i32) }
+    }
+
+    /// `n` / q as 1.31.
+    ///
+    /// # Format
+    /// |n| ≤ q / 2. Off by less than 6 units: twice the second of two steps' 2⁻²⁹·⁸, and bits cut.
+    #[inline(always)]
+    pub fn divide(&self, n: i32) -> i32 {
+        self.divide_shifted(n << self.shift)
+    }
+
+    /// The same for an `n` that has been shifted already by as much as the divisor lacks to 2³¹.
+    #[inline(always)]
+    pub fn divide_shifted(&self, n: i32) -> i32 {
+        let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
+        let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+        h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 15)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn divisors_divide_within_6_units_of_2_to_minus_31() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 15
+        };
+        let mut worst = 0_f64;
+        let boundaries = (0..1 << 17).map(|k| (1 << 31) + (k << 14)).chain((0..1 << 16).map(|k| u32::MAX - (k << 15)));
+        for x in boundaries.flat_map(|x: u32| [x, x.wrapping_sub(1) | 1 << 31, x >> 7, x >> 20]) {
+            for n in [x / 2, random() % (x / 2 + 1)] {
+                for n in [n as i32, -(n as i32)] {
+                    let exact = f64::from(n) / f64::from(x) * 2f64.powi(31);
+                    worst = worst.max((f64::from(Divisor::new(x).divide(n)) - exact).abs());
+                }
+            }
+        }
+        std::println!("worst {worst:.2} units");
+        assert!(worst < 6.0, "worst {worst} units");
+    }
 
     /// Worst relative error over `count` inputs from a multiplicative walk, against exact division.
     fn worst(inputs: impl Iterator<Item = u32>) -> f64 {

@@ -49,6 +49,11 @@ macro_rules! rgb565_format {
                 from_rgb565($load(raw))
             }
 
+            #[inline(always)]
+            fn from_rgb565(raw: u16) -> u16 {
+                $store(raw)
+            }
+
             const PACKED: bool = true;
 
             #[inline(always)]

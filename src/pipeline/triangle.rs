@@ -28,6 +28,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let gradients = Gradients::new(v, area, self.screen);
         let depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
         let (mut corner, mut d_dx, mut d_dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
+        let level = self.shader.level(varyings, area.unsigned_abs());
         let mut correction = <S::Varyings as Varyings>::Correction::NONE;
         let (mut homogeneous, mut varyings) = (None, varyings);
         if S::Varyings::PERSPECTIVE > 0 {
@@ -43,7 +44,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
         }
         let words = self.shader.prepare(&mut corner, &d_dx);
-        let steps = Steps { dz_dx: depth.dx, d_dx, words, side: self.state.side(area), correction };
+        let steps = Steps { dz_dx: depth.dx, d_dx, words, side: self.state.side(area), level, correction };
 
         // 9. Spans, between two edges from row to row.
         let columns = &self.clip.x;

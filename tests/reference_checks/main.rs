@@ -12,7 +12,7 @@ use reference::mistakes::Mistake;
 use reference::model::Model;
 use std::path::{Path, PathBuf};
 
-const CHECKED: [&str; 9] = [
+const CHECKED: [&str; 10] = [
     "tri_random",
     "tri_sliver",
     "tri_special",
