@@ -2,6 +2,7 @@
 
 use super::PixelFormat;
 use super::texel::{OPAQUE, Rgba, TexelFormat, expand};
+use crate::math::SMALL_CORE;
 
 /// A rectangle of texels.
 ///
@@ -18,6 +19,9 @@ pub trait Texture {
 
     /// Whether all texels are what [`rgb565`](Self::rgb565) says.
     const IS_RGB565: bool = false;
+
+    /// Whether no texel is transparent.
+    const IS_OPAQUE: bool = Self::IS_RGB565;
 
     /// The texel as RGB565.
     #[inline]
@@ -205,8 +209,15 @@ impl<const W: usize, const H: usize> Texture for Tile<'_, W, H> {
 
     #[inline(always)]
     fn fetch<P: PixelFormat>(&self, vu: u32) -> Option<P::Raw> {
-        let (x, y) = (vu >> (16 - W.trailing_zeros()), vu >> 16 >> (16 - H.trailing_zeros()));
-        Some(P::from_rgb565(self.rgb565(x, y)))
+        let (columns, rows) = (W.trailing_zeros(), H.trailing_zeros());
+        if SMALL_CORE || columns + rows > 16 || rows > 8 || rows == 0 {
+            return self.pixel::<P>(vu >> (16 - columns), vu >> 16 >> (16 - rows));
+        }
+        // The upper bits of both halves, those of the lower one moved up to the others: the number of the texel.
+        let bits = vu & (!(u32::MAX >> rows) | (0xFFFF ^ 0xFFFF >> columns));
+        let number = (bits | bits << (16 - rows)) >> (32 - rows - columns);
+        // Nothing is out of bounds, which the compiler sees.
+        Some(P::from_rgb565(self.0.as_flattened().get(number as usize).copied().unwrap_or(0)))
     }
 }
 

@@ -7,36 +7,45 @@
 //! Every [`STEP`] pixels, and at the last pixel of a span, both are made anew. In between, steps rounded to 2⁻¹⁶ are off
 //! by at most 2⁻¹³; in the last run of a span they are taken backwards from its end, so that ends are exact.
 
-use super::perspective::{Corrected, nth};
+use super::perspective::nth;
 use super::{DepthTest, Fragments, PixelFormat, Steps, Texture};
-use crate::geometry::{Correction, Lane, PerspectiveClass, Varyings};
-use crate::math::Divisor;
+use crate::geometry::{Correction, PerspectiveClass, Varyings};
+use crate::math::CoarseDivisor;
 
 /// Pixels from one division to the next.
 pub(super) const STEP: usize = 16;
 
-/// Draws a span of a texture that repeats; the first two varyings are u and v, 16.16.
-#[inline(always)]
+/// Draws a span of a texture that repeats; the first two varyings are u and v, 16.16. Not for triangles whose perspective
+/// is [`Wide`](PerspectiveClass::Wide).
+#[inline(never)]
 pub(super) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings>(
     texture: &T,
     span: Fragments<'_, P, V>,
     test: D,
 ) {
-    let Fragments { mut color, mut depth, z, varyings, steps, position } = span;
-    let mut ahead = Ahead::new(varyings, steps, position);
-    let mut uv = ahead.uv();
+    let Fragments { mut color, mut depth, z, varyings, steps, .. } = span;
+    let is_affine = steps.correction.class() == PerspectiveClass::Affine;
+    let (mut u, mut v) = (Coordinate::new(0, &varyings, steps), Coordinate::new(1, &varyings, steps));
+    let last = |values: &[i32]| values.last().copied().unwrap_or(0);
+    let (mut q, dq_dx) = (last(varyings.as_ref()), last(steps.d_dx.as_ref()));
+    let mut shift = 1;
+    let mut uv = coordinates(&u, &v, q, is_affine, &mut shift);
     let mut pen = Pen { z, dz_dx: steps.dz_dx, vu: 0, step: 0 };
     while color.len() > STEP {
         let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<STEP>() else { return };
         color = rest;
         let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<STEP>() else { return };
         depth = rest;
-        ahead.advance(STEP as i32);
-        let next = ahead.uv();
+        u.advance(STEP as i32);
+        v.advance(STEP as i32);
+        q = q.wrapping_add(dq_dx.wrapping_mul(STEP as i32));
+        let next = coordinates(&u, &v, q, is_affine, &mut shift);
         pen.vu = packed(uv);
         let [du, dv] = [next[0].wrapping_sub(uv[0]), next[1].wrapping_sub(uv[1])];
-        pen.step = packed([(du + STEP as i32 / 2) >> 4, (dv + STEP as i32 / 2) >> 4]);
+        pen.step = step([(du + STEP as i32 / 2) >> 4, (dv + STEP as i32 / 2) >> 4]);
         uv = next;
+        // As if it changed: what it is multiplied by would be computed before the loop, and live on the stack.
+        pen.dz_dx = core::hint::black_box(pen.dz_dx);
         // Spelled out: at `opt-level = "s"` a loop would stay a loop.
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = colors;
         let [az, bz, cz, dz, ez, fz, gz, hz, iz, jz, kz, lz, mz, nz, oz, pz] = depths;
@@ -58,10 +67,15 @@ pub(super) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
         pen.draw::<P, T, D>(texture, test, p, pz);
     }
     let way = color.len().saturating_sub(1);
-    ahead.advance(way as i32);
-    let end = if way > 0 { ahead.uv() } else { uv };
+    let mut end = uv;
+    if way > 0 {
+        u.advance(way as i32);
+        v.advance(way as i32);
+        q = q.wrapping_add(dq_dx.wrapping_mul(way as i32));
+        end = coordinates(&u, &v, q, is_affine, &mut shift);
+    }
     let [du, dv] = [end[0].wrapping_sub(uv[0]), end[1].wrapping_sub(uv[1])];
-    pen.step = packed([nth(du, way), nth(dv, way)]);
+    pen.step = step([nth(du, way), nth(dv, way)]);
     pen.vu = packed(end).wrapping_sub(pen.step.wrapping_mul(way as u32));
     let mut colors = color.chunks_exact_mut(4);
     let mut depths = depth.chunks_exact_mut(4);
@@ -81,6 +95,12 @@ pub(super) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
 #[inline(always)]
 const fn packed([u, v]: [i32; 2]) -> u32 {
     ((v as u32) << 16).wrapping_add(u as u32 & 0xFFFF)
+}
+
+/// The word that steps both: what is carried from u is carried, up or down.
+#[inline(always)]
+const fn step([du, dv]: [i32; 2]) -> u32 {
+    ((dv as u32) << 16).wrapping_add(du as u32)
 }
 
 /// What changes from pixel to pixel.
@@ -103,8 +123,13 @@ impl Pen {
     ) {
         let depth = (self.z >> 16) as u16;
         if !D::ENABLED || test.passes(depth, *stored) {
-            if let Some(pixel) = texture.fetch::<P>(self.vu) {
+            if T::IS_OPAQUE {
                 test.write(depth, stored);
+            }
+            if let Some(pixel) = texture.fetch::<P>(self.vu) {
+                if !T::IS_OPAQUE {
+                    test.write(depth, stored);
+                }
                 *color = pixel;
             }
         }
@@ -113,78 +138,42 @@ impl Pen {
     }
 }
 
-/// Texture coordinates at a pixel, and the way to the next ones: [`Corrected`], for two varyings and no others.
-struct Ahead<'a, V: Varyings> {
-    class: PerspectiveClass,
-    lanes: [Lane2; 2],
-    q: i32,
-    dq_dx: i32,
-    wide: Option<Corrected<'a, V>>,
-}
-
 /// What is interpolated of a coordinate, and how to scale it back.
-struct Lane2 {
+struct Coordinate {
     h: i32,
     dh_dx: i32,
     base: i32,
     shift: u32,
+    /// Half of what is shifted out.
+    half: i32,
 }
 
-impl<'a, V: Varyings> Ahead<'a, V> {
+impl Coordinate {
     #[inline(always)]
-    fn new(varyings: V, steps: &'a Steps<V>, position: (i32, i32)) -> Self {
-        let class = steps.correction.class();
-        let (values, changes, lanes) = (varyings.as_ref(), steps.d_dx.as_ref(), steps.correction.varyings());
-        let lane = |k: usize| {
-            let (base, shift) = lanes.get(k).map_or((0, 0), |lane: &Lane| (lane.base, lane.shift));
-            let at = |values: &[i32]| values.get(k).copied().unwrap_or(0);
-            Lane2 { h: at(values), dh_dx: at(changes), base: base.wrapping_add(0), shift }
-        };
-        let last = |values: &[i32]| values.last().copied().unwrap_or(0);
-        let wide = match class {
-            PerspectiveClass::Wide => Some(Corrected::new(varyings, steps, position)),
-            _ => None,
-        };
-        Self { class, lanes: [lane(0), lane(1)], q: last(values), dq_dx: last(changes), wide }
+    fn new<V: Varyings>(k: usize, varyings: &V, steps: &Steps<V>) -> Self {
+        let (base, shift) = steps.correction.varyings().get(k).map_or((0, 0), |lane| (lane.base, lane.shift & 31));
+        let at = |values: &[i32]| values.get(k).copied().unwrap_or(0);
+        Self { h: at(varyings.as_ref()), dh_dx: at(steps.d_dx.as_ref()), base, shift, half: (1 << shift) >> 1 }
     }
 
     #[inline(always)]
     fn advance(&mut self, pixels: i32) {
-        let [u, v] = &mut self.lanes;
-        u.h = u.h.wrapping_add(u.dh_dx.wrapping_mul(pixels));
-        v.h = v.h.wrapping_add(v.dh_dx.wrapping_mul(pixels));
-        self.q = self.q.wrapping_add(self.dq_dx.wrapping_mul(pixels));
-        if let Some(wide) = &mut self.wide {
-            wide.advance(pixels);
-        }
+        self.h = self.h.wrapping_add(self.dh_dx.wrapping_mul(pixels));
     }
 
-    #[inline(always)]
-    fn uv(&self) -> [i32; 2] {
-        let [u, v] = &self.lanes;
-        match self.class {
-            PerspectiveClass::Affine => [u.scaled(u.h), v.scaled(v.h)],
-            PerspectiveClass::Narrow => {
-                let q = Divisor::new(self.q as u32);
-                [u.scaled(q.divide(u.h)), v.scaled(q.divide(v.h))]
-            }
-            PerspectiveClass::Wide => self.wide.as_ref().map_or([0; 2], wide),
-        }
-    }
-}
-
-#[inline(never)]
-fn wide<V: Varyings>(corrected: &Corrected<'_, V>) -> [i32; 2] {
-    match corrected.varyings().as_ref() {
-        [u, v, ..] => [*u, *v],
-        _ => [0; 2],
-    }
-}
-
-impl Lane2 {
     /// To nearest.
     #[inline(always)]
     fn scaled(&self, h: i32) -> i32 {
-        self.base.wrapping_add(h.wrapping_add((1 << self.shift) >> 1) >> self.shift)
+        self.base.wrapping_add(h.wrapping_add(self.half) >> self.shift)
     }
+}
+
+/// Both coordinates at a pixel. `shift` is how far 1 / w was shifted last.
+#[inline(always)]
+fn coordinates(u: &Coordinate, v: &Coordinate, q: i32, is_affine: bool, shift: &mut u32) -> [i32; 2] {
+    if is_affine {
+        return [u.scaled(u.h), v.scaled(v.h)];
+    }
+    let q = CoarseDivisor::near(q as u32, shift);
+    [u.scaled(q.divide(u.h)), v.scaled(q.divide(v.h))]
 }

@@ -6,7 +6,7 @@ use super::texel::OPAQUE;
 use super::texture::{Texture, TextureError};
 use super::texture_span::{STEP, texture_span};
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
-use crate::geometry::{Corner, Light, Lit, Perspective, VertexShader};
+use crate::geometry::{Corner, Correction, Light, Lit, Perspective, PerspectiveClass, VertexShader};
 use core::marker::PhantomData;
 
 /// The colours of a texture, perspective-correct: divided every 16 pixels and at both ends of a span.
@@ -122,7 +122,9 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>>, test: D) {
         match self.level(span.steps.level) {
-            Some(texture) if W::REPEATS && F::NEAREST => texture_span(texture, span, test),
+            Some(texture) if W::REPEATS && F::NEAREST && span.steps.correction.class() != PerspectiveClass::Wide => {
+                texture_span(texture, span, test);
+            }
             _ => fragments(self, face, span, test),
         }
     }

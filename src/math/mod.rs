@@ -17,5 +17,6 @@ pub use format::{Scalar, Wide};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
 pub use projective::{ProjectionError, Projective};
-pub use reciprocal::{Divisor, mul_high, mul_high_signed, reciprocal};
+pub(crate) use reciprocal::SMALL_CORE;
+pub use reciprocal::{CoarseDivisor, Divisor, mul_high, mul_high_signed, reciprocal};
 pub use vector::Vec3;

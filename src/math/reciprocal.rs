@@ -2,18 +2,18 @@
 
 /// Whether the core multiplies 32 × 32 bits to 32 only, so that a wide product is best put together by hand: Armv6-M,
 /// recognized by its lack of compare-and-swap. (`__aeabi_lmul` takes three times as long.)
-const NARROW: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+pub(crate) const SMALL_CORE: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
 /// High word of a 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high(a: u32, b: u32) -> u32 {
-    if NARROW { mul_high_by_halves(a, b) } else { ((a as u64 * b as u64) >> 32) as u32 }
+    if SMALL_CORE { mul_high_by_halves(a, b) } else { ((a as u64 * b as u64) >> 32) as u32 }
 }
 
 /// High word of a signed by unsigned 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
-    if NARROW { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
+    if SMALL_CORE { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
 }
 
 /// [`mul_high`] from [`mul_high_signed`], which takes `a` for a - 2³² when its top bit is set: b is missing then.
@@ -122,29 +122,76 @@ impl Divisor {
     }
 }
 
+/// Out of line, for cores that cannot count them.
+#[cold]
+#[inline(never)]
+fn leading_zeros(q: u32) -> u32 {
+    q.leading_zeros()
+}
+
+/// [`Divisor`], with what the table knows for a reciprocal.
+#[derive(Clone, Copy, Debug)]
+pub struct CoarseDivisor {
+    shift: u32,
+    /// 2⁴⁷ / x within 2⁻⁹.
+    reciprocal: i32,
+    /// 2²⁵ - x `reciprocal` / 2²²: below 2¹⁶·¹.
+    defect: i32,
+}
+
+impl CoarseDivisor {
+    /// Of a number, which is not 0. `shift` is likely to be the number of its leading zeros, and becomes that.
+    #[inline(always)]
+    pub fn near(q: u32, shift: &mut u32) -> Self {
+        let mut x = q << (*shift & 31);
+        if x >> (*shift & 31) != q || x >> 31 == 0 {
+            *shift = leading_zeros(q);
+            x = q << (*shift & 31);
+        }
+        let r = SEED[(x >> 23) as usize & 0xFF] as u32;
+        let product = (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16);
+        Self { shift: *shift & 31, reciprocal: r as i32, defect: (1_i32 << 31).wrapping_sub(product as i32) >> 6 }
+    }
+
+    /// `n` / q as 1.31.
+    ///
+    /// # Format
+    /// |n| ≤ q / 2. Off by less than 2⁻¹⁸ of the quotient, the square of the table's error, and 192 units for bits cut.
+    #[inline(always)]
+    pub fn divide(&self, n: i32) -> i32 {
+        let n = n << self.shift;
+        let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
+        let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+        h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 9)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
-    fn divisors_divide_within_6_units_of_2_to_minus_31() {
+    fn divisors_are_within_their_bounds() {
         let mut state = 1_u32;
         let mut random = || {
             state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
             state ^ state >> 15
         };
-        let mut worst = 0_f64;
+        let (mut worst, mut worst_coarse) = (0_f64, 0_f64);
         let boundaries = (0..1 << 17).map(|k| (1 << 31) + (k << 14)).chain((0..1 << 16).map(|k| u32::MAX - (k << 15)));
         for x in boundaries.flat_map(|x: u32| [x, x.wrapping_sub(1) | 1 << 31, x >> 7, x >> 20]) {
             for n in [x / 2, random() % (x / 2 + 1)] {
                 for n in [n as i32, -(n as i32)] {
                     let exact = f64::from(n) / f64::from(x) * 2f64.powi(31);
                     worst = worst.max((f64::from(Divisor::new(x).divide(n)) - exact).abs());
+                    let coarse = CoarseDivisor::near(x, &mut (random() % 32)).divide(n);
+                    worst_coarse = worst_coarse.max((f64::from(coarse) - exact).abs() - exact.abs() / 262_144.0);
                 }
             }
         }
-        std::println!("worst {worst:.2} units");
+        std::println!("worst {worst:.2} units; coarse: {worst_coarse:.2} beside 2^-18");
         assert!(worst < 6.0, "worst {worst} units");
+        assert!(worst_coarse < 192.0, "worst {worst_coarse} units beside 2^-18 of the quotient");
     }
 
     /// Worst relative error over `count` inputs from a multiplicative walk, against exact division.
