@@ -47,7 +47,9 @@ fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Pol
     let mut polygons = Vec::new();
     for part in range.parts(Outcode(codes)) {
         let mut polygon = Vec::new();
-        clip_triangle(*triangle, Outcode(codes), part, |corner| polygon.push(*corner));
+        clip_triangle(triangle.map(|v| v.0), Outcode(codes), part, |corner| {
+            polygon.push((corner.vertex, corner.weights))
+        });
         if !polygon.is_empty() {
             polygons.push(polygon);
         }
@@ -277,6 +279,7 @@ fn no_input_panics_in_any_state() {
             depth: DepthState { compare: COMPARES[seed as usize % 8], write: seed / 8 % 2 == 0 },
             range: RANGES[seed as usize % 3],
             front: rng.pick(&[Winding::CounterClockwise, Winding::Clockwise]),
+            ..State::DEFAULT
         };
         let stats = strips::<Rgb565>(
             (20, 15),

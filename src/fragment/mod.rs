@@ -1,6 +1,9 @@
 //! Span → pixels: the depth test, the fragment stage's seam, and the shaders that come with the crate.
 
+mod bias;
 mod depth;
+mod depth_only;
+mod dither;
 mod fill;
 mod flat;
 mod gouraud;
@@ -13,7 +16,10 @@ mod texture;
 mod texture_span;
 mod textured;
 
+pub use bias::DepthBias;
 pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use depth_only::DepthOnly;
+pub use dither::dither_word;
 pub use fill::fill;
 pub use flat::Flat;
 pub use gouraud::Gouraud;

@@ -2,7 +2,7 @@
 
 use super::perspective::corrected_fragments;
 use super::{DepthTest, PixelFormat};
-use crate::geometry::{Side, Varyings, VertexShader};
+use crate::geometry::{Correction, Side, Varyings, VertexShader};
 
 /// A fragment that passed the depth test: what the fragment stage sees of it.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +53,14 @@ pub struct Steps<V: Varyings> {
     pub side: Side,
     /// What [`Shader::level`] made of it.
     pub level: u32,
+}
+
+impl<V: Varyings> Steps<V> {
+    /// Of something that is linear on the screen.
+    #[inline]
+    pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 2], side: Side) -> Self {
+        Self { dz_dx, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
+    }
 }
 
 /// The programmable fragment stage: colours pixels of format `P`.

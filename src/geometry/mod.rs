@@ -1,9 +1,12 @@
-//! Object → screen primitive: meshes, bounds, the viewport, culling, vertex transform, lighting, clipping, projection.
+//! Object → screen primitive: meshes, lines and points, bounds, the viewport, culling, vertex transform, lighting, clipping, projection.
 
 mod bounds;
 mod clip;
+mod clip_line;
+mod edges;
 mod frustum;
 mod light;
+mod lines;
 mod mesh;
 mod project;
 mod transform;
@@ -12,13 +15,16 @@ mod vertex;
 mod viewport;
 
 pub use bounds::{BoundingBox, BoundingSphere, Bounds, BoundsNode};
-pub use clip::{ClipVertex, DepthRange, Outcode, Part, clip_triangle};
+pub use clip::{ClipCorner, ClipVertex, DepthRange, Outcode, Part, clip_triangle, weighted};
+pub use clip_line::clip_line;
+pub use edges::{EdgesError, edges};
 pub use frustum::{Containment, Frustum, Plane};
 pub use light::{Light, Lit, NORMAL_ONE};
+pub use lines::{Joined, Lines, Points};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
-pub use project::{ScreenVertex, inverse_w, project, signed_area};
+pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
 pub use transform::{Placed, Transform, View, place};
-pub use varyings::{Correction, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
+pub use varyings::{Correction, InverseW, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
 pub use vertex::{Corner, Face, Side, VertexShader};
 pub use viewport::{Viewport, ViewportError};

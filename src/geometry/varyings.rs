@@ -113,6 +113,9 @@ pub trait Correction: Copy + Debug {
     /// Of a triangle without perspective.
     const NONE: Self;
 
+    /// 1 / w at the corners of a clipped polygon.
+    type Corners: InverseW;
+
     /// How much there is to correct.
     fn class(&self) -> PerspectiveClass;
 
@@ -126,8 +129,42 @@ pub trait Correction: Copy + Debug {
     fn wide_w(&self) -> WidePlane;
 }
 
+/// Words of 1 / w at the corners of a clipped polygon, of which there are at most ten.
+pub trait InverseW: Default {
+    /// Adds a corner's.
+    fn push(&mut self, inverse_w: impl FnOnce() -> u32);
+
+    /// That of corner `k`.
+    fn get(&self, k: usize) -> u32;
+}
+
+/// Where they are not needed.
+impl InverseW for () {
+    #[inline(always)]
+    fn push(&mut self, _: impl FnOnce() -> u32) {}
+
+    #[inline(always)]
+    fn get(&self, _: usize) -> u32 {
+        0
+    }
+}
+
+impl InverseW for heapless::Vec<u32, 10> {
+    #[inline]
+    fn push(&mut self, inverse_w: impl FnOnce() -> u32) {
+        let _ = heapless::Vec::push(self, inverse_w());
+    }
+
+    #[inline]
+    fn get(&self, k: usize) -> u32 {
+        <[u32]>::get(self, k).copied().unwrap_or(0)
+    }
+}
+
 impl Correction for () {
     const NONE: Self = ();
+
+    type Corners = ();
 
     #[inline(always)]
     fn class(&self) -> PerspectiveClass {
@@ -198,6 +235,8 @@ pub struct Lanes<const P: usize> {
 }
 
 impl<const P: usize> Correction for Lanes<P> {
+    type Corners = heapless::Vec<u32, 10>;
+
     const NONE: Self = Self {
         class: PerspectiveClass::Affine,
         wide_w: WidePlane::ZERO,

@@ -7,8 +7,10 @@ mod angle;
 mod format;
 #[cfg(feature = "micromath")]
 mod micromath;
+mod precision;
 mod projective;
 mod reciprocal;
+mod root;
 mod vector;
 
 pub use affine::Affine;
@@ -16,7 +18,9 @@ pub use angle::Angle;
 pub use format::{Scalar, Wide};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
+pub use precision::{DepthPrecision, PrecisionError};
 pub use projective::{ProjectionError, Projective};
 pub(crate) use reciprocal::SMALL_CORE;
 pub use reciprocal::{CoarseDivisor, Divisor, mul_high, mul_high_signed, reciprocal};
+pub use root::isqrt;
 pub use vector::Vec3;

@@ -3,8 +3,8 @@
 use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
-    BoundsNode, ClipVertex, Corner, Face, Mesh, Outcode, Part, Placed, ScreenVertex, Side, Transform, Varyings,
-    VertexShader, View, clip_triangle, inverse_w, place, project, signed_area,
+    BoundsNode, ClipVertex, Corner, Correction, Face, InverseW, Mesh, Outcode, Part, Placed, ScreenVertex, Side,
+    Transform, Varyings, VertexShader, View, clip_triangle, inverse_w, signed_area, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -12,8 +12,11 @@ use crate::raster::{PixelRect, pixel_rect};
 use crate::{Cull, Winding};
 use core::ops::Range;
 
-/// The corners of a clipped polygon on the screen.
-type Fan<V> = heapless::Vec<(ScreenVertex, V), 10>;
+/// The corners of a clipped polygon on the screen, with their weights.
+type Fan = heapless::Vec<(ScreenVertex, [i32; 3]), 10>;
+
+/// 1 / w at these corners, if varyings take it.
+type InverseWs<S> = <<<S as VertexShader>::Varyings as Varyings>::Correction as Correction>::Corners;
 
 /// One draw.
 pub(super) struct Assembly<'s, 'a, F, S> {
@@ -85,10 +88,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline(never)]
-    fn shade(&mut self, index: usize) -> Slot {
+    pub(super) fn shade(&mut self, index: usize) -> Slot {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
         let placed = if S::DISPLACES {
-            place(&self.transformed(index))
+            self.transform.place_clip(&self.transformed(index))
         } else {
             self.transform.place(&self.mesh.data().positions, index)
         };
@@ -101,22 +104,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline]
-    fn transformed(&self, index: usize) -> ClipVertex {
+    pub(super) fn transformed(&self, index: usize) -> ClipVertex {
         if S::DISPLACES {
             self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
         } else {
             self.transform.vertex(&self.mesh.data().positions, index)
         }
-    }
-
-    /// The varyings of a vertex, with 1 / w if they take it.
-    #[inline]
-    fn vertex(&self, index: usize) -> S::Varyings {
-        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
-        if S::Varyings::PERSPECTIVE > 0 {
-            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
-        }
-        varyings
     }
 
     /// 4. Clipping, of a triangle with a vertex outside.
@@ -130,62 +123,73 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1] | codes[2]);
         for part in self.state.range.parts(all) {
-            let mut fan = Fan::<S::Varyings>::new();
-            self.cut(corners, all, part, &mut fan);
-            self.fan(&fan, corners, number);
+            let (mut fan, mut inverse_ws) = (Fan::new(), InverseWs::<S>::default());
+            self.cut(corners, all, part, &mut fan, &mut inverse_ws);
+            self.fan(&fan, &inverse_ws, corners, number);
         }
     }
 
     /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
     /// has left the stack when it is drawn.
     #[inline(never)]
-    fn cut(&self, corners: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan<S::Varyings>) {
-        let triangle = corners.iter().map(|k| {
-            let index = usize::from(*k);
-            (self.transformed(index), self.shader.vertex(&Corner::new(self.mesh, index)))
-        });
-        clip_triangle(triangle, codes, part, |(vertex, varyings)| {
-            if let Some(placed) = project(vertex) {
-                let mut varyings = *varyings;
-                if S::Varyings::PERSPECTIVE > 0 {
-                    varyings.set_inverse_w(inverse_w(vertex));
-                }
+    fn cut(&self, [i, j, k]: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan, inverse_ws: &mut InverseWs<S>) {
+        let vertex = |index: u16| self.transformed(usize::from(index));
+        clip_triangle([vertex(i), vertex(j), vertex(k)], codes, part, |corner| {
+            if let Some(placed) = self.transform.project(&corner.vertex) {
                 // There are no more corners than places.
-                let _ = fan.push((placed, varyings));
+                let _ = fan.push((placed, corner.weights));
+                inverse_ws.push(|| inverse_w(&corner.vertex));
             }
         });
     }
 
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
-    fn fan(&mut self, fan: &Fan<S::Varyings>, corners: [u16; 3], number: usize) {
-        let recording = self.scene.phase == Phase::Record;
-        let mut first_index = 0;
-        let mut last_index = 0;
-        for (k, next) in fan.iter().enumerate() {
-            let mut next_index = 0;
-            if recording {
-                next_index = self.scene.records.push_vertex();
-                let slot = Slot::new(&Placed::Screen(next.0));
-                self.scene.records.keep::<S>(usize::from(next_index), slot, &next.1);
+    fn fan(&mut self, fan: &Fan, inverse_ws: &InverseWs<S>, corners: [u16; 3], number: usize) {
+        let [i, j, k] = corners;
+        let vertex = |index: u16| self.vertex(usize::from(index));
+        let varyings = [vertex(i), vertex(j), vertex(k)];
+        let at = |k: usize, weights: &[i32; 3]| {
+            let mut varyings: S::Varyings = weighted(weights, &varyings);
+            if S::Varyings::PERSPECTIVE > 0 {
+                varyings.set_inverse_w(inverse_ws.get(k));
             }
-            if k == 0 {
-                first_index = next_index;
-            } else if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k - 1)) {
-                let v = [first.0, last.0, next.0];
+            varyings
+        };
+        let recording = self.scene.phase == Phase::Record;
+        let mut indices = [0; 2];
+        for (k, (placed, weights)) in fan.iter().enumerate() {
+            let mut index = 0;
+            if recording {
+                index = self.scene.records.push_vertex();
+                let slot = Slot::new(&Placed::Screen(*placed));
+                self.scene.records.keep::<S>(usize::from(index), slot, &at(k, weights));
+            }
+            if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k.wrapping_sub(1))) {
+                let v = [first.0, last.0, *placed];
                 if let Some((row, side)) = self.visible(&v) {
                     let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
                     if recording {
-                        self.record(row, [first_index, last_index, next_index], word);
+                        self.record(row, [indices[0], indices[1], index], word);
                     } else {
                         // What the records would keep of the varyings, so that the picture is the same without them.
-                        let varyings = [rounded::<S>(&first.1), rounded::<S>(&last.1), rounded::<S>(&next.1)];
-                        self.draw(&v, &varyings, word);
+                        let at = |k, weights| rounded::<S>(&at(k, weights));
+                        self.draw(&v, &[at(0, &first.1), at(k - 1, &last.1), at(k, weights)], word);
                     }
                 }
             }
-            last_index = next_index;
+            indices[usize::from(k > 0)] = index;
         }
+    }
+
+    /// The varyings of a vertex, with 1 / w if they take it.
+    #[inline]
+    pub(super) fn vertex(&self, index: usize) -> S::Varyings {
+        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+        if S::Varyings::PERSPECTIVE > 0 {
+            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
+        }
+        varyings
     }
 
     /// A triangle that needs no clipping.
@@ -249,15 +253,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     fn draw(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
-        if let Some(mut painter) = self.scene.painter(&self.clip, self.state, self.shader) {
-            painter.triangle(v, varyings, face);
-        }
+        self.scene.painter(&self.clip, self.state, self.shader).triangle(v, varyings, face);
     }
 }
 
 /// The varyings as the records would give them back.
 #[inline(never)]
-fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
+pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let mut words = S::Varyings::ZERO;
     let words: &mut [u32] = bytemuck::cast_slice_mut(words.as_mut());
     let words = words.get_mut(..S::WORDS).unwrap_or_default();
