@@ -67,13 +67,13 @@ impl VertexShader for Flat {
 }
 
 /// 8.8 to 8 bits, to nearest; 255.0 is the largest value there is.
-const fn round(channel: i32) -> u8 {
+pub(super) const fn round(channel: i32) -> u8 {
     ((channel + 128) >> 8) as u8
 }
 
 /// The colour of a face, from its word.
 #[inline(always)]
-fn unpacked<P: PixelFormat>(face: u32) -> P::Raw {
+pub(super) fn unpacked<P: PixelFormat>(face: u32) -> P::Raw {
     let [_, r, g, b] = face.to_be_bytes();
     P::pack([r, g, b])
 }
@@ -86,19 +86,25 @@ impl<P: PixelFormat> Shader<P> for Flat {
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
-        let Fragments { color, depth, mut z, steps, .. } = span;
-        let dz_dx = steps.dz_dx;
-        let value = unpacked::<P>(face);
-        if !D::ENABLED {
-            return fill(color, value);
+        flat_span(face, span, test);
+    }
+}
+
+/// Draws a span in the colour of a face's word.
+#[inline]
+pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+    let Fragments { color, depth, mut z, steps, .. } = span;
+    let dz_dx = steps.dz_dx;
+    let value = unpacked::<P>(face);
+    if !D::ENABLED {
+        return fill(color, value);
+    }
+    for (color, depth) in color.iter_mut().zip(depth) {
+        let near = (z >> 16) as u16;
+        if test.passes(near, *depth) {
+            test.write(near, depth);
+            *color = value;
         }
-        for (color, depth) in color.iter_mut().zip(depth) {
-            let near = (z >> 16) as u16;
-            if test.passes(near, *depth) {
-                test.write(near, depth);
-                *color = value;
-            }
-            z = z.wrapping_add_signed(dz_dx);
-        }
+        z = z.wrapping_add_signed(dz_dx);
     }
 }

@@ -34,13 +34,13 @@ impl Gouraud {
 
 /// Channels are interpolated as (c + 1/2) 255 / 256: so they stay half a step away from both ends of their 8 bits, which
 /// leaves [`packed_span`] room for its errors.
-const fn squeeze(c: i32) -> i32 {
+pub(super) const fn squeeze(c: i32) -> i32 {
     let c = (c << 8) + (1 << 15);
     c - (c >> 8)
 }
 
 /// The integer nearest to the channel that was squeezed.
-const fn unsqueeze(c: i32) -> u8 {
+pub(super) const fn unsqueeze(c: i32) -> u8 {
     ((c + (c >> 8)) >> 16) as u8
 }
 
@@ -65,18 +65,12 @@ impl VertexShader for Gouraud {
 
     #[inline]
     fn store(rgb: &[i32; 3], words: &mut [u32]) {
-        let [r, g, b] = *rgb;
-        let packed = ((r + (1 << 13)) >> 14) << 22 | ((g + (1 << 12)) >> 13) << 11 | (b + (1 << 12)) >> 13;
-        if let [word] = words {
-            *word = packed as u32;
-        }
+        store(rgb, words);
     }
 
     #[inline]
     fn load(words: &[u32]) -> [i32; 3] {
-        let word = words.first().copied().unwrap_or(0);
-        let channel = |bits: u32| (bits << 13) as i32;
-        [channel(word >> 22 << 1), channel((word >> 11) & 0x7FF), channel(word & 0x7FF)]
+        load(words)
     }
 }
 
@@ -101,6 +95,24 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     }
 }
 
+/// Channels in one word of the records.
+#[inline]
+pub(super) fn store(rgb: &[i32; 3], words: &mut [u32]) {
+    let [r, g, b] = *rgb;
+    let packed = ((r + (1 << 13)) >> 14) << 22 | ((g + (1 << 12)) >> 13) << 11 | (b + (1 << 12)) >> 13;
+    if let [word] = words {
+        *word = packed as u32;
+    }
+}
+
+/// What [`store`] packed.
+#[inline]
+pub(super) fn load(words: &[u32]) -> [i32; 3] {
+    let word = words.first().copied().unwrap_or(0);
+    let channel = |bits: u32| (bits << 13) as i32;
+    [channel(word >> 22 << 1), channel((word >> 11) & 0x7FF), channel(word & 0x7FF)]
+}
+
 /// A word of three channels: red 8.3 in the upper 11 bits, blue 8.3 in the next 11, green 8.2 in the lower 10.
 ///
 /// It stands for red 2²¹ + blue 2¹⁰ + green, so steps of either sign may be added as words, as long as each channel stays
@@ -123,7 +135,7 @@ const fn word([r, g, b]: [i32; 3]) -> u32 {
 /// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
 /// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next.
 #[inline(never)]
-fn prepare(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
+pub(super) fn prepare(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
     let mut one = [0; 3];
     let mut group = [0; 3];
     for (k, (value, &step)) in rgb.iter_mut().zip(d_dx).enumerate() {
@@ -147,7 +159,7 @@ fn prepare(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
 /// channels are off by at most 1/2, and by 1/16 from the records (1/8 for red): in all, within 1 of 255 before the lower
 /// bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(never)]
-fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3]>, test: D) {
+pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3]>, test: D) {
     let Fragments { color, depth, z, varyings, steps, .. } = span;
     let [step, correction] = steps.words;
     let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(varyings), step, mask: P::packed_mask() };
