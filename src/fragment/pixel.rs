@@ -18,6 +18,20 @@ pub trait PixelFormat {
     /// ones. [`pack`](Self::pack) leads back to the same pixel.
     fn unpack(raw: Self::Raw) -> [u8; 3];
 
+    /// `a` · `weight` + `b` · (256 - `weight`), over 256 and rounded, in 8 bits a channel; for formats of 5 or 6 bits a
+    /// channel by channels of as many, with `weight` rounded to 32nds: within 1.5 of their steps.
+    #[inline(always)]
+    fn mix(a: Self::Raw, b: Self::Raw, weight: u32) -> Self::Raw {
+        Self::pack(mix(Self::unpack(a), Self::unpack(b), weight))
+    }
+
+    /// The sum of two colours, each channel at most full.
+    #[inline(always)]
+    fn add(a: Self::Raw, b: Self::Raw) -> Self::Raw {
+        let ([ar, ag, ab], [br, bg, bb]) = (Self::unpack(a), Self::unpack(b));
+        Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
+    }
+
     /// Whether [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
     const PACKED: bool = false;
 
@@ -39,4 +53,11 @@ pub trait PixelFormat {
 
     /// To embedded-graphics' colour.
     fn to_color(raw: Self::Raw) -> Self::Color;
+}
+
+/// A mixture of two colours, `weight` 256ths of the first.
+#[inline(always)]
+pub(super) fn mix([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], weight: u32) -> [u8; 3] {
+    let channel = |a: u8, b: u8| ((u32::from(a) * weight + u32::from(b) * (256 - weight) + 128) >> 8) as u8;
+    [channel(r, s), channel(g, t), channel(b, u)]
 }
