@@ -2,9 +2,14 @@
 //!
 //! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
 #![allow(dead_code)] // each program uses its part
+#![allow(long_running_const_eval)] // a landscape is computed
 
+pub mod landscape;
+pub mod light;
 pub mod polygons;
+pub mod pot;
 pub mod soup;
+pub mod tiles;
 pub mod torus;
 
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
@@ -35,6 +40,9 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "cycle", draw: |scene, turn| cycle(scene, turn) },
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
+    SceneInfo { name: "phong", draw: |scene, turn| light::phong(scene, turn, light::Shading::PerFragmentNear) },
+    SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
+    SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
 ];
 
 /// Dark blue-grey.
