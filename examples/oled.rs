@@ -10,6 +10,11 @@
 mod firmware;
 mod scenes;
 
+use core::convert::Infallible;
+use zstrip::embedded_graphics_core::pixelcolor::{Gray4, Gray8};
+use zstrip::math::Angle;
+use zstrip::output::{Buffers, Dither, Packer, Renderer, Rows, StripPixels};
+
 const WIDTH: usize = 128;
 const HEIGHT: usize = 64;
 /// Two pixels to the byte, the left one in the high nibble.
@@ -19,60 +24,39 @@ const FRAMES: u16 = 8;
 const ROWS: usize = if cfg!(target_os = "none") { 8 } else { HEIGHT };
 const RECORDS: usize = 8 * 1024;
 
-/// Draws frame number `frame` and hands over each strip in the panel's format.
-fn draw(frame: u16, buffers: &mut Buffers, mut send: impl FnMut(usize, &[u8])) {
-    let turn = frame * (u16::MAX / FRAMES);
-    let Buffers { color, depth, records, packed } = buffers;
-    scenes::draw(1, turn, [WIDTH, HEIGHT], color, depth, records, |y0, strip| {
-        let packed = &mut packed[..strip.len() / 2];
-        pack_strip(strip, y0, packed);
-        send(y0, packed);
-    });
+/// Draws frame number `frame` and hands over each strip in the panel's format: two pixels a byte, dithered.
+fn draw(frame: u16, buffers: &mut Memory, mut send: impl FnMut(usize, &[u8])) {
+    const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
+    let turn = Angle(frame * (u16::MAX / FRAMES));
+    let Memory { color, depth, records, packed } = buffers;
+    let mut renderer = Renderer::<Gray8>::new(SCREEN, Buffers { color, depth, records }).expect("rows fit");
+    let rows = renderer.strip_rows();
+    let mut packer = Packer::<Rows<Gray4>>::new(SCREEN, rows, Dither::BAYER_4, packed).expect("strips fit");
+    let sink = |strip: &StripPixels<'_, Gray8>| {
+        send(strip.area().top_left.y as usize, packer.pack(strip));
+        Ok::<(), Infallible>(())
+    };
+    renderer
+        .frame_to(sink, Gray8::new(26), |scene| scenes::torus_gouraud(scene, turn))
+        .expect("each call draws the same");
 }
 
-struct Buffers {
-    color: [u16; WIDTH * ROWS],
+struct Memory {
+    color: [u8; WIDTH * ROWS],
     depth: [u16; WIDTH * ROWS],
     records: [u32; RECORDS],
     packed: [u8; ROW_BYTES * ROWS],
 }
 
-impl Buffers {
+impl Memory {
     const NEW: Self = Self { color: [0; _], depth: [0; _], records: [0; _], packed: [0; _] };
-}
-
-/// Reduces a strip of RGB565 whose first row is `y0` to the panel's 4 bits of grey.
-///
-/// The dither pattern is fixed to the screen, so strips of any height make the same picture.
-fn pack_strip(strip: &[u16], y0: usize, packed: &mut [u8]) {
-    let rows = strip.chunks_exact(WIDTH).zip(packed.chunks_exact_mut(ROW_BYTES));
-    for (y, (row, bytes)) in (y0..).zip(rows) {
-        for (i, (pair, byte)) in row.chunks_exact(2).zip(bytes).enumerate() {
-            *byte = dither(luma(pair[0]), 2 * i, y) << 4 | dither(luma(pair[1]), 2 * i + 1, y);
-        }
-    }
-}
-
-/// Brightness 0..=255 of an RGB565 pixel, with the weights of ITU-R BT.601 in 1/256.
-fn luma(pixel: u16) -> u8 {
-    let [r, g, b] = [pixel >> 11, pixel >> 5 & 63, pixel & 31].map(u32::from);
-    let [r, g, b] = [r << 3 | r >> 2, g << 2 | g >> 4, b << 3 | b >> 2];
-    ((77 * r + 150 * g + 29 * b) >> 8) as u8
-}
-
-/// Ordered dithering from 8 bits to 4 at a place of the screen.
-fn dither(gray: u8, x: usize, y: usize) -> u8 {
-    const BAYER: [[u8; 4]; 4] = [[0, 8, 2, 10], [12, 4, 14, 6], [3, 11, 1, 9], [15, 7, 13, 5]];
-    // 15 steps of 17: a grey r above a step becomes the next step in r of 16 places. On a step,
-    // as black and white are, it is itself everywhere.
-    gray / 17 + u8::from(gray % 17 > BAYER[y % 4][x % 4])
 }
 
 #[cfg(target_os = "none")]
 fn run() {
     use semihosting::println;
 
-    static mut BUFFERS: Buffers = Buffers::NEW;
+    static mut BUFFERS: Memory = Memory::NEW;
     let buffers = &raw mut BUFFERS;
     // SAFETY: `run` is called once; this is the only reference.
     let buffers = unsafe { &mut *buffers };
@@ -162,7 +146,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let expected = args.next().unwrap_or("target/oled.pgm".into());
 
-    let mut buffers = Box::new(Buffers::NEW);
+    let mut buffers = Box::new(Memory::NEW);
     let mut greys = Vec::new(); // 0..=15
     draw(FRAMES - 1, &mut buffers, |_, packed| {
         greys.extend(packed.iter().flat_map(|byte| [byte >> 4, byte & 15]));

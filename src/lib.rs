@@ -87,7 +87,7 @@ pub mod raster;
 
 pub use embedded_graphics_core;
 pub use output::{Buffers, Framebuffer, Renderer};
-pub use pipeline::{Cull, Scene, State, Winding};
+pub use pipeline::{Canvas, Cull, Dashed, Scene, ScreenPoint, Smooth, State, Stroke, Thick, Thin, Winding};
 
 /// The README's program compiles.
 #[cfg(doctest)]
@@ -102,9 +102,11 @@ mod tests {
         fn logged<T: defmt::Format>() {}
         logged::<crate::geometry::MeshError>();
         logged::<crate::geometry::ViewportError>();
+        logged::<crate::math::PrecisionError>();
         logged::<crate::math::ProjectionError>();
         logged::<crate::output::FramebufferError>();
         logged::<crate::output::RendererError>();
+        logged::<crate::output::PackerError>();
         logged::<crate::output::FrameError>();
         logged::<crate::output::Stats>();
         #[cfg(feature = "micromath")]

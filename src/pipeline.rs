@@ -1,19 +1,25 @@
-//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7, in `triangle` the rest.
+//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7, in `triangle` the rest;
+//! `lines` and `stroke` do the same for lines and points, `canvas` for what is given on the screen.
 //!
 //! A frame is drawn by a closure that calls [`Scene::draw`]. The closure runs in one of three phases: it *records* a band
 //! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
 //! small even for one strip, it draws that strip *directly* (all stages at once).
 
 mod assembly;
+mod canvas;
+mod lines;
+mod stroke;
 mod triangle;
 
-use crate::fragment::{DepthState, Shader};
-use crate::geometry::{Bounds, DepthRange, Mesh, Positions, Transform, Varyings, View, Viewport};
+use crate::fragment::{DepthBias, DepthState, Shader};
+use crate::geometry::{Bounds, DepthRange, DepthScale, Mesh, Positions, Transform, Varyings, View, Viewport};
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::raster::{PixelRect, first_centre};
 use assembly::Assembly;
+pub use canvas::{Canvas, ScreenPoint};
 use core::ops::Range;
+pub use stroke::{Dashed, Smooth, Stroke, Thick, Thin};
 use triangle::Painter;
 
 /// Which faces are not drawn.
@@ -51,12 +57,22 @@ pub struct State {
     pub depth: DepthState,
     /// What happens before the near and beyond the far plane.
     pub range: DepthRange,
+    /// What is added to depth.
+    pub bias: DepthBias,
+    /// How depth grows with distance.
+    pub depth_scale: DepthScale,
 }
 
 impl State {
     /// The default, for constants: back faces culled, nearer fragments win, clipped at the near and the far plane.
-    pub const DEFAULT: Self =
-        Self { cull: Cull::Back, front: Winding::CounterClockwise, depth: DepthState::LESS, range: DepthRange::Clip };
+    pub const DEFAULT: Self = Self {
+        cull: Cull::Back,
+        front: Winding::CounterClockwise,
+        depth: DepthState::LESS,
+        range: DepthRange::Clip,
+        bias: DepthBias::NONE,
+        depth_scale: DepthScale::Perspective,
+    };
 }
 
 /// What the closure's calls do.
@@ -87,7 +103,7 @@ pub struct Scene<'a, F> {
     pub(crate) strips: StripRows,
     /// Rows of the band that is recorded, replayed or drawn.
     pub(crate) band: Range<i32>,
-    pub(crate) target: Option<Target<'a, F>>,
+    pub(crate) target: Target<'a, F>,
     pub(crate) stats: &'a mut Stats,
     /// Number of the next draw, and the first that differed from what was recorded.
     pub(crate) draws: u16,
@@ -111,7 +127,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         };
         let stride = S::WORDS + VERTEX_WORDS;
         if self.phase == Phase::Replay {
-            if self.find_draw(&state, mesh, mvp, stride) {
+            if self.find_draw(fingerprint(&state, mesh, mvp, &self.viewport, stride), stride) {
                 self.replay(&state, shader);
             }
             return;
@@ -195,7 +211,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if !recording {
             self.records.begin_direct(mesh.vertex_count(), stride);
         }
-        Some(Transform::of(view, mesh, displaced))
+        let mut transform = Transform::of(view, mesh, displaced);
+        transform.set_depth_scale(state.depth_scale);
+        Some(transform)
     }
 
     fn end_draw(&mut self) {
@@ -206,9 +224,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Finds the records of a draw; `false` if they are not those of this one.
     #[inline(never)]
-    fn find_draw(&mut self, state: &State, mesh: &Mesh<'_>, mvp: &Projective, stride: usize) -> bool {
+    fn find_draw(&mut self, print: u32, stride: usize) -> bool {
         let draw = self.count_draw();
-        let print = fingerprint(state, mesh, mvp, &self.viewport, stride);
         let found = self.changed.is_none() && self.records.replay_draw(print, stride);
         if !found {
             self.changed = self.changed.or(Some(draw));
@@ -225,31 +242,22 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Draws the recorded triangles of this draw in the current strip.
     fn replay<S: Shader<F::Format>>(&mut self, state: &State, shader: &S) {
-        let Some(rows) = self.target.as_ref().map(|target| target.rows.clone()) else {
-            return;
-        };
-        let clip = self.clip_rect(&rows);
+        let end = self.target.rows.end;
+        let clip = self.clip_rect(&self.target.rows);
         while let Some(triangle) = self.records.replay_triangle() {
             let [i, j, k] = triangle.corners;
             let (a, b, c) = (self.records.corner::<S>(i), self.records.corner::<S>(j), self.records.corner::<S>(k));
-            if first_centre(a.0.y.max(b.0.y).max(c.0.y)) > rows.end {
+            if first_centre(a.0.y.max(b.0.y).max(c.0.y)) > end {
                 self.records.move_on(&triangle);
             }
-            if let Some(mut painter) = self.painter(&clip, state, shader) {
-                painter.triangle(&[a.0, b.0, c.0], &[a.1, b.1, c.1], triangle.face);
-            }
+            let v = [a.0, b.0, c.0];
+            self.painter(&clip, state, shader).triangle(&v, &[a.1, b.1, c.1], triangle.face);
         }
     }
 
     /// What to draw triangles with, in the phases that draw.
-    fn painter<'p, S>(
-        &'p mut self,
-        clip: &'p PixelRect,
-        state: &'p State,
-        shader: &'p S,
-    ) -> Option<Painter<'p, 'a, F, S>> {
-        let screen = self.screen;
-        self.target.as_mut().map(|target| Painter { target, screen, clip, state, shader })
+    fn painter<'p, S>(&'p mut self, clip: &'p PixelRect, state: &'p State, shader: &'p S) -> Painter<'p, 'a, F, S> {
+        Painter { target: &mut self.target, screen: self.screen, clip, state, shader }
     }
 }
 
@@ -268,7 +276,12 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
         by as u32,
         bz as u32,
         stride as u32 | (state.cull as u32) << 16 | (state.range as u32) << 20 | (state.front as u32) << 24,
-        state.depth.compare as u32 | u32::from(state.depth.write) << 8,
+        state.depth.compare as u32 | u32::from(state.depth.write) << 8 | (state.bias.constant as u32) << 16,
+        state.bias.slope.to_bits() as u32,
+        match state.depth_scale {
+            DepthScale::Perspective => 0,
+            DepthScale::Uniform { far } => far.to_bits() as u32,
+        },
     ];
     // FNV-1a over words instead of bytes.
     let matrix = mvp.to_rows();

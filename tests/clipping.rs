@@ -277,6 +277,7 @@ fn no_input_panics_in_any_state() {
             depth: DepthState { compare: COMPARES[seed as usize % 8], write: seed / 8 % 2 == 0 },
             range: RANGES[seed as usize % 3],
             front: rng.pick(&[Winding::CounterClockwise, Winding::Clockwise]),
+            ..State::DEFAULT
         };
         let stats = strips::<Rgb565>(
             (20, 15),

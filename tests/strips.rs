@@ -9,9 +9,9 @@ use proptest::prelude::*;
 use reference::rng::Rng;
 use support::{Soup, difference, strips};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
-use zstrip::fragment::{DepthState, Flat, Gouraud, PixelFormat};
-use zstrip::geometry::{Mesh, MeshData, Positions, Viewport};
-use zstrip::math::{Affine, Angle, Projective, Vec3};
+use zstrip::fragment::{DepthBias, DepthState, Flat, Gouraud, PixelFormat};
+use zstrip::geometry::{DepthScale, Mesh, MeshData, Positions, Viewport};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::output::{
     Buffers, FrameSlice, Framebuffer, FramebufferRenderer, Renderer, Rgb565Be, Stats, Strip, records_len,
 };
@@ -101,6 +101,15 @@ fn random_state(rng: &mut Rng) -> State {
             write: !rng.one_in(4),
         },
         range: rng.pick(&[DepthRange::Clip, DepthRange::ClampFar, DepthRange::Clamp]),
+        bias: DepthBias {
+            constant: rng.pick(&[0, 0, -5, 700, i16::MIN]),
+            slope: Scalar::from_bits(rng.pick(&[0, 0, -90_000, 1 << 20, i32::MIN])),
+        },
+        depth_scale: rng.pick(&[
+            DepthScale::Perspective,
+            DepthScale::Uniform { far: Scalar::ONE * 2 },
+            DepthScale::Uniform { far: Scalar::DELTA },
+        ]),
         ..State::DEFAULT
     }
 }

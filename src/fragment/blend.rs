@@ -16,7 +16,7 @@ use crate::math::Vec3;
 /// | [`Multiply`] | source · there | [`Rgba`] |
 ///
 /// Modes whose source is `P` work in the format itself, in one word for RGB565; the others in 8 bits a channel, exactly
-/// rounded, before surplus bits are cut.
+/// rounded, before surplus bits are cut (and not dithered again: a pixel that nothing is added to stays as it is).
 pub trait BlendMode<P: PixelFormat> {
     /// In which format the shader is asked for colours.
     type Source: PixelFormat;

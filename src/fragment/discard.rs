@@ -27,7 +27,7 @@ impl<P: PixelFormat, S: Shader<Rgba>> Shader<P> for AlphaTest<S> {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
         let [r, g, b, alpha] = self.shader.fragment(fragment)?;
-        if alpha >= self.threshold { Some(P::pack([r, g, b])) } else { None }
+        if alpha >= self.threshold { Some(P::pack_at([r, g, b], fragment.position)) } else { None }
     }
 }
 

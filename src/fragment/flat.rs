@@ -1,8 +1,9 @@
 //! One colour a face.
 
+use super::dither::dithered_span;
 use super::fill::fill;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
-use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
+use crate::geometry::{Corner, Face, Light, VertexShader};
 
 /// Flat shading: each triangle in one colour, lit by its face normal.
 ///
@@ -10,31 +11,29 @@ use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
 #[derive(Clone, Copy, Debug)]
 pub struct Flat {
     light: Option<Light>,
-    /// The colour, and under the light; those of the mesh where there is none.
+    /// That of the provoking vertex where there is none.
     color: Option<[u8; 3]>,
-    lit: Option<Lit>,
 }
 
 impl Flat {
     /// A colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        let color = channels(color.into());
-        Self { light: Some(light), lit: Some(light.on(color)), color: Some(color) }
+        Self { light: Some(light), color: Some(channels(color.into())) }
     }
 
     /// A colour without light.
     pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { light: None, lit: None, color: Some(channels(color.into())) }
+        Self { light: None, color: Some(channels(color.into())) }
     }
 
     /// The colours of the mesh's vertices as they are, the provoking one's a triangle.
     pub const fn colors_unlit() -> Self {
-        Self { light: None, lit: None, color: None }
+        Self { light: None, color: None }
     }
 
     /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
     pub const fn colors(light: Light) -> Self {
-        Self { light: Some(light), lit: None, color: None }
+        Self { light: Some(light), color: None }
     }
 }
 
@@ -54,15 +53,15 @@ impl VertexShader for Flat {
     /// The colour, 8 bits a channel, blue lowest.
     #[inline]
     fn face(&self, face: &Face<'_>) -> u32 {
-        let [r, g, b] = match (self.light, self.lit) {
-            (Some(_), Some(lit)) => lit.shade(face.normal()),
-            (Some(light), None) => light.on(face.provoking().color()).shade(face.normal()),
-            _ => {
-                let [r, g, b] = self.color.unwrap_or_else(|| face.provoking().color());
-                return u32::from_be_bytes([0, r, g, b]);
+        let color = self.color.unwrap_or_else(|| face.provoking().color());
+        let [r, g, b] = match &self.light {
+            Some(light) => {
+                let [r, g, b] = light.shade(color, face.normal());
+                [round(r), round(g), round(b)]
             }
+            None => color,
         };
-        u32::from_be_bytes([0, round(r), round(g), round(b)])
+        u32::from_be_bytes([0, r, g, b])
     }
 }
 
@@ -73,15 +72,15 @@ pub(super) const fn round(channel: i32) -> u8 {
 
 /// The colour of a face, from its word.
 #[inline(always)]
-pub(super) fn unpacked<P: PixelFormat>(face: u32) -> P::Raw {
+pub(super) const fn unpacked(face: u32) -> [u8; 3] {
     let [_, r, g, b] = face.to_be_bytes();
-    P::pack([r, g, b])
+    [r, g, b]
 }
 
 impl<P: PixelFormat> Shader<P> for Flat {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
-        Some(unpacked::<P>(fragment.face))
+        Some(P::pack_at(unpacked(fragment.face), fragment.position))
     }
 
     #[inline]
@@ -93,9 +92,12 @@ impl<P: PixelFormat> Shader<P> for Flat {
 /// Draws a span in the colour of a face's word.
 #[inline]
 pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+    if P::DITHER.is_some() {
+        return dithered_span(unpacked(face), span, test);
+    }
     let Fragments { color, depth, mut z, steps, .. } = span;
     let dz_dx = steps.dz_dx;
-    let value = unpacked::<P>(face);
+    let value = P::pack(unpacked(face));
     if !D::ENABLED {
         return fill(color, value);
     }

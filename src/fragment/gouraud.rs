@@ -1,5 +1,6 @@
 //! Colours a vertex, interpolated over the triangle.
 
+use super::dither::{spread, spread_step};
 use super::flat::channels;
 use super::shader::fragments;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
@@ -24,6 +25,13 @@ impl Gouraud {
     /// The colours of the mesh's vertices under a light.
     pub const fn colors(light: Light) -> Self {
         Self { light: Some(light), lit: None }
+    }
+
+    /// The varyings of a vertex that has this colour.
+    #[inline]
+    pub fn varyings(color: Rgb888) -> [i32; 3] {
+        let [r, g, b] = channels(color);
+        [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)]
     }
 
     /// The colours of the mesh's vertices as they are.
@@ -77,12 +85,12 @@ impl VertexShader for Gouraud {
 impl<P: PixelFormat> Shader<P> for Gouraud {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
-        Some(P::pack(fragment.varyings.map(unsqueeze)))
+        Some(P::pack_at(fragment.varyings.map(unsqueeze), fragment.position))
     }
 
     #[inline]
     fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
-        if P::PACKED { prepare(rgb, d_dx) } else { [0; 2] }
+        if P::PACKED { prepare::<P>(rgb, d_dx) } else { [0; 2] }
     }
 
     #[inline]
@@ -118,7 +126,7 @@ pub(super) fn load(words: &[u32]) -> [i32; 3] {
 /// It stands for red 2²¹ + blue 2¹⁰ + green, so steps of either sign may be added as words, as long as each channel stays
 /// in range.
 #[inline(always)]
-const fn pack(r: i32, g: i32, b: i32) -> u32 {
+pub(super) const fn pack(r: i32, g: i32, b: i32) -> u32 {
     ((r as u32) << 21).wrapping_add((b as u32) << 10).wrapping_add(g as u32)
 }
 
@@ -128,17 +136,18 @@ const RUN: usize = 2 * GROUP;
 
 /// The word of channels in 8.16, cut.
 #[inline(always)]
-const fn word([r, g, b]: [i32; 3]) -> u32 {
+pub(super) const fn word([r, g, b]: [i32; 3]) -> u32 {
     pack(r >> 13, g >> 14, b >> 13)
 }
 
 /// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
 /// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next.
 #[inline(never)]
-pub(super) fn prepare(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
+pub(super) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
     let mut one = [0; 3];
     let mut group = [0; 3];
     for (k, (value, &step)) in rgb.iter_mut().zip(d_dx).enumerate() {
+        let step = spread_step::<P>(k, step);
         let half = if k == 1 { 1 << 13 } else { 1 << 12 };
         let rounded = |v: i32| v.wrapping_add(half) & -(2 * half);
         let four = step.wrapping_mul(GROUP as i32);
@@ -160,41 +169,44 @@ pub(super) fn prepare(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
 /// bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(never)]
 pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3]>, test: D) {
-    let Fragments { color, depth, z, varyings, steps, .. } = span;
+    let Fragments { color, depth, z, varyings, steps, position } = span;
     let [step, correction] = steps.words;
-    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(varyings), step, mask: P::packed_mask() };
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(spread::<P>(varyings)), step, mask: P::packed_mask() };
     let [mut r, mut g, mut b] = varyings;
+    let addends = P::dither(position);
     let mut colors = color.chunks_exact_mut(RUN);
     let mut depths = depth.chunks_exact_mut(RUN);
     for run in (&mut colors).zip(&mut depths) {
         // Spelled out: at `opt-level = "s"` a loop would stay a loop.
         let ([a, b0, c, d, e, f, g0, h], [az, bz, cz, dz, ez, fz, gz, hz]) = run else { return };
-        pen.draw::<P, D>(test, a, az);
-        pen.draw::<P, D>(test, b0, bz);
-        pen.draw::<P, D>(test, c, cz);
-        pen.draw::<P, D>(test, d, dz);
+        pen.draw::<P, D>(test, addends[0], a, az);
+        pen.draw::<P, D>(test, addends[1], b0, bz);
+        pen.draw::<P, D>(test, addends[2], c, cz);
+        pen.draw::<P, D>(test, addends[3], d, dz);
         pen.word = pen.word.wrapping_add(correction);
-        pen.draw::<P, D>(test, e, ez);
-        pen.draw::<P, D>(test, f, fz);
-        pen.draw::<P, D>(test, g0, gz);
-        pen.draw::<P, D>(test, h, hz);
+        pen.draw::<P, D>(test, addends[4], e, ez);
+        pen.draw::<P, D>(test, addends[5], f, fz);
+        pen.draw::<P, D>(test, addends[6], g0, gz);
+        pen.draw::<P, D>(test, addends[7], h, hz);
         r = r.wrapping_add(RUN as i32 * steps.d_dx[0]);
         g = g.wrapping_add(RUN as i32 * steps.d_dx[1]);
         b = b.wrapping_add(RUN as i32 * steps.d_dx[2]);
-        pen.word = word([r, g, b]);
+        pen.word = word(spread::<P>([r, g, b]));
     }
     let (mut color, mut depth) = (colors.into_remainder(), depths.into_remainder());
+    let [_, _, _, _, last @ ..] = addends;
+    let mut rest: &[u32] = addends;
     if color.len() >= GROUP {
         let ([a, b, c, d, color_rest @ ..], [az, bz, cz, dz, depth_rest @ ..]) = (color, depth) else { return };
-        pen.draw::<P, D>(test, a, az);
-        pen.draw::<P, D>(test, b, bz);
-        pen.draw::<P, D>(test, c, cz);
-        pen.draw::<P, D>(test, d, dz);
+        pen.draw::<P, D>(test, addends[0], a, az);
+        pen.draw::<P, D>(test, addends[1], b, bz);
+        pen.draw::<P, D>(test, addends[2], c, cz);
+        pen.draw::<P, D>(test, addends[3], d, dz);
         pen.word = pen.word.wrapping_add(correction);
-        (color, depth) = (color_rest, depth_rest);
+        (color, depth, rest) = (color_rest, depth_rest, last);
     }
-    for (color, depth) in color.iter_mut().zip(depth) {
-        pen.draw::<P, D>(test, color, depth);
+    for (k, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
+        pen.draw::<P, D>(test, rest.get(k).copied().unwrap_or(0), color, depth);
     }
 }
 
@@ -210,11 +222,12 @@ struct Pen {
 impl Pen {
     /// Draws a pixel and steps to the next one.
     #[inline(always)]
-    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, color: &mut P::Raw, depth: &mut u16) {
+    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, addend: u32, color: &mut P::Raw, depth: &mut u16) {
         let z = (self.z >> 16) as u16;
         if !D::ENABLED || test.passes(z, *depth) {
             test.write(z, depth);
-            *color = P::from_packed(self.word, self.mask);
+            let word = if P::DITHER.is_some() { self.word.wrapping_add(addend) } else { self.word };
+            *color = P::from_packed(word, self.mask);
         }
         self.z = self.z.wrapping_add_signed(self.dz_dx);
         self.word = self.word.wrapping_add(self.step);

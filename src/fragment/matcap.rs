@@ -72,6 +72,6 @@ impl<P: PixelFormat, T: PixelFormat, const N: usize> Shader<P> for Matcap<'_, T,
         // N is a power of two, and the mask keeps what would be out of the picture in it.
         let along = |place: i32| (place as usize >> (30 - N.trailing_zeros())) & (N - 1);
         let texel = self.picture.get(along(v)).and_then(|row| row.get(along(u)))?;
-        Some(P::pack(T::unpack(*texel)))
+        Some(P::pack_at(T::unpack(*texel), fragment.position))
     }
 }

@@ -32,6 +32,26 @@ pub trait PixelFormat {
         Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
     }
 
+    /// Packs a colour for a pixel of the screen: dithered, if the format dithers.
+    #[inline(always)]
+    fn pack_at(rgb: [u8; 3], position: (i32, i32)) -> Self::Raw {
+        match Self::DITHER {
+            None => Self::pack(rgb),
+            Some(_) => super::dither::dithered::<Self>(rgb, Self::dither(position)),
+        }
+    }
+
+    /// Bits of red, green and blue that a dithered format keeps, up to 6.
+    const DITHER: Option<[u32; 3]> = None;
+
+    /// What is added to packed channels, in the layout of [`from_packed`](Self::from_packed), at eight pixels from
+    /// `position` on, which is [repeated](crate::fragment::dither_word) every eight rows and columns of the screen.
+    #[inline(always)]
+    fn dither(position: (i32, i32)) -> &'static [u32; 8] {
+        let _ = position;
+        &[0; 8]
+    }
+
     /// Whether [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
     const PACKED: bool = false;
 

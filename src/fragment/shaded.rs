@@ -93,7 +93,7 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerFace, D, P> {
 impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Shaded<PerFace, D, P> {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<Format::Raw> {
-        Some(unpacked::<Format>(fragment.face))
+        Some(Format::pack_at(unpacked(fragment.face), fragment.position))
     }
 
     #[inline]
@@ -134,12 +134,12 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<Format::Raw> {
         let [r, g, b] = *fragment.varyings;
-        Some(Format::pack([unsqueeze(r), unsqueeze(g), unsqueeze(b)]))
+        Some(Format::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
     }
 
     #[inline]
     fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
-        if Format::PACKED { prepare(rgb, d_dx) } else { [0; 2] }
+        if Format::PACKED { prepare::<Format>(rgb, d_dx) } else { [0; 2] }
     }
 
     #[inline]
@@ -226,7 +226,7 @@ impl<Format: PixelFormat, const D: usize> Shader<Format> for Shaded<PerFragment,
         let turned = self.material.is_two_sided() && fragment.side == Side::Back;
         let [red, green, blue, _] = fragment.face.to_le_bytes();
         let [r, g, b] = self.material.far(fragment_normal(x, y, z, turned), [red, green, blue]);
-        Some(Format::pack([round(r), round(g), round(b)]))
+        Some(Format::pack_at([round(r), round(g), round(b)], fragment.position))
     }
 }
 
@@ -272,6 +272,6 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
         let [red, green, blue, _] = fragment.face.to_le_bytes();
         let normal = fragment_normal(x, y, z, turned);
         let [r, g, b] = self.material.near(normal, [px >> 14, py >> 14, pz >> 14], [red, green, blue]);
-        Some(Format::pack([round(r), round(g), round(b)]))
+        Some(Format::pack_at([round(r), round(g), round(b)], fragment.position))
     }
 }

@@ -70,16 +70,16 @@ impl Outcode {
 }
 
 /// w, near, far, then the guard band: left, right, top, bottom.
-const PLANES: usize = 7;
-const NEAR: usize = 1;
-const FAR: usize = 2;
+pub(super) const PLANES: usize = 7;
+pub(super) const NEAR: usize = 1;
+pub(super) const FAR: usize = 2;
 
 /// Signed distance from a plane, not negative inside, in a scale of its own.
 ///
 /// # Format
 /// Below 2⁵⁶ · 65 < 2⁶³. The guard band is (64 - 2⁻¹⁶) · 512 px, or 2²³ - 2 in 24.8.
 #[inline]
-fn distance(plane: usize, v: &ClipVertex) -> i64 {
+pub(super) fn distance(plane: usize, v: &ClipVertex) -> i64 {
     let band = 64 * v.w - (v.w >> 16);
     match plane {
         0 => v.w - ClipVertex::MIN_W,
@@ -195,7 +195,7 @@ fn cut<V: Varyings>(polygon: &mut Polygon<V>, plane: usize, inside: bool) {
 /// # Format
 /// t = da / (da - db) as 0.64, rounded down; coordinates are off by less than 1 + 2⁻⁷ of their unit.
 #[inline(never)]
-fn intersection<V: Varyings>(
+pub(super) fn intersection<V: Varyings>(
     a: &(ClipVertex, V),
     da: i64,
     b: &(ClipVertex, V),

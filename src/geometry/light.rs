@@ -81,23 +81,46 @@ impl Light {
         Self { direction: unit(enlarged(model).inverse_rigid().transform_vector(direction)), ..*self }
     }
 
+    /// Red, green, blue in 8.8 of a surface of a colour with a unit normal: `self.on(color).shade(normal)`, in one.
+    #[inline(never)]
+    pub fn shade(&self, color: [u8; 3], normal: [i16; 3]) -> [i32; 3] {
+        let cosine = cosine(normal, self.direction);
+        let mut channels = [0; 3];
+        let levels = self.ambient.iter().zip(&self.diffuse);
+        for ((channel, color), (ambient, diffuse)) in channels.iter_mut().zip(color).zip(levels) {
+            let [color, ambient, diffuse] = [i32::from(color), i32::from(*ambient), i32::from(*diffuse)];
+            *channel = (color * ambient + ((color * diffuse * cosine) >> 14)).min(WHITE);
+        }
+        channels
+    }
+
     /// Light on a surface of a colour: what is the same for all its normals, worked out once.
     pub fn on(&self, color: [u8; 3]) -> Lit {
         let times = |level: [u16; 3]| {
             let [r, g, b] = color.map(i32::from);
             [r * i32::from(level[0]), g * i32::from(level[1]), b * i32::from(level[2])]
         };
-        Lit { direction: self.direction.map(i32::from), ambient: times(self.ambient), diffuse: times(self.diffuse) }
+        Lit { direction: self.direction, ambient: times(self.ambient), diffuse: times(self.diffuse) }
     }
 }
 
 /// A [`Light`] on a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lit {
-    direction: [i32; 3],
+    direction: [i16; 3],
     /// 8.8 a channel.
     ambient: [i32; 3],
     diffuse: [i32; 3],
+}
+
+/// n · l in 2.14 of two unit vectors, 0 if they are more than a right angle apart.
+///
+/// # Format
+/// Components are in -2¹⁵..2¹⁵, those of the light at most 2¹⁴: the sum is below 2³¹.
+#[inline]
+fn cosine([x, y, z]: [i16; 3], [lx, ly, lz]: [i16; 3]) -> i32 {
+    let sum = i32::from(x) * i32::from(lx) + i32::from(y) * i32::from(ly) + i32::from(z) * i32::from(lz);
+    (sum >> 14).clamp(0, 1 << 14)
 }
 
 /// The brightest channel value, 255 in 8.8.
@@ -110,10 +133,7 @@ impl Lit {
     /// Normal 2.14; result 8.8, within 1/64 of the exact value for the same 2.14 vectors. n · l: 2²⁸ and a little.
     #[inline]
     pub fn shade(&self, normal: [i16; 3]) -> [i32; 3] {
-        let [x, y, z] = [i32::from(normal[0]), i32::from(normal[1]), i32::from(normal[2])];
-        let [lx, ly, lz] = self.direction;
-        // Components are in -2¹⁵..2¹⁵, those of the light at most 2¹⁴: below 2³¹.
-        let cosine = ((x * lx + y * ly + z * lz) >> 14).clamp(0, 1 << 14);
+        let cosine = cosine(normal, self.direction);
         let channel = |k: usize| (self.ambient[k] + ((self.diffuse[k] * cosine) >> 14)).min(WHITE);
         [channel(0), channel(1), channel(2)]
     }

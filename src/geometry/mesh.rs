@@ -275,7 +275,7 @@ impl<'a> Mesh<'a> {
 
     /// Vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
     #[inline]
-    pub fn triangle(&self, n: usize) -> Option<[u16; 3]> {
+    pub const fn triangle(&self, n: usize) -> Option<[u16; 3]> {
         if n >= self.triangles as usize {
             return None;
         }
@@ -290,8 +290,11 @@ impl<'a> Mesh<'a> {
             }
         };
         match self.data.indices {
-            Some(indices) => Some([*indices.get(at[0])?, *indices.get(at[1])?, *indices.get(at[2])?]),
-            None => Some(at.map(|k| k as u16)),
+            Some(indices) if at[0] < indices.len() && at[1] < indices.len() && at[2] < indices.len() => {
+                Some([indices[at[0]], indices[at[1]], indices[at[2]]])
+            }
+            Some(_) => None,
+            None => Some([at[0] as u16, at[1] as u16, at[2] as u16]),
         }
     }
 

@@ -1,7 +1,7 @@
 //! Clip space → screen: divide, and snap to 1/256 px.
 
 use super::clip::ClipVertex;
-use crate::math::{mul_high, mul_high_signed, reciprocal};
+use crate::math::{Scalar, mul_high, mul_high_signed, reciprocal};
 
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -86,8 +86,77 @@ fn divide(x: i32, y: i32, z: u32, w: u32) -> ScreenVertex {
 /// 65,535 z / w rounded to nearest, from z and 2⁶³ / w in the scale that puts w into 2³¹..2³².
 #[inline]
 fn depth(z: u32, inv_w: u32) -> u16 {
-    // z / w as 1.31, and 65,535 times that as 16.15, rounded: 2¹⁶ f - f.
-    let fraction = mul_high(z, inv_w).min(1 << 31);
+    sixteen_bits(mul_high(z, inv_w))
+}
+
+/// How depth grows with distance.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum DepthScale {
+    /// As z / w does: exact on the screen, most of it used up near to the eye. See
+    /// [`DepthPrecision`](crate::math::DepthPrecision).
+    #[default]
+    Perspective,
+    /// Evenly, from the near to the far plane of a perspective camera, at vertices.
+    ///
+    /// Between vertices it is interpolated linearly on the screen like any depth, which is not even in distance: halfway on the
+    /// screen between distances a and b it is that of (a + b) / 2, where 2 a b / (a + b) is seen, (b - a)² / 2 (a + b) less.
+    /// Faces that share an edge agree on it, and small faces, or those towards the viewer, are off by little; large floors
+    /// should be divided. What is drawn in one scale does not compare with what is drawn in the other.
+    Uniform {
+        /// The camera's far distance, in the units that the camera was made for. Not above 0: as in perspective.
+        far: Scalar,
+    },
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for DepthScale {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
+}
+
+/// Depth as 65,535 z / far: z of clip space, far (w - near) / (far - near), is even in distance before it is divided.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct UniformDepth {
+    /// 2⁶³ / far, far normalized to 2³¹..2³².
+    reciprocal: u32,
+    /// Normalized far times two to this power is far's w in clip space.
+    exponent: i32,
+}
+
+impl UniformDepth {
+    /// For clip coordinates that are raw 32.32 times 2^`scale`.
+    pub(super) const fn new(far: Scalar, scale: i32) -> Option<Self> {
+        let far = far.to_bits();
+        if far <= 0 {
+            return None;
+        }
+        let zeros = far.leading_zeros();
+        Some(Self { reciprocal: reciprocal((far as u32) << zeros), exponent: 16 + scale - zeros as i32 })
+    }
+
+    /// Rounded to nearest.
+    ///
+    /// # Format
+    /// z is cut to 32 bits, the reciprocal good to 2⁻²⁹: within 2⁻¹² of a step besides the rounding.
+    pub(super) fn depth(&self, z: i64) -> u16 {
+        if z <= 0 {
+            return 0;
+        }
+        let zeros = z.leading_zeros();
+        let high = (((z as u64) << zeros) >> 32) as u32;
+        // z / far as 1.31, once the powers of two are made up for.
+        let down = self.exponent - 32 + zeros as i32;
+        let fraction = if down < 0 { 1 << 31 } else { mul_high(high, self.reciprocal) >> down.min(31) };
+        sixteen_bits(fraction)
+    }
+}
+
+/// 65,535 times a fraction in 1.31, at most 1, rounded to nearest.
+#[inline]
+fn sixteen_bits(fraction: u32) -> u16 {
+    // As 16.15: 2¹⁶ f - f.
+    let fraction = fraction.min(1 << 31);
     ((fraction - (fraction >> 16) + (1 << 14)) >> 15) as u16
 }
 

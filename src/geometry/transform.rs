@@ -5,7 +5,7 @@
 //! positions in units of 512 px from the screen's corner, z / w is depth.
 
 use super::clip::{ClipVertex, Outcode};
-use super::project::{ScreenVertex, project, project_short};
+use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
 use crate::math::{Projective, Vec3};
 use core::ops::Range;
@@ -15,6 +15,8 @@ use core::ops::Range;
 pub struct View {
     /// Rows x, y, z, w; the largest entry has 45 bits.
     rows: [[i64; 4]; 4],
+    /// Power of two that they are too large by, compared with the raw 32.32 of the matrix.
+    scale: i32,
 }
 
 /// A vertex transform, made once a draw.
@@ -24,6 +26,9 @@ pub struct Transform {
     rows: [Row; 4],
     /// Whether they are those of the 32-bit path.
     short: bool,
+    /// Power of two that clip coordinates are too large by, compared with raw 32.32.
+    scale: i32,
+    uniform: Option<UniformDepth>,
 }
 
 /// A row of the matrix, its entries in two parts.
@@ -112,11 +117,11 @@ impl View {
             *rz = scale(*rz, shift) << 10;
             *rw = w << 10;
         }
-        let shift = excess(rows.as_flattened(), 45);
+        let more = excess(rows.as_flattened(), 45);
         for entry in rows.as_flattened_mut() {
-            *entry = scale(*entry, shift);
+            *entry = scale(*entry, more);
         }
-        Self { rows }
+        Self { rows, scale: 10 - shift - more }
     }
 
     /// Whether any of a box may be seen in a rectangle of the screen, in pixels at most 2¹⁴ from its corner. The depth
@@ -157,7 +162,7 @@ impl Transform {
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
     pub fn of(view: View, mesh: &Mesh<'_>, displaced: bool) -> Self {
-        let View { rows: mut r } = view;
+        let View { rows: mut r, scale: view_scale } = view;
         let aabb = &mesh.bounds().aabb;
         // 1. What the mesh makes of its numbers. Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats
         //    written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
@@ -210,7 +215,29 @@ impl Transform {
                 row.low[3] = (t & 0x7FFF) as i32 + (1 << 14);
             }
         }
-        Self { rows, short }
+        Self { rows, short, scale: view_scale - shift, uniform: None }
+    }
+
+    /// Sets how depth grows with distance.
+    pub const fn set_depth_scale(&mut self, depth_scale: DepthScale) {
+        self.uniform = match depth_scale {
+            DepthScale::Perspective => None,
+            DepthScale::Uniform { far } => UniformDepth::new(far, self.scale),
+        };
+    }
+
+    /// Divides by w and snaps; `None` unless w > 0.
+    pub fn project(&self, vertex: &ClipVertex) -> Option<ScreenVertex> {
+        project(vertex).map(|placed| self.with_depth(placed, vertex.z))
+    }
+
+    /// A vertex on the screen with its depth, from z of the long path.
+    #[inline]
+    fn with_depth(&self, vertex: ScreenVertex, z: i64) -> ScreenVertex {
+        match &self.uniform {
+            Some(uniform) => ScreenVertex { z: uniform.depth(z), ..vertex },
+            None => vertex,
+        }
     }
 
     /// The least w, on the scale of the long path, for which quantized positions take the short one.
@@ -250,12 +277,20 @@ impl Transform {
             // In the short path's range of w, only the near and the far plane are left to be outside of.
             let [_, _, z, w] = clip;
             return if (z as u32) <= w as u32 {
-                Placed::Screen(project_short(clip))
+                Placed::Screen(self.with_depth(project_short(clip), i64::from(z) << 25))
             } else {
                 Placed::Outside(Outcode(if z < 0 { Outcode::NEAR } else { Outcode::FAR }))
             };
         }
-        place(&self.vertex(positions, index))
+        self.place_clip(&self.vertex(positions, index))
+    }
+
+    /// Where a vertex in clip space is on the screen, or which planes keep it off.
+    pub fn place_clip(&self, vertex: &ClipVertex) -> Placed {
+        match place(vertex) {
+            Placed::Screen(placed) => Placed::Screen(self.with_depth(placed, vertex.z)),
+            outside => outside,
+        }
     }
 
     /// Clip coordinates of a 16.16 position, of a transform made for those.

@@ -1,7 +1,7 @@
 //! The vertex stage's seam: what a shader sees of a vertex or a face, and what it hands on.
 
 use super::{Mesh, Positions};
-use crate::math::Vec3;
+use crate::math::{Vec3, isqrt, mul_high_signed, reciprocal};
 
 /// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes.
 ///
@@ -125,40 +125,49 @@ impl<'a> Face<'a> {
     /// that the sum of their squares fits 32: within 2⁻¹² of the exact normal unless the edges are nearly parallel.
     #[inline(never)]
     fn computed_normal(&self) -> [i16; 3] {
-        if let Positions::Homogeneous(_) = self.mesh.data().positions {
+        let [a, b, c] = self.corners;
+        let (ab, ac) = (self.edge(a, b), self.edge(a, c));
+        let minor = |j: usize, k: usize| i64::from(ab[j] * ac[k]) - i64::from(ab[k] * ac[j]);
+        let n = fifteen_bits([minor(1, 2), minor(2, 0), minor(0, 1)]);
+        let length = isqrt(n.iter().fold(0, |sum, v| sum.wrapping_add((v * v) as u32)));
+        // v 2¹⁴ / length = v 2¹⁶ (2⁶³ / (length 2^shift)) / 2³² / 2^(33 - shift), with 15 or 16 bits of length.
+        let shift = length.leading_zeros();
+        if shift > 17 {
             return [0; 3];
         }
-        let [a, b, c] = self.corners.map(|k| self.mesh.position(usize::from(k)).to_bits());
-        let (ab, ac) = (edge(a, b), edge(a, c));
-        let ([ax, ay, az], [bx, by, bz]) = (ab, ac);
-        // Halves of products below 2³⁰, so that differences fit.
-        let minor = |a: i32, b: i32, c: i32, d: i32| ((a * b) >> 1) - ((c * d) >> 1);
-        let n = fifteen_bits([minor(ay, bz, az, by), minor(az, bx, ax, bz), minor(ax, by, ay, bx)]);
-        let length = n.iter().map(|&v| (v * v) as u32).fold(0, u32::wrapping_add).isqrt();
-        let Some(length) = core::num::NonZeroU32::new(length) else { return [0; 3] };
-        n.map(|v| {
-            let unit = ((v.unsigned_abs() << 14) + length.get() / 2) / length;
-            (if v < 0 { -(unit as i32) } else { unit as i32 }) as i16
+        let inverse = reciprocal(length << shift);
+        n.map(|v| ((mul_high_signed(v << 16, inverse) + (1 << (32 - shift))) >> (33 - shift)) as i16)
+    }
+
+    /// The direction from a corner to another, scaled to 15 bits; homogeneous positions have none.
+    #[inline(never)]
+    fn edge(&self, from: u16, to: u16) -> [i32; 3] {
+        let (from, to) = (usize::from(from), usize::from(to));
+        fifteen_bits(match self.mesh.data().positions {
+            Positions::Quantized { points, .. } => match (points.get(from), points.get(to)) {
+                (Some([ax, ay, az]), Some([bx, by, bz])) => {
+                    [i64::from(*bx) - i64::from(*ax), i64::from(*by) - i64::from(*ay), i64::from(*bz) - i64::from(*az)]
+                }
+                _ => [0; 3],
+            },
+            Positions::Exact(points) => match (points.get(from), points.get(to)) {
+                (Some(a), Some(b)) => {
+                    let ([ax, ay, az], [bx, by, bz]) = (a.to_bits().map(i64::from), b.to_bits().map(i64::from));
+                    [bx - ax, by - ay, bz - az]
+                }
+                _ => [0; 3],
+            },
+            Positions::Homogeneous(_) => [0; 3],
         })
     }
 }
 
-/// The direction from `a` to `b`, scaled to 15 bits.
-fn edge(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
-    let ([ax, ay, az], [bx, by, bz]) = (a, b);
-    fifteen_bits(match (bx.checked_sub(ax), by.checked_sub(ay), bz.checked_sub(az)) {
-        (Some(x), Some(y), Some(z)) => [x, y, z],
-        // Halved, so that differences fit.
-        _ => [(bx >> 1) - (ax >> 1), (by >> 1) - (ay >> 1), (bz >> 1) - (az >> 1)],
-    })
-}
-
 /// A vector scaled so that its largest component has 15 bits.
 #[inline(never)]
-fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
+fn fifteen_bits(v: [i64; 3]) -> [i32; 3] {
     let widest = v.iter().fold(0, |all, c| all | c.unsigned_abs());
-    let zeros = widest.leading_zeros() as i32 - 17;
-    v.map(|c| if zeros >= 0 { c << zeros.min(31) } else { c >> -zeros })
+    let zeros = widest.leading_zeros() as i32 - 49;
+    v.map(|c| if zeros >= 0 { c << zeros.min(63) } else { c >> -zeros } as i32)
 }
 
 /// The programmable vertex stage: computes what is interpolated over triangles, and what is constant on them.

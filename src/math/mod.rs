@@ -9,8 +9,10 @@ mod format;
 mod inverse_sqrt;
 #[cfg(feature = "micromath")]
 mod micromath;
+mod precision;
 mod projective;
 mod reciprocal;
+mod root;
 mod vector;
 
 pub use affine::Affine;
@@ -20,6 +22,8 @@ pub use format::{Scalar, Wide};
 pub use inverse_sqrt::{inverse_sqrt, unit_vector};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
+pub use precision::{DepthPrecision, PrecisionError};
 pub use projective::{ProjectionError, Projective};
 pub use reciprocal::{mul_high, mul_high_signed, reciprocal};
+pub use root::isqrt;
 pub use vector::Vec3;

@@ -93,11 +93,39 @@ impl StripRows {
     }
 }
 
+/// The screen and its strips.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    viewport: Viewport,
+    strips: StripRows,
+}
+
+impl Grid {
+    fn screen(&self) -> (u16, u16) {
+        (self.viewport.width(), self.viewport.height())
+    }
+
+    /// Height of the strip that begins at `row`.
+    fn rows_at(&self, row: u16) -> u16 {
+        self.strips.rows.min(self.viewport.height() - row)
+    }
+
+    /// Strips from `row` on.
+    fn strips_from(&self, row: u16) -> u16 {
+        self.strips.of(u32::from(self.viewport.height() - row) - 1) as u16 + 1
+    }
+
+    /// The rows of so many strips that begin at `row`.
+    fn band(&self, row: u16, strips: u16) -> (u16, u16) {
+        let end = u32::from(row) + u32::from(strips) * u32::from(self.strips.rows);
+        (row, end.min(u32::from(self.viewport.height())) as u16)
+    }
+}
+
 /// What all renderers share: the screen, its strips, depth and records.
 #[derive(Debug)]
 struct Engine<'b> {
-    viewport: Viewport,
-    strips: StripRows,
+    grid: Grid,
     depth: &'b mut [u16],
     records: &'b mut [u32],
 }
@@ -114,11 +142,7 @@ impl<'b> Engine<'b> {
             return Err(RendererError::DepthTooShort(depth.len(), screen.0));
         };
         let strip_rows = rows.min(depth_rows).min(usize::from(screen.1)) as u16;
-        Ok(Self { viewport, strips: StripRows::new(strip_rows), depth, records })
-    }
-
-    fn screen(&self) -> (u16, u16) {
-        (self.viewport.width(), self.viewport.height())
+        Ok(Self { grid: Grid { viewport, strips: StripRows::new(strip_rows) }, depth, records })
     }
 }
 
@@ -129,9 +153,10 @@ struct Progress {
     row: u16,
     /// Rows of the band in the records; none if it is used up.
     band: (u16, u16),
-    /// Strips to try to record at once.
+    /// Strips to try to record at once; 0 to draw the next one directly.
     strips: u16,
     layout: Layout,
+    /// Draws in the records.
     draws: u16,
     stats: Stats,
 }
@@ -143,115 +168,75 @@ impl Progress {
 }
 
 impl Engine<'_> {
-    /// Calls the closure in a phase; without a framebuffer while recording.
-    fn walk<F: Framebuffer>(
-        &mut self,
-        progress: &mut Progress,
-        phase: Phase,
-        band: (u16, u16),
-        framebuffer: Option<&mut F>,
-        draw: &mut impl FnMut(&mut Scene<'_, F>),
-    ) -> Option<u16> {
-        let rows = i32::from(progress.row)..i32::from(progress.row + self.rows_at(progress.row));
-        let mut scene = Scene {
-            screen: self.screen(),
-            viewport: self.viewport,
-            phase,
-            records: Records::resume(self.records, progress.layout),
-            strips: self.strips,
-            band: i32::from(band.0)..i32::from(band.1),
-            target: framebuffer.map(|framebuffer| Target { framebuffer, depth: self.depth, rows }),
-            stats: &mut progress.stats,
-            draws: 0,
-            changed: None,
-        };
-        scene.stats.walks += 1;
-        draw(&mut scene);
-        let (draws, changed) = (scene.draws, scene.changed);
-        progress.layout = scene.records.layout();
-        if phase == Phase::Record {
-            progress.draws = draws;
-        }
-        match phase {
-            Phase::Replay if changed.is_none() && draws != progress.draws => Some(draws.min(progress.draws)),
-            _ => changed,
-        }
-    }
-
-    /// Height of the strip that begins at `row`.
-    fn rows_at(&self, row: u16) -> u16 {
-        self.strips.rows.min(self.viewport.height() - row)
-    }
-
-    /// Records a band that begins at the current strip: all the rest of the screen, or half of what was tried last,
-    /// until it fits. `false` if not even one strip does.
-    fn record<F: Framebuffer>(&mut self, progress: &mut Progress, draw: &mut impl FnMut(&mut Scene<'_, F>)) -> bool {
-        let height = self.viewport.height();
-        let left = self.strips.of(u32::from(height - progress.row) - 1) as u16 + 1;
-        let mut strips = progress.strips.min(left);
-        loop {
-            let end =
-                (u32::from(progress.row) + u32::from(strips) * u32::from(self.strips.rows)).min(u32::from(height));
-            let band = (progress.row, end as u16);
-            let mut records = Records::resume(self.records, progress.layout);
-            records.begin_band(usize::from(strips));
-            progress.layout = records.layout();
-            // Records that cannot even hold the lists need no walk to overflow.
-            if !records.overflowed() {
-                self.walk::<F>(progress, Phase::Record, band, None, draw);
-            }
-            let overflowed = Records::resume(self.records, progress.layout).overflowed();
-            if !overflowed {
-                progress.band = band;
-                progress.strips = strips;
-                return true;
-            }
-            progress.stats.overflows += 1;
-            if strips <= 1 {
-                progress.strips = 1;
-                return false;
-            }
-            strips /= 2;
-        }
-    }
-
-    /// Draws the next strip into rows of `framebuffer`, which hold the background already; `None` after the last one,
-    /// otherwise its first row and height.
+    /// Draws the next strip, of which there must be one, into rows of `framebuffer`, which hold the background already.
+    ///
+    /// If it is not in the records, a band that begins with it is recorded first: all the rest of the screen, or half of
+    /// what was tried last, until it fits. Where not even one strip does, it is drawn directly.
     fn next_strip<F: Framebuffer>(
         &mut self,
         progress: &mut Progress,
         framebuffer: &mut F,
         draw: &mut impl FnMut(&mut Scene<'_, F>),
-    ) -> Result<Option<(u16, u16)>, u16> {
+    ) -> Result<(), u16> {
         let row = progress.row;
-        if row >= self.viewport.height() {
-            return Ok(None);
+        let grid = self.grid;
+        let rows = grid.rows_at(row);
+        let pixels = usize::from(grid.viewport.width()) * usize::from(rows);
+        fill(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
+        loop {
+            let mut records = Records::new(self.records, &mut progress.layout);
+            let (phase, band) = if row < progress.band.1 {
+                records.begin_replay(grid.strips.of(u32::from(row - progress.band.0)));
+                (Phase::Replay, progress.band)
+            } else if progress.strips == 0 {
+                records.clear();
+                (Phase::Direct, (row, row + rows))
+            } else {
+                progress.strips = progress.strips.min(grid.strips_from(row));
+                records.begin_band(usize::from(progress.strips));
+                (Phase::Record, grid.band(row, progress.strips))
+            };
+            let mut scene = Scene {
+                screen: grid.screen(),
+                viewport: grid.viewport,
+                phase,
+                records,
+                strips: grid.strips,
+                band: i32::from(band.0)..i32::from(band.1),
+                target: Target { framebuffer, depth: self.depth, rows: i32::from(row)..i32::from(row + rows) },
+                stats: &mut progress.stats,
+                draws: 0,
+                changed: None,
+            };
+            // Records that cannot even hold the lists need no walk to overflow.
+            if !scene.records.overflowed() {
+                scene.stats.walks = scene.stats.walks.wrapping_add(1);
+                draw(&mut scene);
+            }
+            let (draws, changed) = (scene.draws, scene.changed);
+            if phase == Phase::Record {
+                if scene.records.overflowed() {
+                    progress.stats.overflows = progress.stats.overflows.wrapping_add(1);
+                    progress.strips /= 2;
+                } else {
+                    (progress.band, progress.draws) = (band, draws);
+                }
+                continue;
+            }
+            let missing = phase == Phase::Replay && draws != progress.draws;
+            if let Some(draw) = changed.or(missing.then(|| draws.min(progress.draws))) {
+                // What is left in the records is of no use: the frame is over.
+                progress.row = grid.viewport.height();
+                return Err(draw);
+            }
+            if phase == Phase::Direct {
+                progress.strips = 1;
+                progress.stats.direct_strips = progress.stats.direct_strips.wrapping_add(1);
+            }
+            progress.row += rows;
+            progress.stats.strips = progress.stats.strips.wrapping_add(1);
+            return Ok(());
         }
-        let rows = self.rows_at(row);
-        let recorded = row < progress.band.1 || self.record(progress, draw);
-        let pixels = usize::from(self.viewport.width()) * usize::from(rows);
-        if let Some(depth) = self.depth.get_mut(..pixels) {
-            depth.fill(u16::MAX);
-        }
-        let changed = if recorded {
-            let strip = self.strips.of(u32::from(row - progress.band.0));
-            let mut records = Records::resume(self.records, progress.layout);
-            records.begin_replay(strip);
-            progress.layout = records.layout();
-            self.walk(progress, Phase::Replay, progress.band, Some(framebuffer), draw)
-        } else {
-            progress.stats.direct_strips += 1;
-            progress.layout = Layout::default();
-            self.walk(progress, Phase::Direct, (row, row + rows), Some(framebuffer), draw)
-        };
-        if let Some(draw) = changed {
-            // What is left in the records is of no use: the frame is over.
-            progress.row = self.viewport.height();
-            return Err(draw);
-        }
-        progress.row += rows;
-        progress.stats.strips += 1;
-        Ok(Some((row, rows)))
     }
 }
 
@@ -300,7 +285,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
 
     /// Rows of a strip; the last one may have fewer.
     pub const fn strip_rows(&self) -> u16 {
-        self.engine.strips.rows
+        self.engine.grid.strips.rows
     }
 
     /// Draws a frame on an embedded-graphics display.
@@ -408,20 +393,18 @@ fn strip_into<'c, P: PixelFormat>(
     background: P::Raw,
     draw: &mut impl FnMut(&mut Scene<'_, Strip<'_, P>>),
 ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
-    let (width, height) = engine.screen();
-    if progress.row >= height {
+    let ((width, height), row) = (engine.grid.screen(), progress.row);
+    if row >= height {
         return Ok(None);
     }
-    let pixels = usize::from(width) * usize::from(engine.rows_at(progress.row));
-    let length = pixels.min(color.len());
+    let rows = engine.grid.rows_at(row);
+    let length = (usize::from(width) * usize::from(rows)).min(color.len());
     let color = color.get_mut(..length).unwrap_or_default();
     fill(color, background);
-    let mut strip = Strip::<P>::new(&mut *color, width, u32::from(progress.row));
-    let drawn = engine.next_strip(progress, &mut strip, draw).map_err(FrameError::SceneChanged)?;
-    Ok(drawn.map(|(row, rows)| {
-        let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
-        StripPixels::new(area, color)
-    }))
+    let mut strip = Strip::<P>::new(&mut *color, width, u32::from(row));
+    engine.next_strip(progress, &mut strip, draw).map_err(FrameError::SceneChanged)?;
+    let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
+    Ok(Some(StripPixels::new(area, color)))
 }
 
 /// Draws frames straight into a framebuffer, with a depth buffer as high as the screen or only a strip of it.
@@ -449,7 +432,7 @@ impl<'b> FramebufferRenderer<'b> {
         background: Option<<F::Format as PixelFormat>::Color>,
         mut draw: impl FnMut(&mut Scene<'_, F>),
     ) -> Result<Stats, FrameError> {
-        let (width, height) = self.engine.screen();
+        let (width, height) = self.engine.grid.screen();
         if let Some(color) = background {
             for y in 0..height {
                 let row = framebuffer.row(u32::from(y));
@@ -458,8 +441,8 @@ impl<'b> FramebufferRenderer<'b> {
             }
         }
         let mut progress = Progress::new();
-        while self.engine.next_strip(&mut progress, framebuffer, &mut draw).map_err(FrameError::SceneChanged)?.is_some()
-        {
+        while progress.row < height {
+            self.engine.next_strip(&mut progress, framebuffer, &mut draw).map_err(FrameError::SceneChanged)?;
         }
         Ok(progress.stats)
     }

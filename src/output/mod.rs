@@ -1,18 +1,24 @@
 //! Pixels → display: pixel formats, strips and other framebuffers, records, and the loop that makes a frame of strips.
 
 mod budget;
+mod dither;
+mod dithered;
 mod frame;
 mod framebuffer;
+mod packed;
 mod pixel;
 mod record;
 mod sink;
 mod stats;
 
 pub use budget::RamBudget;
+pub use dither::{Dither, Levels, Tones};
+pub use dithered::{DitherWords, Ditherable, Dithered};
 pub(crate) use frame::StripRows;
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
-pub use pixel::Rgb565Be;
+pub use packed::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
+pub use pixel::{Bgr565Be, Rgb332, Rgb565Be};
 pub use record::records_len;
 pub(crate) use record::{Records, Slot, VERTEX as VERTEX_WORDS};
 pub use sink::{OnDisplay, StripPixels, StripSink};

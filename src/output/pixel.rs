@@ -1,8 +1,12 @@
 //! The pixel formats.
 
+use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
 use crate::fragment::PixelFormat;
+use core::convert::identity;
 use embedded_graphics_core::pixelcolor::raw::RawU16;
-use embedded_graphics_core::pixelcolor::{Gray8, GrayColor, IntoStorage, Rgb565, Rgb888, RgbColor};
+use embedded_graphics_core::pixelcolor::{
+    Bgr565, Bgr888, Gray8, GrayColor, IntoStorage, Rgb565, Rgb666, Rgb888, RgbColor,
+};
 
 /// Red, green, blue to 5, 6, 5 bits.
 #[inline(always)]
@@ -65,22 +69,41 @@ const fn add_rgb565(a: u16, b: u16) -> u16 {
     folded((sum | full) & SPREAD)
 }
 
-/// The two formats of RGB565, which differ in how the 16 bits come into memory, and back.
-macro_rules! rgb565_format {
-    ($(#[$doc:meta])* $format:ty, $store:path, $load:path) => {
+/// [`rgb565`] with red and blue exchanged.
+#[inline(always)]
+const fn bgr565(rgb: [u8; 3]) -> u16 {
+    rgb565(reversed(rgb))
+}
+
+/// Red, green and blue of a pixel of BGR565.
+#[inline(always)]
+const fn from_bgr565(raw: u16) -> [u8; 3] {
+    reversed(from_rgb565(raw))
+}
+
+/// [`rgb565_from_packed`] with red and blue exchanged.
+#[inline(always)]
+const fn bgr565_from_packed(word: u32, _: u32) -> u16 {
+    bgr565([(word >> 24) as u8, (word >> 2) as u8, (word >> 13) as u8])
+}
+
+/// A format of 16 bits: its colour, its functions from and to 8 bits a channel and from packed channels, and how the 16 bits
+/// come into memory, and back.
+macro_rules! sixteen_bits {
+    ($(#[$doc:meta])* $format:ty, $color:ty, ($pack:path, $unpack:path, $packed:path), $store:path, $load:path) => {
         $(#[$doc])*
         impl PixelFormat for $format {
             type Raw = u16;
-            type Color = Rgb565;
+            type Color = $color;
 
             #[inline(always)]
             fn pack(rgb: [u8; 3]) -> u16 {
-                $store(rgb565(rgb))
+                $store($pack(rgb))
             }
 
             #[inline(always)]
             fn unpack(raw: u16) -> [u8; 3] {
-                from_rgb565($load(raw))
+                $unpack($load(raw))
             }
 
             #[inline(always)]
@@ -102,25 +125,40 @@ macro_rules! rgb565_format {
 
             #[inline(always)]
             fn from_packed(word: u32, mask: u32) -> u16 {
-                $store(rgb565_from_packed(word, mask))
+                $store($packed(word, mask))
             }
 
-            fn from_color(color: Rgb565) -> u16 {
+            fn from_color(color: $color) -> u16 {
                 $store(color.into_storage())
             }
 
-            fn to_color(raw: u16) -> Rgb565 {
-                Rgb565::from(RawU16::new($load(raw)))
+            fn to_color(raw: u16) -> $color {
+                <$color>::from(RawU16::new($load(raw)))
             }
+        }
+
+        impl Ditherable for $format {
+            const WORDS: &'static DitherWords = &WORDS_565;
+            const BITS: [u32; 3] = [5, 6, 5];
         }
     };
 }
 
-rgb565_format!(
+sixteen_bits!(
     /// 16-bit pixels in the processor's byte order.
     Rgb565,
-    core::convert::identity,
-    core::convert::identity
+    Rgb565,
+    (rgb565, from_rgb565, rgb565_from_packed),
+    identity,
+    identity
+);
+sixteen_bits!(
+    /// 16-bit pixels with blue on top, in the processor's byte order.
+    Bgr565,
+    Bgr565,
+    (bgr565, from_bgr565, bgr565_from_packed),
+    identity,
+    identity
 );
 
 /// RGB565 with the high byte first in memory: what displays expect on their SPI bus, so that
@@ -128,31 +166,107 @@ rgb565_format!(
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb565Be;
 
-rgb565_format!(Rgb565Be, u16::to_be, u16::from_be);
+sixteen_bits!(Rgb565Be, Rgb565, (rgb565, from_rgb565, rgb565_from_packed), u16::to_be, u16::from_be);
 
-/// 24-bit pixels: red, green, blue.
-impl PixelFormat for Rgb888 {
-    type Raw = [u8; 3];
+/// BGR565 with the high byte first in memory.
+#[derive(Clone, Copy, Debug)]
+pub struct Bgr565Be;
+
+sixteen_bits!(Bgr565Be, Bgr565, (bgr565, from_bgr565, bgr565_from_packed), u16::to_be, u16::from_be);
+
+/// 8-bit pixels: 3 bits of red, 3 of green, 2 of blue, as displays with 256 colours take them. embedded-graphics has no such
+/// colour: [`Rgb888`] stands in.
+#[derive(Clone, Copy, Debug)]
+pub struct Rgb332;
+
+impl PixelFormat for Rgb332 {
+    type Raw = u8;
     type Color = Rgb888;
 
     #[inline(always)]
-    fn pack(rgb: [u8; 3]) -> [u8; 3] {
-        rgb
+    fn pack([r, g, b]: [u8; 3]) -> u8 {
+        r & 0xE0 | (g & 0xE0) >> 3 | b >> 6
     }
 
     #[inline(always)]
-    fn unpack(raw: [u8; 3]) -> [u8; 3] {
-        raw
+    fn unpack(raw: u8) -> [u8; 3] {
+        let (r, g, b) = (raw & 0xE0, raw << 3 & 0xE0, raw & 3);
+        [r | r >> 3 | r >> 6, g | g >> 3 | g >> 6, b * 0x55]
     }
 
-    fn from_color(color: Rgb888) -> [u8; 3] {
-        [color.r(), color.g(), color.b()]
+    const PACKED: bool = true;
+
+    fn from_color(color: Rgb888) -> u8 {
+        Self::pack(Rgb888::from_color(color))
     }
 
-    fn to_color(raw: [u8; 3]) -> Rgb888 {
-        Rgb888::new(raw[0], raw[1], raw[2])
+    fn to_color(raw: u8) -> Rgb888 {
+        Rgb888::to_color(Self::unpack(raw))
     }
 }
+
+impl Ditherable for Rgb332 {
+    const WORDS: &'static DitherWords = &WORDS_332;
+    const BITS: [u32; 3] = [3, 3, 2];
+}
+
+/// Blue, green, red, or back.
+#[inline(always)]
+const fn reversed([r, g, b]: [u8; 3]) -> [u8; 3] {
+    [b, g, r]
+}
+
+/// A format of three bytes: its colour, which has so many bits a channel, and what brings red, green and blue into its order,
+/// and back.
+macro_rules! three_bytes {
+    ($(#[$doc:meta])* $color:ident, $bits:literal, $order:path) => {
+        $(#[$doc])*
+        impl PixelFormat for $color {
+            type Raw = [u8; 3];
+            type Color = $color;
+
+            #[inline(always)]
+            fn pack([r, g, b]: [u8; 3]) -> [u8; 3] {
+                const MASK: u8 = 0xFF << (8 - $bits);
+                $order([r & MASK, g & MASK, b & MASK])
+            }
+
+            #[inline(always)]
+            fn unpack(raw: [u8; 3]) -> [u8; 3] {
+                let [r, g, b] = $order(raw);
+                if $bits == 8 { [r, g, b] } else { [r | r >> ($bits & 7), g | g >> ($bits & 7), b | b >> ($bits & 7)] }
+            }
+
+            fn from_color(color: $color) -> [u8; 3] {
+                $order([color.r() << (8 - $bits), color.g() << (8 - $bits), color.b() << (8 - $bits)])
+            }
+
+            fn to_color(raw: [u8; 3]) -> $color {
+                let [r, g, b] = $order(raw);
+                $color::new(r >> (8 - $bits), g >> (8 - $bits), b >> (8 - $bits))
+            }
+        }
+    };
+}
+
+three_bytes!(
+    /// 24-bit pixels: red, green, blue.
+    Rgb888,
+    8,
+    identity
+);
+three_bytes!(
+    /// 24-bit pixels: blue, green, red.
+    Bgr888,
+    8,
+    reversed
+);
+three_bytes!(
+    /// 18-bit pixels in three bytes, red, green, blue, each in the upper six bits: as displays take them on an SPI bus.
+    Rgb666,
+    6,
+    identity
+);
 
 /// 8-bit grey: luma of the colour, with the weights of BT.601 in 1/256 (77, 150, 29), cut.
 impl PixelFormat for Gray8 {
@@ -204,7 +318,12 @@ mod tests {
     fn packing_is_the_inverse_of_unpacking() {
         check::<Rgb565>(0..=u16::MAX, Rgb888::from);
         check::<Rgb565Be>(0..=u16::MAX, Rgb888::from);
+        check::<Bgr565>(0..=u16::MAX, Rgb888::from);
+        check::<Bgr565Be>(0..=u16::MAX, Rgb888::from);
+        check::<Rgb332>(0..=u8::MAX, |color| color);
         check::<Gray8>(0..=u8::MAX, Rgb888::from);
         check::<Rgb888>((0..=255).flat_map(|v| [[v, 0, !v], [!v, v, 7]]), |color| color);
+        check::<Bgr888>((0..=255).flat_map(|v| [[v, 0, !v], [!v, v, 7]]), Rgb888::from);
+        check::<Rgb666>((0..64).flat_map(|v| [[v << 2, 0, 4], [8, v << 2, 252]]), Rgb888::from);
     }
 }

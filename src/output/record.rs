@@ -99,7 +99,7 @@ pub(crate) struct TriangleRecord {
 #[derive(Debug)]
 pub(crate) struct Records<'a> {
     words: &'a mut [u32],
-    layout: Layout,
+    layout: &'a mut Layout,
 }
 
 /// Positions in the words; kept by the frame from one walk to the next.
@@ -125,12 +125,13 @@ pub(crate) struct Layout {
 
 impl<'a> Records<'a> {
     /// Takes up the words where a walk left them.
-    pub(crate) fn resume(words: &'a mut [u32], layout: Layout) -> Self {
+    pub(crate) fn new(words: &'a mut [u32], layout: &'a mut Layout) -> Self {
         Self { words, layout }
     }
 
-    pub(crate) fn layout(&self) -> Layout {
-        self.layout
+    /// Empties the records, for a strip that is drawn directly.
+    pub(crate) fn clear(&mut self) {
+        *self.layout = Layout::default();
     }
 
     fn get(&self, at: usize) -> u32 {
@@ -145,7 +146,7 @@ impl<'a> Records<'a> {
 
     /// Empties the records and starts lists for as many strips.
     pub(crate) fn begin_band(&mut self, strips: usize) {
-        self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
+        *self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
         match self.words.get_mut(..strips) {
             Some(lists) => lists.fill(u32::from(NONE) << 16 | u32::from(NONE)),
             None => self.layout.overflow = true,
@@ -210,7 +211,7 @@ impl<'a> Records<'a> {
     /// Lends all the words to the vertices of one draw that is drawn directly, if they fit.
     pub(crate) fn begin_direct(&mut self, vertices: usize, stride: usize) {
         // Behind the end: all vertices read as unshaded.
-        self.layout = Layout { vertices: self.words.len(), ..Layout::default() };
+        *self.layout = Layout { vertices: self.words.len(), ..Layout::default() };
         self.reserve(vertices, stride);
     }
 
@@ -319,6 +320,11 @@ impl<'a> Records<'a> {
         self.layout.stride = stride;
         self.layout.front = self.get(header + 3) as usize;
         self.get(header) == fingerprint
+    }
+
+    /// Whether the draw that was found has no vertices.
+    pub(crate) fn is_draw_empty(&self) -> bool {
+        self.layout.front == self.layout.vertices
     }
 
     /// The next triangle of the current draw in this strip.

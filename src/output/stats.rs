@@ -21,15 +21,19 @@ pub struct Stats {
     pub vertices: u32,
     /// Triangles taken in.
     pub triangles: u32,
+    /// Lines taken in, once for each strip.
+    pub lines: u32,
+    /// Points taken in, once for each strip.
+    pub points: u32,
     /// Triangles culled by their winding.
     pub back_facing: u32,
     /// Triangles without area on the screen.
     pub degenerate: u32,
-    /// Triangles with all of them outside of the view, or of the strips at hand.
+    /// Triangles with all of them outside of the view, or of the strips at hand; lines outside of the view.
     pub outside: u32,
     /// Triangles that cover no pixel centre.
     pub empty: u32,
-    /// Triangles cut by the near or far plane or the guard band.
+    /// Triangles and lines cut by the near or far plane or the guard band.
     pub clipped: u32,
     /// Triangles that went on to be drawn; a clipped one may become several.
     pub drawn: u32,

@@ -4,7 +4,7 @@ use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, ClipVertex, Corner, Face, Mesh, Outcode, Part, Placed, ScreenVertex, Side, Transform, Varyings,
-    VertexShader, View, clip_triangle, place, project, signed_area,
+    VertexShader, View, clip_triangle, signed_area,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -85,10 +85,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline(never)]
-    fn shade(&mut self, index: usize) -> Slot {
+    pub(super) fn shade(&mut self, index: usize) -> Slot {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
         let placed = if S::DISPLACES {
-            place(&self.transformed(index))
+            self.transform.place_clip(&self.transformed(index))
         } else {
             self.transform.place(&self.mesh.data().positions, index)
         };
@@ -101,7 +101,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline]
-    fn transformed(&self, index: usize) -> ClipVertex {
+    pub(super) fn transformed(&self, index: usize) -> ClipVertex {
         if S::DISPLACES {
             self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
         } else {
@@ -135,7 +135,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             (self.transformed(index), self.shader.vertex(&Corner::new(self.mesh, index)))
         });
         clip_triangle(triangle, codes, part, |(vertex, varyings)| {
-            if let Some(placed) = project(vertex) {
+            if let Some(placed) = self.transform.project(vertex) {
                 // There are no more corners than places.
                 let _ = fan.push((placed, *varyings));
             }
@@ -235,15 +235,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     fn draw(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
-        if let Some(mut painter) = self.scene.painter(&self.clip, self.state, self.shader) {
-            painter.triangle(v, varyings, face);
-        }
+        self.scene.painter(&self.clip, self.state, self.shader).triangle(v, varyings, face);
     }
 }
 
 /// The varyings as the records would give them back.
 #[inline(never)]
-fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
+pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let mut words = S::Varyings::ZERO;
     let words: &mut [u32] = bytemuck::cast_slice_mut(words.as_mut());
     let words = words.get_mut(..S::WORDS).unwrap_or_default();

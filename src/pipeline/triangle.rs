@@ -6,8 +6,8 @@ use crate::geometry::{ScreenVertex, Varyings, signed_area};
 use crate::output::Framebuffer;
 use crate::raster::{Gradients, PixelRect, Trapezoids};
 
-/// What the triangles of a draw are drawn with.
-pub(super) struct Painter<'p, 't, F, S> {
+/// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
+pub struct Painter<'p, 't, F, S> {
     pub(super) target: &'p mut Target<'t, F>,
     pub(super) screen: (u16, u16),
     /// Pixels that may be drawn: on the screen, and in the strip.
@@ -26,7 +26,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             return;
         }
         let gradients = Gradients::new(v, area, self.screen);
-        let depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+        let mut depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+        if !self.state.bias.is_none() {
+            let depths = v[0].z.min(v[1].z).min(v[2].z)..v[0].z.max(v[1].z).max(v[2].z);
+            let steps = self.state.bias.steps(depths, depth.dx, depth.dy);
+            depth.base = depth.base.wrapping_add((steps as u32) << 16);
+        }
         let (mut corner, mut d_dx, mut d_dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
         let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
         for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut()).enumerate() {

@@ -25,7 +25,7 @@ pub struct Edge {
 
 /// `num / den` and the remainder, for quotients below 2³².
 #[inline]
-fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
+pub(super) fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
     match u32::try_from(num) {
         Ok(num) => (num / den, num % den),
         Err(_) => long_divide((num >> 32) as u32, num as u32, den),

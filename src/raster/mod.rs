@@ -1,9 +1,18 @@
-//! Screen primitive → spans: exact edges walked row by row, and the plane equations of what is interpolated.
+//! Screen primitive → spans: exact edges walked row by row, the plane equations of what is interpolated, and the pixels of
+//! lines and points.
 
+mod along;
+mod direction;
 mod edge;
 mod gradient;
+mod line;
+mod point;
 mod triangle;
 
+pub use along::Along;
+pub(crate) use direction::unit;
 pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
+pub use line::{Line, LinePixels};
+pub use point::square;
 pub use triangle::{PixelRect, Trapezoids, first_centre, pixel_rect, spans};

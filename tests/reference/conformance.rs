@@ -11,7 +11,9 @@
 //! | `depth` | winner and depth (±1) wherever no other fragment is within 1 step |
 //! | `nearclip` | `must` pixels once, `ambiguous` ones at most once, others never |
 //! | `nearclip_pairs` | the same for two triangles together |
-//! | `lines`, `points`, `persp`, `msaa4` | not yet checked |
+//! | `lines` | exactly these pixels, in drawing order |
+//! | `points` | exactly this rectangle |
+//! | `persp`, `msaa4` | not yet checked |
 
 use std::fmt;
 use std::path::Path;
@@ -45,6 +47,12 @@ pub trait Rasterizer {
 
     /// Clips and covers triangles without a depth test: calls `hit(triangle index, x, y)` for every pixel of each.
     fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32));
+
+    /// Draws an aliased line of one pixel's width: calls `hit(x, y)` for every pixel, in drawing order.
+    fn line(&mut self, width: u32, height: u32, ends: [[i32; 2]; 2], hit: &mut dyn FnMut(u32, u32));
+
+    /// Draws a point as a square with sides of `side` / 256 px: calls `hit(x, y)` for every pixel.
+    fn point(&mut self, width: u32, height: u32, center: [i32; 2], side: u32, hit: &mut dyn FnMut(u32, u32));
 }
 
 /// What became of a file.
@@ -113,7 +121,9 @@ pub fn check_file(path: &Path, rasterizer: &mut dyn Rasterizer) -> Result<Outcom
         "depth" => (check_depth, 64),
         "nearclip" => (check_near_clip, 64),
         "nearclip_pairs" => (check_near_clip_pairs, 64),
-        "lines" | "points" | "persp" | "msaa4" => return Ok(Outcome::NotYet),
+        "lines" => (check_lines, 64),
+        "points" => (check_points, 64),
+        "persp" | "msaa4" => return Ok(Outcome::NotYet),
         _ => {
             return Err(CheckError::UnknownFile { file: path.display().to_string() });
         }
@@ -310,6 +320,41 @@ fn check_near_clip_pairs(table: &Table, rasterizer: &mut dyn Rasterizer) -> Resu
         let v3 = record.numbers(13)?;
         let hits = draw_clipped(table, rasterizer, &[[v0, v1, v2], [v3, v2, v1]]);
         Ok((format!("id {}", record.text(0)?), hits.verdict(|i| allowed[i])))
+    };
+    table.records.iter().map(check).collect()
+}
+
+fn check_lines(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(String, Verdict)>, BadRecord> {
+    let check = |record: &Record| {
+        record.expect_fields(14)?;
+        let [a, b] = [record.numbers(2)?, record.numbers(4)?];
+        let expected = record.chain(7)?;
+        let mut drawn = Vec::new();
+        rasterizer.line(table.width, table.height, [a, b], &mut |x, y| drawn.push((x, y)));
+        let other = drawn.iter().zip(&expected).position(|(d, e)| d != e);
+        let verdict = match other {
+            Some(k) => Err(format!("pixel {k} is {:?}, expected {:?}", drawn[k], expected[k])),
+            None if drawn.len() == expected.len() => Ok(()),
+            None => Err(format!("{} pixels, expected {}", drawn.len(), expected.len())),
+        };
+        Ok((format!("id {} ({})", record.text(0)?, record.text(1)?), verdict))
+    };
+    table.records.iter().map(check).collect()
+}
+
+fn check_points(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(String, Verdict)>, BadRecord> {
+    let check = |record: &Record| {
+        record.expect_fields(9)?;
+        let [x0, x1, y0, y1] = record.numbers::<i64, 4>(4)?;
+        let mut hits = Hits::new(table);
+        let hit = &mut |x, y| hits.add(1, x, y);
+        rasterizer.point(table.width, table.height, record.numbers(1)?, record.number(3)?, hit);
+        let verdict = hits.verdict(|i| {
+            let (x, y) = (i as i64 % i64::from(table.width), i as i64 / i64::from(table.width));
+            let inside = u32::from((x0..=x1).contains(&x) && (y0..=y1).contains(&y));
+            (inside, inside)
+        });
+        Ok((format!("id {}", record.text(0)?), verdict))
     };
     table.records.iter().map(check).collect()
 }

@@ -3,6 +3,7 @@
 use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
 use super::exact;
 use super::homogeneous::{Vertex, Viewport, for_each_sample};
+use super::model::Model;
 
 /// A mistake to make on purpose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -35,6 +36,8 @@ pub enum Mistake {
     DropsCrossing,
     /// One triangle of a pair is drawn half a pixel to the right.
     SecondShifted,
+    /// Lines begin where they end.
+    Backward,
     /// Reports a pixel beyond the right border.
     LeavesViewport,
     /// Draws nothing.
@@ -42,7 +45,7 @@ pub enum Mistake {
 }
 
 impl Mistake {
-    pub const ALL: [Mistake; 16] = [
+    pub const ALL: [Mistake; 17] = [
         Mistake::ShiftedByOne,
         Mistake::AllEdgesOwn,
         Mistake::BottomRight,
@@ -57,6 +60,7 @@ impl Mistake {
         Mistake::NoNearPlane,
         Mistake::DropsCrossing,
         Mistake::SecondShifted,
+        Mistake::Backward,
         Mistake::LeavesViewport,
         Mistake::Nothing,
     ];
@@ -180,6 +184,32 @@ impl Rasterizer for Mistake {
             for (x, y) in pixels {
                 hit(index, x, y);
             }
+        }
+    }
+
+    fn line(&mut self, width: u32, height: u32, [a, b]: [[i32; 2]; 2], hit: &mut dyn FnMut(u32, u32)) {
+        let coarse = |p: [i32; 2]| if *self == Mistake::CoarseGrid { p.map(|c| c & !15) } else { p };
+        let ends = if *self == Mistake::Backward { [b, a] } else { [coarse(a), coarse(b)] };
+        let mut pixels = Vec::new();
+        if *self != Mistake::Nothing {
+            Model.line(width, height, ends, &mut |x, y| pixels.push((x, y)));
+        }
+        self.spoil(&mut pixels, width);
+        for (x, y) in pixels {
+            hit(x, y);
+        }
+    }
+
+    fn point(&mut self, width: u32, height: u32, center: [i32; 2], side: u32, hit: &mut dyn FnMut(u32, u32)) {
+        // A unit to the right and down: left and top sides lose their points, and right and bottom ones gain them.
+        let center = if *self == Mistake::BottomRight { center.map(|c| c + 1) } else { center };
+        let mut pixels = Vec::new();
+        if *self != Mistake::Nothing {
+            Model.point(width, height, center, side, &mut |x, y| pixels.push((x, y)));
+        }
+        self.spoil(&mut pixels, width);
+        for (x, y) in pixels {
+            hit(x, y);
         }
     }
 }

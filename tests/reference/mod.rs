@@ -4,6 +4,7 @@
 //!
 //! | module | what it is | arithmetic |
 //! |---|---|---|
+//! | [`diamonds`] | lines by the diamond-exit rule | integers, exact |
 //! | [`exact`] | coverage, depth and attributes of one snapped triangle | integers, exact |
 //! | [`homogeneous`] | clip space to pixels with no clipper (Olano & Greer) | f64 |
 //! | [`snapped`] | depth-tested frames from snapped vertices | exact coverage and depth, f64 colour |
@@ -18,6 +19,7 @@
 
 pub mod camera;
 pub mod conformance;
+pub mod diamonds;
 pub mod exact;
 pub mod frame;
 pub mod homogeneous;

@@ -3,8 +3,8 @@
 //! It passes every record, which shows that files, checker and references agree on the rules.
 
 use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
-use super::exact;
 use super::homogeneous::{Vertex, Viewport, for_each_sample};
+use super::{diamonds, exact};
 
 /// A rasterizer without any cleverness.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +42,26 @@ impl Rasterizer for Model {
                     hit(index, sample.x, sample.y);
                 }
             });
+        }
+    }
+
+    fn line(&mut self, width: u32, height: u32, [a, b]: [[i32; 2]; 2], hit: &mut dyn FnMut(u32, u32)) {
+        for (x, y) in diamonds::pixels(a, b) {
+            if (0..width as i32).contains(&x) && (0..height as i32).contains(&y) {
+                hit(x as u32, y as u32);
+            }
+        }
+    }
+
+    fn point(&mut self, width: u32, height: u32, center: [i32; 2], side: u32, hit: &mut dyn FnMut(u32, u32)) {
+        let inside = |pixel: u32, c: i32| {
+            let (twice, side) = (2 * (256 * pixel as i32 + 128), side as i32);
+            2 * c - side <= twice && twice < 2 * c + side
+        };
+        for (y, x) in (0..height).flat_map(|y| (0..width).map(move |x| (y, x))) {
+            if inside(x, center[0]) && inside(y, center[1]) {
+                hit(x, y);
+            }
         }
     }
 }

@@ -130,6 +130,32 @@ impl Record<'_> {
         }
     }
 
+    /// Field `index` as a chain of pixels: `-`, or `x.y` and a digit for each step, 0 = (+1, 0), 1 = (+1, +1) and so on.
+    pub fn chain(&self, index: usize) -> Result<Vec<(u32, u32)>, BadRecord> {
+        let mut words = self.text(index)?.split_whitespace();
+        let wrong = || self.bad(format!("field {}: not a chain of pixels", index + 1));
+        let first = words.next().ok_or_else(wrong)?;
+        let steps = words.next().unwrap_or("");
+        if first == "-" && steps.is_empty() {
+            return Ok(Vec::new());
+        }
+        let (x, y) = first.split_once('.').ok_or_else(wrong)?;
+        let mut at: (u32, u32) = (self.parse_as(index, x)?, self.parse_as(index, y)?);
+        let mut pixels = vec![at];
+        for step in steps.chars() {
+            let turn = step.to_digit(8).ok_or_else(wrong)? as usize;
+            let by = |k: usize| [1, 1, 0, -1, -1, -1, 0, 1][k % 8];
+            let moved = (at.0.checked_add_signed(by(turn)), at.1.checked_add_signed(by(turn + 6)));
+            let (Some(x), Some(y)) = moved else { return Err(wrong()) };
+            at = (x, y);
+            pixels.push(at);
+        }
+        match words.next() {
+            None => Ok(pixels),
+            Some(_) => Err(wrong()),
+        }
+    }
+
     /// Field `index` as spans: `-`, or `y0` and a token per row, `.` or `a-b;c-d`. They ascend and stay in the viewport.
     pub fn spans(&self, index: usize, (width, height): (u32, u32)) -> Result<Vec<SpanRow>, BadRecord> {
         let mut result = Vec::new();

@@ -10,6 +10,7 @@ use zstrip::fragment::{DepthState, DepthTest, Fragment, Fragments, Shader};
 use zstrip::geometry::{Corner, Face, Mesh, MeshData, Positions, VertexShader};
 use zstrip::math::{Projective, Scalar};
 use zstrip::output::{FrameSlice, FramebufferRenderer};
+use zstrip::raster::{Line, PixelRect, square};
 use zstrip::{Cull, State};
 
 /// Draws with zstrip; strips of `strip_rows` rows, and `records` words of records.
@@ -138,4 +139,21 @@ impl Rasterizer for Subject {
         let vertices: Vec<_> = tris.iter().flatten().map(|v| v.map(Scalar::from_bits)).collect();
         self.reach((width, height), &vertices, hit);
     }
+
+    fn line(&mut self, width: u32, height: u32, [a, b]: [[i32; 2]; 2], hit: &mut dyn FnMut(u32, u32)) {
+        for (x, y) in Line::new(a.into(), b.into()).pixels(&whole(width, height)).1 {
+            hit(x as u32, y as u32);
+        }
+    }
+
+    fn point(&mut self, width: u32, height: u32, center: [i32; 2], side: u32, hit: &mut dyn FnMut(u32, u32)) {
+        let rect = square(center.into(), side).intersection(&whole(width, height));
+        for y in rect.y {
+            rect.x.clone().for_each(|x| hit(x as u32, y as u32));
+        }
+    }
+}
+
+fn whole(width: u32, height: u32) -> PixelRect {
+    PixelRect { x: 0..width as i32, y: 0..height as i32 }
 }

@@ -1,0 +1,115 @@
+//! Clipping of lines: by the planes of [`clip_triangle`](super::clip_triangle), in the same order, with the same cuts.
+
+use super::clip::{FAR, NEAR, PLANES, distance, intersection};
+use super::{ClipVertex, Outcode, Part, Varyings};
+
+/// Cuts a line by the planes in `codes` (the outcodes of its ends, united): the ends of what is left in one part of it, if
+/// anything is.
+///
+/// An end that is visible passes unchanged, bit by bit; AB is cut like BA.
+pub fn clip_line<V: Varyings>(ends: &[(ClipVertex, V); 2], codes: Outcode, part: Part) -> Option<[(ClipVertex, V); 2]> {
+    let [mut a, mut b] = *ends;
+    for plane in 0..PLANES {
+        if codes.0 & (1 << plane) == 0 {
+            continue;
+        }
+        let outside = (plane == NEAR && part == Part::Before) || (plane == FAR && part == Part::Beyond);
+        let (da, db) = (distance(plane, &a.0), distance(plane, &b.0));
+        let keeps_a = (da >= 0) != outside;
+        if (da >= 0) == (db >= 0) {
+            if !keeps_a {
+                return None;
+            }
+            continue;
+        }
+        // Always from the end inside to the one outside, whichever of them is kept.
+        let crossing = if da >= 0 { intersection(&a, da, &b, db, plane) } else { intersection(&b, db, &a, da, plane) };
+        *(if keeps_a { &mut b } else { &mut a }) = crossing;
+    }
+    for end in [&mut a, &mut b] {
+        match part {
+            Part::Before => end.0.z = 0,
+            Part::Between => {}
+            Part::Beyond => end.0.z = end.0.w,
+        }
+    }
+    Some([a, b])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::clip_triangle;
+    use std::vec::Vec;
+
+    const ONE: i64 = 1 << 50;
+
+    fn codes(vertices: &[(ClipVertex, [i32; 1])]) -> Outcode {
+        Outcode(vertices.iter().fold(0, |all, v| all | Outcode::of(&v.0).0))
+    }
+
+    /// Random ends in all directions, with w of either sign.
+    fn ends(count: usize) -> Vec<[(ClipVertex, [i32; 1]); 2]> {
+        let mut state = 17_u64;
+        let mut next = |limit: i64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((i128::from((state ^ state >> 29) as i64) * i128::from(limit)) >> 63) as i64
+        };
+        let mut end = || {
+            let w = next(ONE);
+            (ClipVertex { x: next(20 * ONE), y: next(20 * ONE), z: next(ONE), w }, [next(1 << 20) as i32])
+        };
+        (0..count).map(|_| [end(), end()]).collect()
+    }
+
+    #[test]
+    fn what_is_left_is_inside_of_all_planes() {
+        let mut left = 0;
+        for line in ends(20_000) {
+            let Some(cut) = clip_line(&line, codes(&line), Part::Between) else { continue };
+            left += 1;
+            for (end, original) in cut.iter().zip(&line) {
+                // The cuts' rounding: a few units of 2⁵⁰, and 65 times that at the guard band.
+                for plane in 0..PLANES {
+                    assert!(distance(plane, &end.0) >= -400, "plane {plane}: {end:?}");
+                }
+                if Outcode::of(&original.0) == Outcode(0) {
+                    assert_eq!(end, original);
+                }
+            }
+        }
+        assert!(left > 1000, "{left}");
+    }
+
+    #[test]
+    fn line_is_cut_the_same_from_both_ends_and_as_the_edge_of_a_triangle() {
+        let mut cut_lines = 0;
+        for line in ends(20_000) {
+            let [a, b] = line;
+            let all = codes(&line);
+            let cut = clip_line(&line, all, Part::Between);
+            let back = clip_line(&[b, a], all, Part::Between);
+            assert_eq!(cut, back.map(|[a, b]| [b, a]), "{line:?}");
+            // As an edge of a triangle whose third vertex is inside.
+            let third = (ClipVertex { x: 0, y: 0, z: ONE / 4, w: ONE / 2 }, [0]);
+            let mut corners = Vec::new();
+            clip_triangle([a, b, third], all, Part::Between, |corner| corners.push(*corner));
+            if let Some([a, b]) = cut {
+                cut_lines += 1;
+                assert!(corners.contains(&a) && corners.contains(&b), "{line:?}");
+            }
+        }
+        assert!(cut_lines > 1000, "{cut_lines}");
+    }
+
+    #[test]
+    fn parts_before_and_beyond_meet_the_part_between() {
+        let v = |z, w| (ClipVertex { x: 0, y: 0, z, w }, [0]);
+        let line = [v(-ONE / 4, ONE / 2), v(ONE, ONE / 2)];
+        let all = codes(&line);
+        let parts = [Part::Before, Part::Between, Part::Beyond].map(|part| clip_line(&line, all, part));
+        let [Some(before), Some(between), Some(beyond)] = parts else { panic!("{parts:?}") };
+        assert_eq!((before[0].0.z, before[1], between[0]), (0, between[0], before[1]));
+        assert_eq!((between[1], beyond[1].0.z), (beyond[0], beyond[1].0.w));
+    }
+}

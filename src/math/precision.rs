@@ -1,0 +1,174 @@
+//! How far apart two things must be to differ in 16-bit depth, and where to put the near plane so that they do.
+
+use super::{ProjectionError, Scalar, Wide};
+use core::fmt;
+
+/// Steps of depth.
+const STEPS: i128 = 65_535;
+
+/// What 16-bit depth makes of distances, for a perspective camera's near and far distance.
+///
+/// Depth is far (d - near) / ((far - near) d): half of all steps lie between near and twice near. At distance d a step is
+/// about d² (far - near) / (65,535 near far), so it is the near plane that counts; far hardly does, once it is far.
+///
+/// The classic sum is that of a flight simulator, near plane at 1 m, far plane at 50 km:
+///
+/// | distance | near 1 m | near 10 m | near 100 m | uniform |
+/// |---|---|---|---|---|
+/// | 100 m | 15 cm | 1.5 cm | - | 76 cm |
+/// | 1 km | 15 m | 1.5 m | 15 cm | 76 cm |
+/// | 10 km | 1.7 km | 155 m | 15 m | 76 cm |
+/// | 50 km, and nearer | 14 km | 1.8 km | 190 m | 76 cm |
+///
+/// With the near plane at the pilot's nose, a hangar 1 km away and what is 15 m behind it fight, and clouds 10 km away are all at
+/// one distance. A near plane at 10 m mends the one, the cockpit being drawn by a camera of its own in front of everything;
+/// for the other, there is [`DepthScale::Uniform`](crate::geometry::DepthScale::Uniform). The marks on the runway want a
+/// [bias](crate::fragment::DepthBias) in any case.
+///
+/// ```
+/// use zstrip::math::{DepthPrecision, Scalar};
+/// // In units of 10 m: near 1 m, far 50 km.
+/// let precision = DepthPrecision::new(Scalar::from_num(0.1), Scalar::from_num(5000)).unwrap();
+/// let metres = |distance: f32| 10.0 * precision.bin(Scalar::from_num(distance)).to_num::<f32>();
+/// assert!((metres(100.0) - 15.3).abs() < 0.2); // at 1 km
+/// // To tell 1 m from 1 m at 10 km, near must be beyond 1.5 km.
+/// let near = DepthPrecision::near_for(Scalar::from_num(5000), Scalar::from_num(1000), Scalar::from_num(0.1)).unwrap();
+/// assert!((10.0 * near.to_num::<f32>() - 1480.0).abs() < 20.0);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DepthPrecision {
+    near: Scalar,
+    far: Scalar,
+}
+
+/// Why there is no near plane for a wanted precision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum PrecisionError {
+    /// The distance is not above 0, or beyond the far plane: raw 16.16.
+    Distance(i32),
+    /// The size asked for is not above 0: raw 16.16.
+    Bin(i32),
+    /// The near plane would have to be beyond the distance itself: where, raw 16.16.
+    TooFine(i32),
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for PrecisionError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
+}
+
+impl fmt::Display for PrecisionError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Distance(d) => write!(f, "distance {} is not between 0 and the far plane", Scalar::from_bits(d)),
+            Self::Bin(b) => write!(f, "a step of depth cannot be {} in size", Scalar::from_bits(b)),
+            Self::TooFine(n) => {
+                write!(f, "the near plane would have to be at {}, beyond the distance", Scalar::from_bits(n))
+            }
+        }
+    }
+}
+
+impl core::error::Error for PrecisionError {}
+
+/// num / den rounded to nearest, both positive; 0 for a `den` of 0.
+const fn rounded(num: i128, den: i128) -> i128 {
+    match (2 * num + den).checked_div_euclid(2 * den) {
+        Some(quotient) => quotient,
+        None => 0,
+    }
+}
+
+impl DepthPrecision {
+    /// Of a camera with these distances.
+    ///
+    /// # Errors
+    /// When `near ≤ 0` or `near ≥ far`, as the camera's.
+    pub const fn new(near: Scalar, far: Scalar) -> Result<Self, ProjectionError> {
+        if near.to_bits() <= 0 {
+            return Err(ProjectionError::NearNotPositive(near.to_bits()));
+        }
+        if near.to_bits() >= far.to_bits() {
+            return Err(ProjectionError::NearNotBeforeFar(near.to_bits(), far.to_bits()));
+        }
+        Ok(Self { near, far })
+    }
+
+    const fn planes(&self) -> (i128, i128) {
+        (self.near.to_bits() as i128, self.far.to_bits() as i128)
+    }
+
+    /// The depth of what is so far away along the camera's axis, rounded to nearest; 0 before the near plane, 65,535 beyond
+    /// the far one.
+    pub const fn depth(&self, distance: Scalar) -> u16 {
+        let (n, f) = self.planes();
+        let d = distance.to_bits() as i128;
+        if d <= n {
+            0
+        } else if d >= f {
+            65_535
+        } else {
+            rounded(STEPS * f * (d - n), (f - n) * d) as u16
+        }
+    }
+
+    /// Where depth is `halves` / 2 steps, 32.32, rounded to nearest; from near to far.
+    ///
+    /// # Format
+    /// 2 · 65,535 n f 2¹⁶ has 95 bits; the divisor is not below 2 · 65,535 n.
+    const fn boundary(&self, halves: i128) -> i128 {
+        let (n, f) = self.planes();
+        let halves = if halves < 0 { 0 } else { halves };
+        if halves >= 2 * STEPS {
+            return f << 16;
+        }
+        rounded((2 * STEPS * n * f) << 16, 2 * STEPS * f - halves * (f - n))
+    }
+
+    /// The distance at which depth is exactly so many steps, rounded to nearest.
+    pub const fn distance(&self, depth: u16) -> Scalar {
+        Scalar::from_bits(((self.boundary(2 * depth as i128) + (1 << 15)) >> 16) as i32)
+    }
+
+    /// Size of the range of distances that have the same depth as `distance`: what is that far apart may look as if at the same
+    /// place, what is twice as far apart does not.
+    pub const fn bin(&self, distance: Scalar) -> Wide {
+        let depth = self.depth(distance) as i128;
+        Wide::from_bits((self.boundary(2 * depth + 1) - self.boundary(2 * depth - 1)) as i64)
+    }
+
+    /// The same for [`DepthScale::Uniform`](crate::geometry::DepthScale::Uniform), at any distance, rounded up.
+    pub const fn uniform_bin(&self) -> Wide {
+        let (n, f) = self.planes();
+        Wide::from_bits(((((f - n) << 16) + STEPS - 1) / STEPS) as i64)
+    }
+
+    /// The smallest near distance, or a trifle above it, with which the [`bin`](Self::bin) at `distance` is at most `bin`.
+    ///
+    /// # Errors
+    /// When `distance` is not in 0..=far, `bin` is not above 0, or the near plane would be beyond `distance`.
+    pub const fn near_for(far: Scalar, distance: Scalar, bin: Scalar) -> Result<Scalar, PrecisionError> {
+        let (f, d, b) = (far.to_bits() as i128, distance.to_bits() as i128, bin.to_bits() as i128);
+        if d <= 0 || d > f {
+            return Err(PrecisionError::Distance(distance.to_bits()));
+        }
+        if b <= 0 {
+            return Err(PrecisionError::Bin(bin.to_bits()));
+        }
+        // A bin from d- to d+ has the size (f - n) d- d+ / (65,535 n f), and d- ≤ d, d+ ≤ d + b. Rounded up.
+        let product = d * (d + b);
+        let den = b * f * STEPS + product;
+        let near = match (f * product + den - 1).checked_div(den) {
+            Some(near) => near,
+            None => f,
+        };
+        if near > d {
+            // Below far, which is below 2³¹.
+            return Err(PrecisionError::TooFine(near as i32));
+        }
+        Ok(Scalar::from_bits(near as i32))
+    }
+}

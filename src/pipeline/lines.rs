@@ -1,0 +1,254 @@
+//! Lines and points in space.
+//!
+//! Their vertices are in the records as those of meshes are, but no list says which strip they touch: each strip walks over
+//! all of them, which takes some 30 instructions for one that lies elsewhere, and no memory. A vertex is shaded when
+//! the first strip meets it.
+
+use super::assembly::{Assembly, rounded};
+use super::stroke::block;
+use super::triangle::Painter;
+use super::{Phase, Scene, State, Stroke, Thin, fingerprint};
+use crate::fragment::Shader;
+use crate::geometry::{
+    Corner, Face, Lines, Mesh, Outcode, Points, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader, View,
+    clip_line, project,
+};
+use crate::math::Projective;
+use crate::output::{Framebuffer, Slot, VERTEX_WORDS};
+use crate::raster::{PixelRect, square};
+
+impl<'a, F: Framebuffer> Scene<'a, F> {
+    /// Draws lines of one pixel's width: nearer fragments win, clipped at the near and the far plane.
+    ///
+    /// `mvp` takes object space to clip space: camera · view · model. To the shader, a line is a face without a normal that
+    /// shows its front; its first end is the provoking vertex. Varyings are interpolated along the line, linearly on the
+    /// screen.
+    pub fn draw_lines<S: Shader<F::Format>>(&mut self, lines: &Lines<'_>, mvp: &Projective, shader: &S) {
+        self.draw_lines_with(State::default(), lines, mvp, shader, &Thin);
+    }
+
+    /// Draws lines by other rules, with a stroke of one's choice.
+    pub fn draw_lines_with<S: Shader<F::Format>, K: Stroke>(
+        &mut self,
+        state: State,
+        lines: &Lines<'_>,
+        mvp: &Projective,
+        shader: &S,
+        stroke: &K,
+    ) {
+        if self.begin_walk(&state, lines.vertices(), mvp, stride::<S>(), lines.count(), stroke.reach(), S::DISPLACES) {
+            Walk::new(self, &state, lines.vertices(), mvp, shader).lines(lines, stroke);
+        }
+    }
+
+    /// Draws points as squares with sides of `size` px, in 24.8, about the vertices, each at the depth of its vertex. To
+    /// the shader, a point is a face as a line is. A point before the near or beyond the far plane is not drawn.
+    pub fn draw_points<S: Shader<F::Format>>(
+        &mut self,
+        state: State,
+        points: &Points<'_>,
+        mvp: &Projective,
+        shader: &S,
+        size: u32,
+    ) {
+        let reach = (size.min(1 << 24) >> 9) as i32 + 1;
+        let count = points.vertices().vertex_count();
+        if self.begin_walk(&state, points.vertices(), mvp, stride::<S>(), count, reach, S::DISPLACES) {
+            Walk::new(self, &state, points.vertices(), mvp, shader).points(size);
+        }
+    }
+
+    /// Starts a draw of `count` lines or points whose pixels are up to `reach` px away; whether it has to be walked over
+    /// now.
+    #[expect(clippy::too_many_arguments, reason = "what the fingerprint is made of")]
+    #[inline(never)]
+    fn begin_walk(
+        &mut self,
+        state: &State,
+        vertices: &Mesh<'_>,
+        mvp: &Projective,
+        stride: usize,
+        count: usize,
+        reach: i32,
+        displaced: bool,
+    ) -> bool {
+        // No mesh has that many triangles and a reach.
+        let kind = (count as u32).rotate_left(8) ^ !(reach as u32);
+        let print = fingerprint(state, vertices, mvp, &self.viewport, stride) ^ kind;
+        if self.phase == Phase::Replay {
+            return self.find_draw(print, stride) && !self.records.is_draw_empty();
+        }
+        self.count_draw();
+        let recording = self.phase == Phase::Record;
+        if recording && self.records.overflowed() {
+            return false;
+        }
+        let bounded = !displaced && !matches!(vertices.data().positions, Positions::Homogeneous(_));
+        let rect = self.clip_rect(&self.band);
+        let (x, y) = (rect.x.start - reach..rect.x.end + reach, rect.y.start - reach..rect.y.end + reach);
+        let planes = state.range.clamped();
+        let culled = bounded && !View::new(mvp, &self.viewport).sees(&vertices.bounds().aabb, &x, &y, planes);
+        self.stats.culled = self.stats.culled.wrapping_add(u32::from(culled));
+        if recording {
+            let count = if culled { 0 } else { vertices.vertex_count() };
+            self.records.begin_draw(print, count, stride);
+            self.records.end_draw();
+            return false;
+        }
+        if !culled {
+            self.records.begin_direct(vertices.vertex_count(), stride);
+        }
+        !culled
+    }
+}
+
+/// Words of a vertex in the records.
+fn stride<S: VertexShader>() -> usize {
+    const {
+        assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
+        assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
+    };
+    S::WORDS + VERTEX_WORDS
+}
+
+/// A walk over the lines or points of a draw, in a strip.
+struct Walk<'s, 'a, F, S> {
+    scene: &'s mut Scene<'a, F>,
+    state: &'s State,
+    vertices: &'s Mesh<'s>,
+    mvp: &'s Projective,
+    shader: &'s S,
+    /// Pixels of the strip that may be drawn.
+    clip: PixelRect,
+    /// Made when a vertex has to be shaded, or a line to be clipped.
+    transform: Option<Transform>,
+}
+
+impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
+    fn new(
+        scene: &'s mut Scene<'a, F>,
+        state: &'s State,
+        vertices: &'s Mesh<'s>,
+        mvp: &'s Projective,
+        shader: &'s S,
+    ) -> Self {
+        let clip = scene.clip_rect(&scene.target.rows);
+        Self { scene, state, vertices, mvp, shader, clip, transform: None }
+    }
+
+    #[inline(never)]
+    fn lines<K: Stroke>(&mut self, lines: &Lines<'_>, stroke: &K) {
+        let reach = stroke.reach();
+        // What a line has to touch, in 24.8.
+        let (left, right) = (256 * (self.clip.x.start - reach), 256 * (self.clip.x.end + reach));
+        let (top, bottom) = (256 * (self.clip.y.start - reach), 256 * (self.clip.y.end + reach));
+        for number in 0..lines.count() {
+            let Some([i, j]) = lines.line(number) else { return };
+            self.scene.stats.lines = self.scene.stats.lines.wrapping_add(1);
+            let (a, b) = (self.slot(usize::from(i)), self.slot(usize::from(j)));
+            if !(a.is_on_screen() & b.is_on_screen()) {
+                self.clip([a.outcode(), b.outcode()], [i, j], number, stroke);
+                continue;
+            }
+            let (a, b) = (a.screen(), b.screen());
+            if (a.y < top && b.y < top) || (a.y > bottom && b.y > bottom) {
+                continue;
+            }
+            if (a.x < left && b.x < left) || (a.x > right && b.x > right) {
+                continue;
+            }
+            let ends = [(a, self.varyings(i)), (b, self.varyings(j))];
+            self.draw(&ends, [i, j], number, stroke);
+        }
+    }
+
+    #[inline(never)]
+    fn points(&mut self, size: u32) {
+        for index in 0..self.vertices.vertex_count() {
+            self.scene.stats.points = self.scene.stats.points.wrapping_add(1);
+            let slot = self.slot(index);
+            let place = if slot.is_on_screen() {
+                Some(slot.screen())
+            } else if slot.outcode() & !self.state.range.clamped().0 == 0 {
+                project(&self.assembly().transformed(index))
+            } else {
+                None
+            };
+            let Some(v) = place else { continue };
+            let rect = square((v.x, v.y), size).intersection(&self.clip);
+            if !rect.is_empty() {
+                let number = index as u16;
+                let varyings = self.varyings(number);
+                let face = self.face([number, number], index);
+                block(&mut self.painter(), &rect, v.z, &varyings, face);
+            }
+        }
+    }
+
+    /// The vertex stage's result for a vertex.
+    #[inline]
+    fn slot(&mut self, index: usize) -> Slot {
+        let slot = self.scene.records.slot(index);
+        if slot.is_unshaded() { self.assembly().shade(index) } else { slot }
+    }
+
+    /// The vertex stage.
+    #[inline(never)]
+    fn assembly(&mut self) -> Assembly<'_, 'a, F, S> {
+        let Self { scene, state, vertices, mvp, shader, clip, transform } = self;
+        let view = || View::new(mvp, &scene.viewport);
+        let transform = transform.get_or_insert_with(|| Transform::of(view(), vertices, S::DISPLACES));
+        Assembly { scene, state, mesh: vertices, shader, transform, clip: clip.clone() }
+    }
+
+    fn varyings(&self, index: u16) -> S::Varyings {
+        if self.scene.records.has_vertices() {
+            return self.scene.records.corner::<S>(index).1;
+        }
+        rounded::<S>(&self.shader.vertex(&Corner::new(self.vertices, usize::from(index))))
+    }
+
+    fn face(&self, [a, b]: [u16; 2], number: usize) -> u32 {
+        self.shader.face(&Face::new(self.vertices, number, [a, b, b], Side::Front))
+    }
+
+    fn painter(&mut self) -> Painter<'_, 'a, F, S> {
+        self.scene.painter(&self.clip, self.state, self.shader)
+    }
+
+    #[inline(never)]
+    fn draw<K: Stroke>(
+        &mut self,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        corners: [u16; 2],
+        number: usize,
+        stroke: &K,
+    ) {
+        let face = self.face(corners, number);
+        stroke.draw(&mut self.painter(), ends, face);
+    }
+
+    /// A line with an end outside: cut anew in each strip, which keeps the records as they are.
+    #[inline(never)]
+    fn clip<K: Stroke>(&mut self, codes: [u8; 2], corners: [u16; 2], number: usize, stroke: &K) {
+        if codes[0] & codes[1] & !self.state.range.clamped().0 != 0 {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            return;
+        }
+        self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
+        let all = Outcode(codes[0] | codes[1]);
+        let [i, j] = corners.map(usize::from);
+        let assembly = self.assembly();
+        let end =
+            |index: usize| (assembly.transformed(index), assembly.shader.vertex(&Corner::new(assembly.mesh, index)));
+        let ends = [end(i), end(j)];
+        for part in self.state.range.parts(all) {
+            let Some([a, b]) = clip_line(&ends, all, part) else { continue };
+            if let (Some(placed_a), Some(placed_b)) = (project(&a.0), project(&b.0)) {
+                // What the records would keep of the varyings, as for ends that are not cut.
+                let ends = [(placed_a, rounded::<S>(&a.1)), (placed_b, rounded::<S>(&b.1))];
+                self.draw(&ends, corners, number, stroke);
+            }
+        }
+    }
+}

@@ -1,0 +1,435 @@
+//! Strokes: a line on the screen → pixels. What is not used is not linked, as each is a type.
+
+use super::triangle::Painter;
+use crate::fragment::{
+    AnyDepth, Compare, DepthState, DepthTest, Fragment, Fragments, LessWrite, PixelFormat, Shader, Steps,
+};
+use crate::geometry::{Corner, Face, ScreenVertex, Side, Varyings, VertexShader};
+use crate::output::Framebuffer;
+use crate::raster::{Along, Line, LinePixels, PixelRect, unit};
+
+/// How a line is drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
+pub trait Stroke: Draw {}
+
+/// What a stroke does; not to be implemented outside of the crate.
+pub trait Draw {
+    /// How far pixels may be away from the line, in whole px.
+    fn reach(&self) -> i32;
+
+    /// Draws a line.
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    );
+}
+
+/// One pixel wide, by the diamond-exit rule: one pixel for each step along the longer axis, exactly those that OpenGL and
+/// Vulkan draw. Lines in a chain draw each pixel of a joint once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Thin;
+
+/// One pixel wide, with a pattern that begins anew with each line: bit k says whether the pixels k, k + 32, k + 64 ... of
+/// the line are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dashed(pub u32);
+
+impl Dashed {
+    /// Four pixels drawn, four left out.
+    pub const EVEN: Self = Self(0x0F0F_0F0F);
+    /// Every other pixel.
+    pub const DOTTED: Self = Self(0x5555_5555);
+}
+
+/// A rectangle along the line, its ends cut straight, its corners rounded to 1/256 px: drawn as exactly as any two triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Thick(u32);
+
+/// Smooth: as [`Thick`], of any width down to parts of a pixel, but each pixel is covered as much as the line covers a
+/// pixel-sized box around its centre, and blended accordingly over what is there.
+///
+/// Draw it after what lies behind it, and think of not writing depths: a pixel at the rim hides what comes after as
+/// one inside does. Colours and depths are stretched to reach half a pixel beyond either end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Smooth(u32);
+
+/// The widest line, 2048 px.
+const WIDEST: u32 = 1 << 19;
+
+impl Thick {
+    /// A width in 24.8 px, up to 2048 px.
+    pub const fn new(width: u32) -> Self {
+        Self(if width > WIDEST { WIDEST } else { width })
+    }
+
+    /// A width in whole pixels.
+    pub const fn px(width: u8) -> Self {
+        Self((width as u32) << 8)
+    }
+}
+
+impl Smooth {
+    /// A width in 24.8 px, up to 2048 px.
+    pub const fn new(width: u32) -> Self {
+        Self(if width > WIDEST { WIDEST } else { width })
+    }
+
+    /// A width in whole pixels.
+    pub const fn px(width: u8) -> Self {
+        Self((width as u32) << 8)
+    }
+}
+
+impl Stroke for Thin {}
+impl Stroke for Dashed {}
+impl Stroke for Thick {}
+impl Stroke for Smooth {}
+
+impl Draw for Thin {
+    fn reach(&self) -> i32 {
+        1
+    }
+
+    #[inline]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        thin::<F, S, false>(painter, ends, face, 0);
+    }
+}
+
+impl Draw for Dashed {
+    fn reach(&self) -> i32 {
+        1
+    }
+
+    #[inline]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        thin::<F, S, true>(painter, ends, face, self.0);
+    }
+}
+
+/// A line one pixel wide: set-up.
+#[inline(never)]
+fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
+    painter: &mut Painter<'_, '_, F, S>,
+    ends: &[(ScreenVertex, S::Varyings); 2],
+    face: u32,
+    pattern: u32,
+) {
+    let [(a, from), (b, to)] = ends;
+    let line = Line::new((a.x, a.y), (b.x, b.y));
+    let (skipped, pixels) = line.pixels(painter.clip);
+    if pixels.len() == 0 {
+        return;
+    }
+    let along = Along::new(&line);
+    let (z, dz) = along.value(i32::from(a.z), i32::from(b.z), 16);
+    let (mut values, mut d_dx) = (*from, S::Varyings::ZERO);
+    for ((value, step), to) in values.as_mut().iter_mut().zip(d_dx.as_mut()).zip(to.as_ref()) {
+        let (start, change) = along.value(*value, *to, 0);
+        (*value, *step) = (start as i32, change);
+    }
+    let mut moved = values;
+    let words = painter.shader.prepare(&mut moved, &d_dx);
+    let steps = Steps { dz_dx: dz, d_dx, words, side: Side::Front };
+    // Values at the first pixel of the window; if it lies before the one that values are given for, those of the end.
+    let before = skipped < along.origin();
+    let on = skipped.wrapping_sub(along.origin()) as i32;
+    let z = z.wrapping_add(1 << 15);
+    let mut run = Run { pixels, z, values: moved, pattern: pattern.rotate_right(skipped & 31), face, steps: &steps };
+    let mut rest = 0;
+    if before {
+        rest = run.pixels.shorten(1);
+        run.z = u32::from(a.z) << 16 | 1 << 15;
+        // Moved as the others.
+        for (((value, from), moved), start) in
+            run.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
+        {
+            *value = from.wrapping_add(moved.wrapping_sub(*start));
+        }
+    } else {
+        run.z = z.wrapping_add_signed(dz.wrapping_mul(on));
+        for (value, step) in run.values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+            *value = value.wrapping_add(step.wrapping_mul(on));
+        }
+    }
+    loop {
+        match painter.state.depth {
+            DepthState { compare: Compare::Less, write: true } => run.draw::<F, S, _, DASHED>(painter, LessWrite),
+            other => run.draw::<F, S, _, DASHED>(painter, AnyDepth::new(other)),
+        }
+        if rest == 0 {
+            return;
+        }
+        run.pixels.lengthen(rest);
+        (run.z, run.values, rest) = (z, moved, 0);
+    }
+}
+
+/// Pixels of a line, and what is interpolated over them.
+struct Run<'r, V> {
+    pixels: LinePixels,
+    z: u32,
+    values: V,
+    pattern: u32,
+    face: u32,
+    steps: &'r Steps<V>,
+}
+
+impl<V: Varyings> Run<'_, V> {
+    /// Draws all of its pixels, each as a span of its own.
+    #[inline(always)]
+    fn draw<F: Framebuffer, S: Shader<F::Format, Varyings = V>, D: DepthTest, const DASHED: bool>(
+        &mut self,
+        painter: &mut Painter<'_, '_, F, S>,
+        test: D,
+    ) {
+        let Self { pixels, z, values, pattern, face, steps } = self;
+        let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
+        for (x, y) in pixels.by_ref() {
+            if !DASHED || *pattern & 1 != 0 {
+                let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
+                let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
+                if let ([color], Some(depth)) = (color, painter.target.depth.get_mut(at)) {
+                    let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
+                    let span = Fragments { color, depth, z: *z, varyings: *values, steps, position: (x, y) };
+                    painter.shader.span(*face, span, test);
+                }
+            }
+            if DASHED {
+                *pattern = pattern.rotate_right(1);
+            }
+            *z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+}
+
+/// The corners of a rectangle along a line: `half` to either side, and `more` beyond the ends, in 24.8 px.
+///
+/// # Format
+/// Corners within 1/256 px of the exact ones for widths up to 2048 px, beside rounding; not farther out than the rasterizer
+/// can take.
+#[inline(never)]
+fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, more: u32) -> [ScreenVertex; 4] {
+    // 2.30 times 24.8, rounded.
+    let times = |c: i32, length: u32| (crate::math::mul_high_signed(c, length << 3) + 1) >> 1;
+    let (along, aside) = ((times(u, more), times(v, more)), (times(-v, half), times(u, half)));
+    let corner = |p: &ScreenVertex, x: i32, y: i32| {
+        const LIMIT: i32 = (1 << 23) - 1;
+        ScreenVertex::new((p.x + x).clamp(-LIMIT, LIMIT), (p.y + y).clamp(-LIMIT, LIMIT), p.z)
+    };
+    [
+        corner(a, -along.0 + aside.0, -along.1 + aside.1),
+        corner(b, along.0 + aside.0, along.1 + aside.1),
+        corner(b, along.0 - aside.0, along.1 - aside.1),
+        corner(a, -along.0 - aside.0, -along.1 - aside.1),
+    ]
+}
+
+/// A rectangle as two triangles.
+fn fill<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    [a, b, c, d]: &[ScreenVertex; 4],
+    [from, to]: [&S::Varyings; 2],
+    face: u32,
+) {
+    painter.triangle(&[*a, *b, *c], &[*from, *to, *to], face);
+    painter.triangle(&[*a, *c, *d], &[*from, *to, *from], face);
+}
+
+impl Draw for Thick {
+    fn reach(&self) -> i32 {
+        (self.0 >> 9) as i32 + 2
+    }
+
+    #[inline(never)]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        let [(a, from), (b, to)] = ends;
+        let corners = rectangle(a, b, unit(b.x - a.x, b.y - a.y), self.0 / 2, 0);
+        fill(painter, &corners, [from, to], face);
+    }
+}
+
+impl Draw for Smooth {
+    fn reach(&self) -> i32 {
+        (self.0 >> 9) as i32 + 3
+    }
+
+    #[inline(never)]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        let [(a, from), (b, to)] = ends;
+        let unit = unit(b.x - a.x, b.y - a.y);
+        // Half a pixel more, and two units for the rounding of the corners.
+        let corners = rectangle(a, b, unit, self.0 / 2 + 130, 130);
+        let coverage = Coverage::new(a, b, unit, self.0, painter.screen);
+        let shader = Covered { shader: painter.shader, coverage };
+        let Painter { target, screen, clip, state, .. } = painter;
+        fill(&mut Painter { target, screen: *screen, clip, state, shader: &shader }, &corners, [from, to], face);
+    }
+}
+
+/// How much of a pixel a line covers: a box of 1 px, turned to the line, moved over it.
+///
+/// Along and across the line the overlap of two intervals is a trapezoid; the product of both is what is covered.
+struct Coverage {
+    /// Distance from the line, 12.20 px, and from its start along it, 16.16 px: at the pixel `origin`, and their changes.
+    distance: i32,
+    way: i32,
+    origin: (i32, i32),
+    step: [(i32, i32); 2],
+    /// Half the width and half a pixel, and the most that can be covered, 12.20.
+    outer: i32,
+    most: i32,
+    /// The length and half a pixel, and the most, 16.16.
+    end: i32,
+    longest: i32,
+}
+
+impl Coverage {
+    /// # Format
+    /// Unit vector 2.30. Steps are off by 2⁻²¹ and 2⁻¹⁷ px: over 320 pixels in x and in y, distances by 2⁻¹¹ px, and what is
+    /// behind the ends by 2⁻⁷.
+    #[inline(never)]
+    fn new(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), width: u32, (w, h): (u16, u16)) -> Self {
+        let origin = ((a.x >> 8).max(0).min(i32::from(w) - 1), (a.y >> 8).max(0).min(i32::from(h) - 1));
+        let (x, y) = (i64::from(256 * origin.0 + 128 - a.x), i64::from(256 * origin.1 + 128 - a.y));
+        let (u, v) = (i64::from(u), i64::from(v));
+        let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
+        // 24.8 times 2.30: 38 fractional bits. Distances grow to the right of the line, as y points down.
+        let length = ((u * dx + v * dy) >> 22) as i32;
+        let step = |c: i64, down: u32| ((c >> (down - 1)) + 1) as i32 >> 1;
+        Self {
+            distance: ((u * y - v * x) >> 18) as i32,
+            way: ((u * x + v * y) >> 22) as i32,
+            origin,
+            step: [(step(-v, 10), step(u, 10)), (step(u, 14), step(v, 14))],
+            outer: (width << 11) as i32 + (1 << 19),
+            most: (width << 12).min(1 << 20) as i32,
+            end: length + (1 << 15),
+            longest: length.min(1 << 16),
+        }
+    }
+}
+
+/// A shader whose fragments cover their pixels in part.
+struct Covered<'s, S> {
+    shader: &'s S,
+    coverage: Coverage,
+}
+
+impl<S: VertexShader> VertexShader for Covered<'_, S> {
+    type Varyings = S::Varyings;
+    const WORDS: usize = S::WORDS;
+    const ZERO_BITS: u32 = S::ZERO_BITS;
+
+    fn vertex(&self, vertex: &Corner<'_>) -> S::Varyings {
+        self.shader.vertex(vertex)
+    }
+
+    fn face(&self, face: &Face<'_>) -> u32 {
+        self.shader.face(face)
+    }
+}
+
+impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+        self.shader.fragment(fragment)
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: D) {
+        let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
+        let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
+        let (x, y) = (position.0 - origin.0, position.1 - origin.1);
+        let at = |base: i32, step: (i32, i32)| {
+            base.wrapping_add(step.0.wrapping_mul(x)).wrapping_add(step.1.wrapping_mul(y))
+        };
+        let (mut distance, mut way) = (at(self.coverage.distance, distance_step), at(self.coverage.way, way_step));
+        let side = steps.side;
+        for (color, stored) in color.iter_mut().zip(depth) {
+            // Overlaps as 1.8.
+            let across = outer.wrapping_sub(distance.wrapping_abs()).min(most) >> 12;
+            let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
+            let depth = (z >> 16) as u16;
+            if across > 0 && along > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
+                let fragment = Fragment { face, varyings: &varyings, position, depth, side };
+                if let Some(value) = self.shader.fragment(&fragment) {
+                    test.write(depth, stored);
+                    *color = mix::<P>(*color, value, (across * along) >> 8);
+                }
+            }
+            position.0 = position.0.wrapping_add(1);
+            distance = distance.wrapping_add(distance_step.0);
+            way = way.wrapping_add(way_step.0);
+            z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+}
+
+/// `under`, covered by `part` / 256 with `over`; each channel to nearest.
+#[inline]
+fn mix<P: PixelFormat>(under: P::Raw, over: P::Raw, part: i32) -> P::Raw {
+    let ([r, g, b], [r1, g1, b1]) = (P::unpack(under), P::unpack(over));
+    let channel = |c: u8, over: u8| {
+        let c = i32::from(c);
+        (c + (((i32::from(over) - c) * part + 128) >> 8)) as u8
+    };
+    P::pack([channel(r, r1), channel(g, g1), channel(b, b1)])
+}
+
+/// Draws the pixels of a rectangle, all with the same depth and varyings.
+#[inline(never)]
+pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    rect: &PixelRect,
+    z: u16,
+    varyings: &S::Varyings,
+    face: u32,
+) {
+    let rect = rect.intersection(painter.clip);
+    if rect.is_empty() {
+        return;
+    }
+    let (mut values, d_dx) = (*varyings, S::Varyings::ZERO);
+    let words = painter.shader.prepare(&mut values, &d_dx);
+    let steps = Steps { dz_dx: 0, d_dx, words, side: Side::Front };
+    let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
+    for y in rect.y {
+        let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
+        let color = painter.target.framebuffer.span(y as u32, column, length);
+        let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
+        let Some(depth) = depth.get_mut(..color.len()) else { return };
+        let z = u32::from(z) << 16 | 1 << 15;
+        let span = Fragments { color, depth, z, varyings: values, steps: &steps, position: (rect.x.start, y) };
+        match painter.state.depth {
+            DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, LessWrite),
+            other => painter.shader.span(face, span, AnyDepth::new(other)),
+        }
+    }
+}

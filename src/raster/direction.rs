@@ -1,0 +1,67 @@
+//! Unit vectors along lines, which have a width.
+
+use crate::math::{mul_high, mul_high_signed, reciprocal};
+
+/// The vector of length 1 in the direction of (x, y); zero for the zero vector.
+///
+/// # Format
+/// Components within ±2²⁵; result 2.30, within 2⁻²³ of the exact one. A root of 15 bits and its reciprocal give it within
+/// 2⁻¹², e being what its squared length lacks: then it is multiplied by 1 + e / 2, off by 3/8 e².
+pub(crate) fn unit(x: i32, y: i32) -> (i32, i32) {
+    let larger = x.unsigned_abs().max(y.unsigned_abs());
+    if larger == 0 {
+        return (0, 0);
+    }
+    // The larger one to 2²⁹..2³⁰.
+    let up = larger.leading_zeros().saturating_sub(2);
+    let (x, y) = (x << up, y << up);
+    let (a, b) = (x >> 15, y >> 15);
+    // 2²⁸..=2³¹; the root is in 2¹⁴..2¹⁶.
+    let root = (a * a).wrapping_add(b * b) as u32;
+    let root = root.isqrt().max(1);
+    let zeros = root.leading_zeros();
+    // 2⁴⁶ / root.
+    let scale = reciprocal(root << zeros) >> 17_u32.saturating_sub(zeros);
+    // 3.29.
+    let (u, v) = (mul_high_signed(x, scale), mul_high_signed(y, scale));
+    let square = |c: i32| mul_high((2 * c).unsigned_abs(), (2 * c).unsigned_abs()) as i32;
+    // 4.28, below 2⁻¹¹.
+    let lack = (1 << 28) - square(u) - square(v);
+    let mended = |c: i32| 2 * (c + (((c >> 15) * lack) >> 14));
+    (mended(u), mended(v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::unit;
+
+    #[test]
+    fn unit_vectors_have_length_1_and_the_direction() {
+        let mut state = 5_u64;
+        let mut next = |limit: i32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((i128::from((state ^ state >> 29) as i64) * i128::from(limit)) >> 63) as i32
+        };
+        let mut worst = 0_f64;
+        for case in 0..100_000 {
+            let limit = 1 << (1 + case % 25);
+            let (x, y) = match case % 7 {
+                0 => (next(limit), 0),
+                1 => (limit, limit),
+                2 => (-limit, next(3)),
+                _ => (next(limit), next(limit)),
+            };
+            if (x, y) == (0, 0) {
+                assert_eq!(unit(x, y), (0, 0));
+                continue;
+            }
+            let length = f64::from(x).hypot(f64::from(y));
+            let (u, v) = unit(x, y);
+            for (found, exact) in [(u, f64::from(x) / length), (v, f64::from(y) / length)] {
+                worst = worst.max((f64::from(found) / 2f64.powi(30) - exact).abs());
+            }
+        }
+        assert!(worst < 2f64.powi(-23), "worst error 2^{}", worst.log2());
+        std::println!("worst error 2^{}", worst.log2());
+    }
+}

@@ -1,0 +1,27 @@
+//! Points → squares of pixels.
+
+use super::PixelRect;
+
+/// The pixels of a square: those whose centres are inside of it, or on its left or top side.
+///
+/// ```
+/// use zstrip::raster::{PixelRect, square};
+/// assert_eq!(square((512, 512), 512), PixelRect { x: 1..3, y: 1..3 });
+/// assert!(square((512, 512), 0).is_empty());
+/// ```
+///
+/// # Format
+/// Centre in 24.8, at most ±32,767 px; `side` in 24.8, up to 65,535 px. Exact: centres in x - `side` / 2..x + `side` / 2,
+/// twice as many units for the half, below 2²⁶.
+#[inline]
+pub const fn square(center: (i32, i32), side: u32) -> PixelRect {
+    let side = (if side > 1 << 24 { 1 << 24 } else { side }) as i32;
+    // The first pixel whose centre, 256 p + 128, is not before c / 2.
+    const fn first(c: i32) -> i32 {
+        (c + 255) >> 9
+    }
+    PixelRect {
+        x: first(2 * center.0 - side)..first(2 * center.0 + side),
+        y: first(2 * center.1 - side)..first(2 * center.1 + side),
+    }
+}

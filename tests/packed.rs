@@ -1,0 +1,229 @@
+//! Packed strips: the bytes that panels want, the same at every strip height.
+
+mod reference;
+#[path = "../examples/scenes/mod.rs"]
+mod scenes;
+mod support;
+
+use core::convert::Infallible;
+use embedded_graphics_core::Pixel;
+use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::geometry::{OriginDimensions, Size};
+use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888, WebColors};
+use zstrip::embedded_graphics_core;
+use zstrip::fragment::{Flat, PixelFormat};
+use zstrip::geometry::{Mesh, MeshData, Positions};
+use zstrip::math::{Angle, Projective, Scalar};
+use zstrip::output::{
+    Buffers, Dither, DitheredDisplay, Levels, PackedFormat, Packer, PackerError, Pages, Renderer, Rows, RowsLowFirst,
+    Strip, StripPixels,
+};
+use zstrip::{Framebuffer, Scene};
+
+/// Draws the torus in strips of `rows` rows and hands them, packed, to `sink` with their first row.
+fn torus<P: PixelFormat, F: PackedFormat>(
+    screen: (u16, u16),
+    rows: u16,
+    dither: Dither<F::Color>,
+    background: P::Color,
+    mut sink: impl FnMut(usize, &[u8]),
+) {
+    let pixels = usize::from(screen.0) * usize::from(rows);
+    let (mut color, mut depth, mut records) = (vec![P::pack([9; 3]); pixels], vec![0; pixels], vec![0; 20_000]);
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
+    let mut renderer = Renderer::<P>::new(screen, buffers).expect("a renderer");
+    let mut bytes = vec![0x5A; F::bytes(screen.0, rows)];
+    let mut packer = Packer::<F>::new(screen, rows, dither, &mut bytes).expect("a packer");
+    let to_sink = |strip: &StripPixels<'_, P>| {
+        sink(strip.area().top_left.y as usize, packer.pack(strip));
+        Ok::<(), Infallible>(())
+    };
+    renderer.frame_to(to_sink, background, |scene| scenes::torus_gouraud(scene, Angle(4000))).expect("a frame");
+}
+
+/// Greys of the same frame, pixel by pixel.
+fn greys(screen: (u16, u16)) -> Vec<u8> {
+    let (picture, _) = support::strips::<Gray8>(screen, usize::from(screen.1), 20_000, Gray8::new(70), |scene| {
+        scenes::torus_gouraud(scene, Angle(4000));
+    });
+    picture
+}
+
+/// Bit by bit: which bits of which byte hold pixel (x, y), and what must be there.
+fn check<F: PackedFormat>(dither: Dither<F::Color>, place: impl Fn(usize, usize, usize) -> (usize, u32)) {
+    // Widths that fill the bytes, and others; heights that fill pages, and others.
+    for screen in [(128, 64), (61, 45), (3, 9), (10, 20)] {
+        let (width, height) = (usize::from(screen.0), usize::from(screen.1));
+        let mut expected = vec![0; F::bytes(screen.0, screen.1)];
+        for (k, grey) in greys(screen).into_iter().enumerate() {
+            let (x, y) = (k % width, k / width);
+            let (byte, shift) = place(width, x, y);
+            expected[byte] |= dither.level(grey, (x as i32, y as i32)) << shift;
+        }
+        let rows = (F::ROWS..=64).step_by(usize::from(F::ROWS)).filter(|rows| *rows < screen.1);
+        for rows in rows.chain([screen.1]) {
+            let mut packed = Vec::new();
+            torus::<Gray8, F>(screen, rows, dither, Gray8::new(70), |y, bytes| {
+                assert_eq!(packed.len(), F::bytes(screen.0, y as u16));
+                packed.extend_from_slice(bytes);
+            });
+            assert!(packed == expected, "{width}x{height} in strips of {rows} rows");
+        }
+    }
+}
+
+#[test]
+fn pages_hold_eight_rows_a_byte_with_the_lowest_bit_on_top() {
+    check::<Pages>(Dither::BAYER_8, |width, x, y| (y / 8 * width + x, y as u32 % 8));
+}
+
+#[test]
+fn rows_hold_the_leftmost_pixel_in_the_highest_bits() {
+    fn place(bits: usize) -> impl Fn(usize, usize, usize) -> (usize, u32) {
+        move |width, x, y| {
+            let (row, bit) = ((width * bits).div_ceil(8), x * bits);
+            (y * row + bit / 8, (8 - bits - bit % 8) as u32)
+        }
+    }
+    check::<Rows<BinaryColor>>(Dither::BAYER_4, place(1));
+    check::<Rows<Gray2>>(Dither::BAYER_8, place(2));
+    check::<Rows<Gray4>>(Dither::<Gray4>::BAYER_8.on_linear_panel(), place(4));
+}
+
+#[test]
+fn rows_low_first_hold_the_leftmost_pixel_in_the_lowest_bits() {
+    fn place(bits: usize) -> impl Fn(usize, usize, usize) -> (usize, u32) {
+        move |width, x, y| ((y * (width * bits).div_ceil(8)) + x * bits / 8, (x * bits % 8) as u32)
+    }
+    check::<RowsLowFirst<BinaryColor>>(Dither::NEAREST, place(1));
+    check::<RowsLowFirst<Gray2>>(Dither::BAYER_4, place(2));
+    check::<RowsLowFirst<Gray4>>(Dither::BAYER_8, place(4));
+}
+
+/// A display of pixels, for whatever colour.
+struct Panel<C> {
+    size: Size,
+    pixels: Vec<Option<C>>,
+}
+
+impl<C: Copy> OriginDimensions for Panel<C> {
+    fn size(&self) -> Size {
+        self.size
+    }
+}
+
+impl<C: Levels> DrawTarget for Panel<C> {
+    type Color = C;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<C>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        for Pixel(point, color) in pixels {
+            let place = &mut self.pixels[point.y as usize * self.size.width as usize + point.x as usize];
+            assert!(place.is_none(), "{point:?} is drawn twice");
+            *place = Some(color);
+        }
+        Ok(())
+    }
+}
+
+fn check_display<C: Levels + PartialEq + core::fmt::Debug>(dither: Dither<C>) {
+    let screen = (61, 45);
+    for rows in [1, 7, 45] {
+        let pixels = usize::from(screen.0) * rows;
+        let (mut color, mut depth) = (vec![0; pixels], vec![0; pixels]);
+        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [0; 20_000] };
+        let mut renderer = Renderer::<Gray8>::new(screen, buffers).expect("a renderer");
+        let mut panel = Panel { size: Size::new(61, 45), pixels: vec![None; 61 * 45] };
+        let sink = DitheredDisplay::new(&mut panel, dither);
+        renderer
+            .frame_to(sink, Gray8::new(70), |scene| scenes::torus_gouraud(scene, Angle(4000)))
+            .expect("the same scene in each call");
+        for (k, grey) in greys(screen).into_iter().enumerate() {
+            let expected = dither.color(grey, (k as i32 % 61, k as i32 / 61));
+            assert_eq!(panel.pixels[k], Some(expected), "pixel {k} in strips of {rows} rows");
+        }
+    }
+}
+
+#[test]
+fn displays_of_few_levels_get_the_same_pixels_as_bytes() {
+    check_display::<BinaryColor>(Dither::BAYER_8);
+    check_display::<Gray2>(Dither::BAYER_4);
+    check_display::<Gray4>(Dither::BAYER_8);
+}
+
+#[test]
+fn colours_are_packed_by_their_luma() {
+    // A colour strip packs like a grey one of its lumas.
+    let mut packed: Vec<u8> = Vec::new();
+    torus::<Rgb888, Pages>((128, 64), 64, Dither::BAYER_8, Rgb888::new(70, 70, 70), |_, bytes| packed.extend(bytes));
+    let mut expected: Vec<u8> = Vec::new();
+    torus::<Gray8, Pages>((128, 64), 64, Dither::BAYER_8, Gray8::new(70), |_, bytes| expected.extend(bytes));
+    assert!(packed == expected);
+    let mut of_565: Vec<u8> = Vec::new();
+    torus::<Rgb565, Pages>((128, 64), 8, Dither::BAYER_8, Rgb565::new(8, 17, 8), |_, bytes| of_565.extend(bytes));
+    let differ: u32 = of_565.iter().zip(&expected).map(|(a, b): (&u8, &u8)| (*a ^ *b).count_ones()).sum();
+    assert!(differ > 0 && differ < 128 * 64 / 20, "{differ} pixels of 565 differ");
+}
+
+/// A triangle over a screen of 16×12, half white: as the bytes of an SSD1306 draw it, eight rows a byte.
+#[test]
+fn picture_of_a_triangle_in_pages() {
+    const BACK: i32 = 1 << 16;
+    let corner = |x: i32, y: i32| [x, y, 0, BACK].map(Scalar::from_bits);
+    let corners = [corner(-BACK, BACK), corner(-BACK, -BACK), corner(BACK, -BACK)];
+    let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(&corners))).expect("a mesh");
+    fn draw<F: Framebuffer<Format = Gray8>>(scene: &mut Scene<'_, F>, mesh: &Mesh<'_>) {
+        scene.draw(mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::CSS_WHITE));
+    }
+    let (color, depth, records) = (&mut [0; 16 * 8], &mut [0; 16 * 8], &mut [0; 64]);
+    let mut renderer = Renderer::<Gray8>::new((16, 12), Buffers { color, depth, records }).expect("a renderer");
+    let mut bytes = [0xFF; 16];
+    let mut packer = Packer::<Pages>::new((16, 12), 8, Dither::BAYER_8, &mut bytes).expect("a packer");
+    let mut rows = vec![String::new(); 16];
+    let sink = |strip: &StripPixels<'_, Gray8>| {
+        let first = strip.area().top_left.y as usize;
+        for byte in packer.pack(strip) {
+            for bit in 0..8 {
+                rows[first + bit].push(if byte >> bit & 1 == 1 { '#' } else { '.' });
+            }
+        }
+        Ok::<(), Infallible>(())
+    };
+    // The rest is of grey 188, half of white's light.
+    renderer.frame_to(sink, Gray8::new(188), |scene: &mut Scene<'_, Strip<'_, Gray8>>| draw(scene, &mesh)).expect("");
+    let picture = "\
+#.#.#.#.#.#.#.#.
+##.#.#.#.#.#.#.#
+###.#.#.#.#.#.#.
+######.#.#.#.#.#
+#######.#.#.#.#.
+########.#.#.#.#
+#########.#.#.#.
+##########.#.#.#
+###########.#.#.
+##############.#
+###############.
+################
+................
+................
+................
+................
+";
+    assert_eq!(rows.join("\n") + "\n", picture);
+}
+
+#[test]
+fn packers_that_cannot_work_are_refused() {
+    let refused = |screen, rows, bytes: usize| {
+        Packer::<Pages>::new(screen, rows, Dither::BAYER_8, &mut vec![0; bytes]).expect_err("it cannot work")
+    };
+    assert_eq!(refused((128, 64), 12, 1024), PackerError::PartialPages(12, 8));
+    assert_eq!(refused((128, 64), 16, 255), PackerError::TooShort(255, 256));
+    assert_eq!(refused((128, 60), 64, 1023), PackerError::TooShort(1023, 1024));
+    assert_eq!(refused((128, 64), 12, 1024).to_string(), "strips of 12 rows, but 8 rows share a byte");
+    assert_eq!(refused((128, 64), 16, 255).to_string(), "buffer of 255 bytes, a packed strip has 256");
+    // One strip for the whole screen may end anywhere, and rows may too.
+    Packer::<Pages>::new((128, 60), 60, Dither::BAYER_8, &mut [0; 1024]).expect("the last page is not full");
+    Packer::<Rows<Gray4>>::new((127, 60), 7, Dither::BAYER_8, &mut [0; 64 * 7]).expect("rows end bytes");
+}
