@@ -87,29 +87,29 @@ pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Sha
             scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerFragmentNear, lit));
         }
         Shading::Matcap => {
-            scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Matcap::<Rgb888, 32>::new(&BALL, &model));
+            scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Matcap::<Rgb888, 64>::new(&BALL, &model));
         }
     }
 }
 
 /// A picture of a ball of polished copper in front of a horizon.
-static BALL: [[[u8; 3]; 32]; 32] = ball();
+static BALL: [[[u8; 3]; 64]; 64] = ball();
 
-const fn ball() -> [[[u8; 3]; 32]; 32] {
-    let mut picture = [[[0; 3]; 32]; 32];
+const fn ball() -> [[[u8; 3]; 64]; 64] {
+    let mut picture = [[[0; 3]; 64]; 64];
     let mut k = 0;
-    while k < 1024 {
-        let (x, y) = ((k % 32) as i32 * 2 - 31, (k / 32) as i32 * 2 - 31);
+    while k < 4096 {
+        let (x, y) = ((k % 64) as i32 - 32, (k / 64) as i32 - 32);
         let squared = x * x + y * y;
         // The height of the ball over the picture, and how bright a light from the upper left is.
-        let z = if squared < 961 { (961 - squared).isqrt() } else { 0 };
+        let z = if squared < 1024 { (1024 - squared).isqrt() } else { 0 };
         let light = -14 * x - 20 * y + 18 * z;
         let glow = if light > 0 { light / 5 } else { 0 };
-        let shine = if light > 820 { (light - 820) * 3 / 2 } else { 0 };
+        let shine = if light > 820 { (light - 820) * 2 } else { 0 };
         // The ground is reflected below, a bright line above it.
         let horizon = if y > 2 && y < 12 { 60 - 6 * (y - 2) } else { 0 };
-        let rim = (31 - z) * 2;
-        picture[k / 32][k % 32] = [
+        let rim = (32 - z) * 2;
+        picture[k / 64][k % 64] = [
             capped(30 + glow + shine + horizon + rim),
             capped(14 + glow * 6 / 10 + shine + horizon / 2 + rim),
             capped(12 + glow * 4 / 10 + shine + horizon / 3 + rim * 3 / 2),
