@@ -33,8 +33,8 @@ impl LocalSpace {
     pub(super) fn new(model: &Affine, bounds: &Bounds) -> Self {
         let [x, y, z] = bounds.aabb.half.to_bits();
         let reach = (x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs()).max(1);
-        let rows = model.to_rows();
-        let columns = [0, 1, 2].map(|k| [rows[0][k], rows[1][k], rows[2][k]]);
+        let [[xx, xy, xz, tx], [yx, yy, yz, ty], [zx, zy, zz, tz]] = model.to_rows();
+        let columns = [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]];
         let widest = columns.iter().flatten().fold(1, |all, c| all | c.unsigned_abs());
         // Columns of small scales are made longer, by up to 2¹², so that their length has some bits.
         let extra = (widest.leading_zeros().saturating_sub(15)).min(12);
@@ -45,7 +45,7 @@ impl LocalSpace {
             columns: longer.map(|c| c.normalized().map_or([0; 3], |unit| unit.to_bits())),
             scale: i64::from(longer[0].length().to_bits().max(1)),
             extra,
-            translation: [rows[0][3], rows[1][3], rows[2][3]],
+            translation: [tx, ty, tz],
         }
     }
 
