@@ -2,7 +2,7 @@
 
 use super::triangle::Painter;
 use crate::fragment::{
-    AnyDepth, Compare, DepthState, DepthTest, Fragment, Fragments, LessWrite, PixelFormat, Shader, Steps,
+    AnyDepth, Compare, DepthState, DepthTest, Fragment, Fragments, LessWrite, NoDepth, PixelFormat, Shader, Steps,
 };
 use crate::geometry::{Corner, Face, ScreenVertex, Side, Varyings, VertexShader};
 use crate::output::Framebuffer;
@@ -142,40 +142,33 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     let mut moved = values;
     let words = painter.shader.prepare(&mut moved, &d_dx);
     let steps = Steps { dz_dx: dz, d_dx, words, side: Side::Front };
-    // Values at the first pixel of the window; if it lies before the one that values are given for, those of the end.
-    let before = skipped < along.origin();
-    let on = skipped.wrapping_sub(along.origin()) as i32;
     // With the half that rounds, and the bias.
     let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
-    let z = z.wrapping_add(bias);
-    let mut run = Run { pixels, z, values: moved, pattern: pattern.rotate_right(skipped & 31), face, steps: &steps };
-    let mut rest = 0;
-    if before {
-        rest = run.pixels.shorten(1);
-        run.z = (u32::from(a.z) << 16).wrapping_add(bias);
-        // Moved as the others.
+    let mut run = Run { pixels, z: z.wrapping_add(bias), values: moved, pattern, face, steps: &steps };
+    if DASHED {
+        run.pattern = pattern.rotate_right(skipped & 31);
+    }
+    // A first pixel that lies before the one that values are given for has those of the end; moved as the others.
+    if skipped < along.origin() {
+        let mut first =
+            Run { pixels: LinePixels { left: 1, ..pixels }, z: (u32::from(a.z) << 16).wrapping_add(bias), ..run };
         for (((value, from), moved), start) in
-            run.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
+            first.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
         {
             *value = from.wrapping_add(moved.wrapping_sub(*start));
         }
+        draw_run::<F, S, DASHED>(painter, &first);
+        run.pattern = run.pattern.rotate_right(1);
+        // The pixel is drawn.
+        let _ = run.pixels.next();
     } else {
-        run.z = z.wrapping_add_signed(dz.wrapping_mul(on));
+        let on = skipped.wrapping_sub(along.origin()) as i32;
+        run.z = run.z.wrapping_add_signed(dz.wrapping_mul(on));
         for (value, step) in run.values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
             *value = value.wrapping_add(step.wrapping_mul(on));
         }
     }
-    loop {
-        match painter.state.depth {
-            DepthState { compare: Compare::Less, write: true } => run.draw::<F, S, _, DASHED>(painter, LessWrite),
-            other => run.draw::<F, S, _, DASHED>(painter, AnyDepth::new(other)),
-        }
-        if rest == 0 {
-            return;
-        }
-        run.pixels.lengthen(rest);
-        (run.z, run.values, rest) = (z, moved, 0);
-    }
+    draw_run::<F, S, DASHED>(painter, &run);
 }
 
 impl<F, S> Painter<'_, '_, F, S> {
@@ -190,6 +183,7 @@ impl<F, S> Painter<'_, '_, F, S> {
 }
 
 /// Pixels of a line, and what is interpolated over them.
+#[derive(Clone, Copy)]
 struct Run<'r, V> {
     pixels: LinePixels,
     z: u32,
@@ -199,30 +193,94 @@ struct Run<'r, V> {
     steps: &'r Steps<V>,
 }
 
+/// Draws pixels, with a loop for each kind of test.
+#[inline(never)]
+fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
+    painter: &mut Painter<'_, '_, F, S>,
+    run: &Run<'_, S::Varyings>,
+) {
+    let Painter { target, screen, state, shader, .. } = painter;
+    let (width, first_row) = (usize::from(screen.0), target.rows.start);
+    let Some(colors) = target.framebuffer.rows(first_row as u32, width) else {
+        return run.draw_spans::<F, S, DASHED>(painter);
+    };
+    let depths = &mut *target.depth;
+    match state.depth {
+        DepthState { compare: Compare::Less, write: true } => {
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, LessWrite);
+        }
+        DepthState { compare: Compare::Always, write: false } => {
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, NoDepth);
+        }
+        other => {
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, AnyDepth::new(other));
+        }
+    }
+}
+
 impl<V: Varyings> Run<'_, V> {
-    /// Draws all of its pixels, each as a span of its own.
+    /// Draws all of its pixels, each as a span of its own, into rows that lie one after the other.
     #[inline(always)]
-    fn draw<F: Framebuffer, S: Shader<F::Format, Varyings = V>, D: DepthTest, const DASHED: bool>(
-        &mut self,
-        painter: &mut Painter<'_, '_, F, S>,
+    fn draw<P: PixelFormat, S: Shader<P, Varyings = V>, D: DepthTest, const DASHED: bool>(
+        &self,
+        colors: &mut [P::Raw],
+        depths: &mut [u16],
+        width: usize,
+        first_row: i32,
+        shader: &S,
         test: D,
     ) {
-        let Self { pixels, z, values, pattern, face, steps } = self;
+        let index = |(x, y): (i32, i32)| (y.wrapping_mul(width as i32)).wrapping_add(x) as usize;
+        let LinePixels { mut position, straight, diagonal, mut error, height, length, left } = self.pixels;
+        // The same place in colours and depths; in range, as the pixels are in the strip.
+        let mut at = index((position.0, position.1 - first_row));
+        let (straight_at, diagonal_at) = (index(straight), index(diagonal));
+        let Self { mut z, mut values, mut pattern, face, steps, .. } = *self;
+        for _ in 0..left {
+            if !DASHED || pattern & 1 != 0 {
+                if let (Some(color), Some(depth)) = (colors.get_mut(at), depths.get_mut(at)) {
+                    let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
+                    shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
+                }
+            }
+            let (mut step, mut step_at) = (straight, straight_at);
+            error = error.wrapping_add(height);
+            if error >= 0 {
+                error = error.wrapping_sub(length);
+                (step, step_at) = (diagonal, diagonal_at);
+            }
+            at = at.wrapping_add(step_at);
+            position = (position.0.wrapping_add(step.0), position.1.wrapping_add(step.1));
+            if DASHED {
+                pattern = pattern.rotate_right(1);
+            }
+            z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+
+    /// The same into any framebuffer.
+    fn draw_spans<F: Framebuffer, S: Shader<F::Format, Varyings = V>, const DASHED: bool>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+    ) {
         let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
-        for (x, y) in pixels.by_ref() {
-            if !DASHED || *pattern & 1 != 0 {
+        let Self { pixels, mut z, mut values, mut pattern, face, steps } = *self;
+        let test = AnyDepth::new(painter.state.depth);
+        for (x, y) in pixels {
+            if !DASHED || pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
                 let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
                 if let ([color], Some(depth)) = (color, painter.target.depth.get_mut(at)) {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
-                    let span = Fragments { color, depth, z: *z, varyings: *values, steps, position: (x, y) };
-                    painter.shader.span(*face, span, test);
+                    let position = (x, y);
+                    painter.shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
                 }
             }
-            if DASHED {
-                *pattern = pattern.rotate_right(1);
-            }
-            *z = z.wrapping_add_signed(steps.dz_dx);
+            pattern = pattern.rotate_right(1);
+            z = z.wrapping_add_signed(steps.dz_dx);
             for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
                 *value = value.wrapping_add(*step);
             }
