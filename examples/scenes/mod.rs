@@ -3,6 +3,7 @@
 //! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
 #![allow(dead_code)] // each program uses its part
 
+pub mod formats;
 pub mod horizon;
 pub mod polygons;
 pub mod soup;

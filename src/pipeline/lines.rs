@@ -11,7 +11,7 @@ use super::{Phase, Scene, State, Stroke, Thin, fingerprint};
 use crate::fragment::Shader;
 use crate::geometry::{
     Corner, Face, Lines, Mesh, Outcode, Part, Points, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader,
-    View, clip_line,
+    View, clip_line, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot, VERTEX_WORDS};
@@ -292,13 +292,12 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     #[inline(never)]
     fn cut(&mut self, corners: [u16; 2], codes: Outcode, part: Part) -> Option<[(ScreenVertex, S::Varyings); 2]> {
         let assembly = self.assembly();
-        let ends = corners.map(|k| {
-            let index = usize::from(k);
-            (assembly.transformed(index), assembly.shader.vertex(&Corner::new(assembly.mesh, index)))
-        });
-        let [a, b] = clip_line(&ends, codes, part)?;
-        let (from, to) = (assembly.transform.project(&a.0)?, assembly.transform.project(&b.0)?);
+        let [i, j] = corners.map(usize::from);
+        let [a, b] = clip_line([assembly.transformed(i), assembly.transformed(j)], codes, part)?;
+        let (from, to) = (assembly.transform.project(&a.vertex)?, assembly.transform.project(&b.vertex)?);
+        let (first, last) = (assembly.vertex(i), assembly.vertex(j));
         // What the records would keep of the varyings, as for ends that are not cut.
-        Some([(from, rounded::<S>(&a.1)), (to, rounded::<S>(&b.1))])
+        let at = |weights| rounded::<S>(&weighted(weights, &[first, last, last]));
+        Some([(from, at(&a.weights)), (to, at(&b.weights))])
     }
 }
