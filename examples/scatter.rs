@@ -4,6 +4,7 @@
 //! cargo run --release --example scatter -- --help
 //! ```
 mod host;
+mod scenes;
 #[path = "host/show.rs"]
 mod show;
 

@@ -2,7 +2,8 @@
 
 use super::triangle::Painter;
 use crate::fragment::{
-    AnyDepth, Compare, DepthState, DepthTest, Fragment, Fragments, LessWrite, NoDepth, PixelFormat, Shader, Steps,
+    AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, MAX_SPAN, NoDepth,
+    PixelFormat, Shader, Steps,
 };
 use crate::geometry::{Corner, Face, ScreenVertex, Side, Varyings, VertexShader};
 use crate::output::Framebuffer;
@@ -141,7 +142,7 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     }
     let mut moved = values;
     let words = painter.shader.prepare(&mut moved, &d_dx);
-    let steps = Steps { dz_dx: dz, d_dx, words, side: Side::Front };
+    let steps = Steps::linear(dz, d_dx, words, Side::Front);
     // With the half that rounds, and the bias.
     let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
     let mut run = Run { pixels, z: z.wrapping_add(bias), values: moved, pattern, face, steps: &steps };
@@ -184,7 +185,7 @@ impl<F, S> Painter<'_, '_, F, S> {
 
 /// Pixels of a line, and what is interpolated over them.
 #[derive(Clone, Copy)]
-struct Run<'r, V> {
+struct Run<'r, V: Varyings> {
     pixels: LinePixels,
     z: u32,
     values: V,
@@ -199,18 +200,19 @@ fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     painter: &mut Painter<'_, '_, F, S>,
     run: &Run<'_, S::Varyings>,
 ) {
-    let Painter { target, screen, state, shader, .. } = painter;
+    let test = painter.test();
+    let Painter { target, screen, shader, .. } = painter;
     let (width, first_row) = (usize::from(screen.0), target.rows.start);
     let Some(colors) = target.framebuffer.rows(first_row as u32, width) else {
         return run.draw_spans::<F, S, DASHED>(painter);
     };
     let depths = &mut *target.depth;
-    match state.depth {
+    match test {
         DepthState { compare: Compare::Less, write: true } => {
             run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, LessWrite);
         }
-        DepthState { compare: Compare::Always, write: false } => {
-            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, NoDepth);
+        DepthState::OFF => {
+            run.draw::<F::Format, S, _, DASHED>(colors, &mut [(); usize::MAX], width, first_row, shader, NoDepth);
         }
         other => {
             run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, AnyDepth::new(other));
@@ -224,7 +226,7 @@ impl<V: Varyings> Run<'_, V> {
     fn draw<P: PixelFormat, S: Shader<P, Varyings = V>, D: DepthTest, const DASHED: bool>(
         &self,
         colors: &mut [P::Raw],
-        depths: &mut [u16],
+        depths: &mut [D::Stored],
         width: usize,
         first_row: i32,
         shader: &S,
@@ -268,12 +270,15 @@ impl<V: Varyings> Run<'_, V> {
     ) {
         let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
         let Self { pixels, mut z, mut values, mut pattern, face, steps } = *self;
-        let test = AnyDepth::new(painter.state.depth);
+        let test = AnyDepth::new(painter.test());
         for (x, y) in pixels {
             if !DASHED || pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
                 let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
-                if let ([color], Some(depth)) = (color, painter.target.depth.get_mut(at)) {
+                // Without a depth buffer, the test is one that passes.
+                let mut nowhere = 0;
+                let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
+                if let [color] = color {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
                     let position = (x, y);
                     painter.shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
@@ -298,15 +303,24 @@ fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, 
     // 2.30 times 24.8, rounded.
     let times = |c: i32, length: u32| (crate::math::mul_high_signed(c, length << 3) + 1) >> 1;
     let (along, aside) = ((times(u, more), times(v, more)), (times(-v, half), times(u, half)));
-    let corner = |p: &ScreenVertex, x: i32, y: i32| {
-        const LIMIT: i32 = (1 << 23) - 1;
-        ScreenVertex::new((p.x + x).clamp(-LIMIT, LIMIT), (p.y + y).clamp(-LIMIT, LIMIT), p.z)
+    // An end so far out that its corners would be out of range is moved in by four times as much: a line that comes from
+    // there to the screen does so at an angle for which that is enough, and it is far longer.
+    const LIMIT: i32 = (1 << 23) - 1;
+    let room = LIMIT - (half + more) as i32;
+    let inward = (times(u, 4 * (half + more)), times(v, 4 * (half + more)));
+    let moved = |p: &ScreenVertex, sign: i32| {
+        let sign = if p.x.abs().max(p.y.abs()) > room { sign } else { 0 };
+        (p.x + sign * inward.0, p.y + sign * inward.1)
+    };
+    let (from, to) = (moved(a, 1), moved(b, -1));
+    let corner = |p: (i32, i32), z: u16, x: i32, y: i32| {
+        ScreenVertex::new((p.0 + x).clamp(-LIMIT, LIMIT), (p.1 + y).clamp(-LIMIT, LIMIT), z)
     };
     [
-        corner(a, -along.0 + aside.0, -along.1 + aside.1),
-        corner(b, along.0 + aside.0, along.1 + aside.1),
-        corner(b, along.0 - aside.0, along.1 - aside.1),
-        corner(a, -along.0 - aside.0, -along.1 - aside.1),
+        corner(from, a.z, -along.0 + aside.0, -along.1 + aside.1),
+        corner(to, b.z, along.0 + aside.0, along.1 + aside.1),
+        corner(to, b.z, along.0 - aside.0, along.1 - aside.1),
+        corner(from, a.z, -along.0 - aside.0, -along.1 - aside.1),
     ]
 }
 
@@ -374,7 +388,7 @@ struct Coverage {
     /// Half the width and half a pixel, and the most that can be covered, 12.20.
     outer: i32,
     most: i32,
-    /// The length and half a pixel, and the most, 16.16.
+    /// Where along it the line ends, and half a pixel, and the most that can be covered, 16.16.
     end: i32,
     longest: i32,
 }
@@ -390,17 +404,19 @@ impl Coverage {
         let (u, v) = (i64::from(u), i64::from(v));
         let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
         // 24.8 times 2.30: 38 fractional bits. Distances grow to the right of the line, as y points down.
-        let length = ((u * dx + v * dy) >> 22) as i32;
+        let (length, way) = ((u * dx + v * dy) >> 22, (u * x + v * y) >> 22);
+        // Over the screen both change by less than 6000 px: an end that is farther away than that does not matter.
+        let stop = |way: i64| way.clamp(-16_000 << 16, 16_000 << 16) as i32;
         let step = |c: i64, down: u32| ((c >> (down - 1)) + 1) as i32 >> 1;
         Self {
             distance: ((u * y - v * x) >> 18) as i32,
-            way: ((u * x + v * y) >> 22) as i32,
+            way: stop(way),
             origin,
             step: [(step(-v, 10), step(u, 10)), (step(u, 14), step(v, 14))],
             outer: (width << 11) as i32 + (1 << 19),
             most: (width << 12).min(1 << 20) as i32,
-            end: length + (1 << 15),
-            longest: length.min(1 << 16),
+            end: stop(length - way) + stop(way) + (1 << 15),
+            longest: length.min(1 << 16) as i32,
         }
     }
 }
@@ -426,12 +442,16 @@ impl<S: VertexShader> VertexShader for Covered<'_, S> {
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
+    }
+
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
         self.shader.fragment(fragment)
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings, D::Stored>, test: D) {
         let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
         let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
         let (x, y) = (position.0 - origin.0, position.1 - origin.1);
@@ -439,14 +459,19 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
             base.wrapping_add(step.0.wrapping_mul(x)).wrapping_add(step.1.wrapping_mul(y))
         };
         let (mut distance, mut way) = (at(self.coverage.distance, distance_step), at(self.coverage.way, way_step));
-        let side = steps.side;
+        let (side, level) = (steps.side, steps.level);
+        let mut corrected = (S::Varyings::PERSPECTIVE > 0).then(|| Corrected::new(varyings, steps, position));
         for (color, stored) in color.iter_mut().zip(depth) {
+            if let Some(corrected) = &mut corrected {
+                varyings = corrected.varyings();
+                corrected.advance(1);
+            }
             // Overlaps as 1.8.
             let across = outer.wrapping_sub(distance.wrapping_abs()).min(most) >> 12;
             let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
             let depth = (z >> 16) as u16;
             if across > 0 && along > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
-                let fragment = Fragment { face, varyings: &varyings, position, depth, side };
+                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
                 if let Some(value) = self.shader.fragment(&fragment) {
                     test.write(depth, stored);
                     *color = mix::<P>(*color, value, (across * along) >> 8);
@@ -489,16 +514,23 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
     }
     let (mut values, d_dx) = (*varyings, S::Varyings::ZERO);
     let words = painter.shader.prepare(&mut values, &d_dx);
-    let steps = Steps { dz_dx: 0, d_dx, words, side: Side::Front };
+    let steps = Steps::linear(0, d_dx, words, Side::Front);
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
     let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
+    let (test, mut nothing) = (painter.test(), [(); MAX_SPAN]);
     for y in rect.y {
         let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
         let color = painter.target.framebuffer.span(y as u32, column, length);
+        let (varyings, steps, position) = (values, &steps, (rect.x.start, y));
+        if test == DepthState::OFF {
+            let depth = nothing.get_mut(..color.len()).unwrap_or_default();
+            painter.shader.span(face, Fragments { color, depth, z, varyings, steps, position }, NoDepth);
+            continue;
+        }
         let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
-        let span = Fragments { color, depth, z, varyings: values, steps: &steps, position: (rect.x.start, y) };
-        match painter.state.depth {
+        let span = Fragments { color, depth, z, varyings, steps, position };
+        match test {
             DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, LessWrite),
             other => painter.shader.span(face, span, AnyDepth::new(other)),
         }
