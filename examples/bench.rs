@@ -22,10 +22,11 @@ use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::output::Buffers;
 use zstrip::output::RamBudget;
 
-const NAMED: [(&str, Workload); 6] = [
+const NAMED: [(&str, Workload); 7] = [
     ("empty", Workload::Empty),
     ("w1", Workload::Quad),
     ("w2", Workload::GouraudQuad),
+    ("w3", Workload::TexturedQuad),
     ("w4", Workload::FlatTorus),
     ("w5", Workload::GouraudTorus),
     ("w6", Workload::Tiny),
@@ -160,6 +161,8 @@ impl Tolerance {
         let (coverage, surface, channel) = match workload {
             Workload::Empty | Workload::Quad => (0, 0, 0.0),
             Workload::GouraudQuad => (0, 0, 1.0),
+            // Texels' borders are within a fraction of a pixel of where they are, one division every 16 pixels.
+            Workload::TexturedQuad => (20, 40, 0.0),
             Workload::FlatTorus | Workload::GouraudTorus => (20, 20, 1.5),
             Workload::Tiny => (400, 20, 0.1),
         };

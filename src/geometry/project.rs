@@ -73,6 +73,20 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     Some(ScreenVertex { x: placed.x.clamp(-LIMIT, LIMIT), y: placed.y.clamp(-LIMIT, LIMIT), ..placed })
 }
 
+/// 1 / w of a vertex, on a scale that all vertices of a draw share; 0 unless w > 0.
+///
+/// # Format
+/// Mantissa · 2^exponent: the exponent in the lower 6 bits, the mantissa, with its top bit set, in the 26 above them;
+/// relative error below 2⁻²⁵.
+#[inline]
+pub fn inverse_w(v: &ClipVertex) -> u32 {
+    if v.w <= 0 {
+        return 0;
+    }
+    let exponent = v.w.leading_zeros();
+    reciprocal(((v.w << (exponent - 1)) >> 31) as u32) & !63 | exponent
+}
+
 /// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.
 #[inline]
 pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {

@@ -72,6 +72,11 @@ macro_rules! sixteen_bits {
                 $unpack($load(raw))
             }
 
+            #[inline(always)]
+            fn from_rgb565(raw: u16) -> u16 {
+                $store(raw)
+            }
+
             const PACKED: bool = true;
 
             #[inline(always)]

@@ -2,9 +2,9 @@
 
 use super::{State, Target};
 use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps};
-use crate::geometry::{ScreenVertex, Varyings, signed_area};
+use crate::geometry::{Correction, ScreenVertex, Varyings, signed_area};
 use crate::output::Framebuffer;
-use crate::raster::{Gradients, PixelRect, Trapezoids};
+use crate::raster::{Gradients, PixelRect, Trapezoids, homogenize, widen};
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F, S> {
@@ -38,14 +38,23 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             depth.base = depth.base.wrapping_add((steps as u32) << 16);
         }
         let (mut corner, mut d_dx, mut d_dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
+        let level = self.shader.level(varyings, area.unsigned_abs());
+        let mut correction = <S::Varyings as Varyings>::Correction::NONE;
+        let (mut homogeneous, mut varyings) = (None, varyings);
+        if S::Varyings::PERSPECTIVE > 0 {
+            let (values, found) = homogenize(varyings, v, self.screen);
+            correction = found;
+            varyings = homogeneous.insert(values);
+        }
         let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
+        widen(&gradients, &values, &mut correction);
         for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut()).enumerate() {
             let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
             let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
             (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
         }
         let words = self.shader.prepare(&mut corner, &d_dx);
-        let steps = Steps { dz_dx: depth.dx, d_dx, words, side: self.state.side(area) };
+        let steps = Steps { dz_dx: depth.dx, d_dx, words, side: self.state.side(area), level, correction };
 
         // 9. Spans, between two edges from row to row.
         let columns = &self.clip.x;
