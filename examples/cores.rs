@@ -9,6 +9,7 @@
 mod firmware;
 mod scenes;
 
+use scenes::formats::{self, FORMATS, Memory};
 #[cfg(target_os = "none")]
 use semihosting::println;
 
@@ -50,16 +51,24 @@ fn run() {
     let Buffers { color, depth, records } = unsafe { &mut *buffers };
     #[cfg(target_os = "none")]
     let mut peak = 0;
-    for (index, scene) in scenes::SCENES.iter().enumerate() {
+    let scenes = scenes::SCENES.iter().map(|scene| scene.name).enumerate();
+    let formats = FORMATS.iter().map(|format| format.name).enumerate();
+    for (is_format, (index, name)) in scenes.map(|scene| (false, scene)).chain(formats.map(|format| (true, format))) {
         let mut hash = 0;
-        let mut frame = || hash = scenes::render(index, color, depth, records).hash;
+        let mut frame = || {
+            hash = if is_format {
+                formats::hash(&FORMATS[index], Memory { color, depth, records })
+            } else {
+                scenes::render(index, color, depth, records).hash
+            }
+        };
         #[cfg(target_os = "none")]
         {
             peak = peak.max(firmware::stack::peak_of(&mut frame).expect("the stack is too small"));
         }
         #[cfg(not(target_os = "none"))]
         frame();
-        println!("{} {hash:016x}", scene.name);
+        println!("{name} {hash:016x}");
     }
     #[cfg(target_os = "none")]
     println!(

@@ -1,6 +1,7 @@
-//! Firmware whose only user code is a frame, for `ci/proofs` to look into. Built three times:
+//! Firmware whose only user code is a frame, for `ci/proofs` to look into. Built four times:
 //! `--cfg 'proof="empty"'` draws nothing, the baseline; `proof="w4"` draws the flat torus of the
-//! benchmark without records; `proof="all"` draws every scene.
+//! benchmark without records; `proof="all"` draws every scene, `proof="formats"` those in other
+//! pixel formats.
 //!
 //! It prints the frame's peak stack as eight hexadecimal digits, one by one: formatting would link
 //! the panics that the image must not contain.
@@ -65,6 +66,15 @@ mod image {
             workloads::flat_torus(Buffers { color, depth, records }, |strip| {
                 black_box(strip);
             });
+            return;
+        }
+        if cfg!(proof = "formats") {
+            for format in scenes::formats::FORMATS {
+                let memory = scenes::formats::Memory { color, depth, records };
+                (format.draw)(memory, &mut |bytes| {
+                    black_box(bytes);
+                });
+            }
             return;
         }
         let size = [WIDTH, HEIGHT];

@@ -47,7 +47,9 @@ fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Pol
     let mut polygons = Vec::new();
     for part in range.parts(Outcode(codes)) {
         let mut polygon = Vec::new();
-        clip_triangle(*triangle, Outcode(codes), part, |corner| polygon.push(*corner));
+        clip_triangle(triangle.map(|v| v.0), Outcode(codes), part, |corner| {
+            polygon.push((corner.vertex, corner.weights))
+        });
         if !polygon.is_empty() {
             polygons.push(polygon);
         }

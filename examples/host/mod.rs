@@ -45,15 +45,20 @@ impl Picture {
     }
 
     pub fn write_png(&self, path: &Path) -> Result<(), Box<dyn Error>> {
-        let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
-        let file = File::create(path).map_err(|error| named(&error))?;
-        let mut encoder = png::Encoder::new(BufWriter::new(file), self.width.into(), self.height.into());
-        encoder.set_color(png::ColorType::Rgb);
-        encoder.set_compression(png::Compression::High);
         let bytes: Vec<u8> = self.pixels.iter().copied().flat_map(rgb888).collect();
-        let mut writer = encoder.write_header().map_err(|error| named(&error))?;
-        writer.write_image_data(&bytes).map_err(|error| named(&error))?;
-        writer.finish().map_err(|error| named(&error))?;
-        Ok(())
+        write_png(path, (self.width, self.height), &bytes)
     }
+}
+
+/// Writes red, green and blue of each pixel.
+pub fn write_png(path: &Path, (width, height): (u16, u16), bytes: &[u8]) -> Result<(), Box<dyn Error>> {
+    let named = |error: &dyn std::fmt::Display| format!("{}: {error}", path.display());
+    let file = File::create(path).map_err(|error| named(&error))?;
+    let mut encoder = png::Encoder::new(BufWriter::new(file), width.into(), height.into());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_compression(png::Compression::High);
+    let mut writer = encoder.write_header().map_err(|error| named(&error))?;
+    writer.write_image_data(bytes).map_err(|error| named(&error))?;
+    writer.finish().map_err(|error| named(&error))?;
+    Ok(())
 }

@@ -4,6 +4,8 @@
 #![allow(dead_code)] // each program uses its part
 #![allow(long_running_const_eval)] // a landscape is computed
 
+pub mod formats;
+pub mod horizon;
 pub mod landscape;
 pub mod light;
 pub mod polygons;
@@ -11,6 +13,7 @@ pub mod pot;
 pub mod soup;
 pub mod tiles;
 pub mod torus;
+pub mod wires;
 
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Flat, Gouraud, Shader};
@@ -43,6 +46,8 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "phong", draw: |scene, turn| light::phong(scene, turn, light::Shading::PerFragmentNear) },
     SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
     SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
+    SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
+    SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
 ];
 
 /// Dark blue-grey.

@@ -92,9 +92,55 @@ pub(super) fn distance(plane: usize, v: &ClipVertex) -> i64 {
     }
 }
 
+/// A corner of what is clipped: where it is, and how much of the triangle's corners is in it.
+///
+/// Whatever a shader interpolates is made of the weights when clipping is done, so that clipping does not depend on shaders.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ClipCorner {
+    /// In clip space.
+    pub vertex: ClipVertex,
+    /// Parts of the three corners, 2.30. A corner itself has [`WHOLE`](Self::WHOLE) of itself and nothing of the others; a
+    /// point on an edge has nothing of the third.
+    pub weights: [i32; 3],
+}
+
+impl ClipCorner {
+    /// The weight 1.
+    pub const WHOLE: i32 = 1 << 30;
+
+    /// Corner `k` of a triangle.
+    pub const fn new(vertex: ClipVertex, k: usize) -> Self {
+        Self {
+            vertex,
+            weights: [
+                if k == 0 { Self::WHOLE } else { 0 },
+                if k == 1 { Self::WHOLE } else { 0 },
+                if k == 2 { Self::WHOLE } else { 0 },
+            ],
+        }
+    }
+}
+
+/// The varyings at a corner with these weights, from those of the triangle's corners: unchanged at a corner itself.
+///
+/// # Format
+/// Products below 2⁶¹, rounded to nearest: values below 2²⁸ that are the same at all corners stay the same.
+#[inline(never)]
+pub fn weighted<V: Varyings>(weights: &[i32; 3], corners: &[V; 3]) -> V {
+    let mut mixed = V::ZERO;
+    for (k, mixed) in mixed.as_mut().iter_mut().enumerate() {
+        let mut sum = 1 << 29;
+        for (weight, corner) in weights.iter().zip(corners) {
+            sum += i64::from(*weight) * i64::from(corner.as_ref().get(k).copied().unwrap_or(0));
+        }
+        *mixed = (sum >> 30) as i32;
+    }
+    mixed
+}
+
 /// A triangle cut by seven planes has at most ten corners, and one more is in its place twice while a plane cuts.
 const CORNERS: usize = 11;
-type Polygon<V> = Deque<(ClipVertex, V), CORNERS>;
+type Polygon = Deque<ClipCorner, CORNERS>;
 
 /// A part of a triangle, by depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -128,36 +174,45 @@ impl DepthRange {
 
 /// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on the corners of what is
 /// left in one part of it: a convex polygon, or nothing.
-pub fn clip_triangle<V: Varyings>(
-    triangle: impl IntoIterator<Item = (ClipVertex, V)>,
-    codes: Outcode,
-    part: Part,
-    emit: impl FnMut(&(ClipVertex, V)),
-) {
+#[inline]
+pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: Part, emit: impl FnMut(&ClipCorner)) {
     let mut polygon = Polygon::new();
-    for vertex in triangle {
+    clip(&mut polygon, &triangle, codes, part);
+    polygon.iter().for_each(emit);
+}
+
+/// [`clip_triangle`] into an empty polygon.
+#[inline(never)]
+fn clip(polygon: &mut Polygon, triangle: &[ClipVertex; 3], codes: Outcode, part: Part) {
+    for (k, vertex) in triangle.iter().enumerate() {
         // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
-        if vertex.0 == ClipVertex::default() {
+        if *vertex == ClipVertex::default() {
+            polygon.clear();
             return;
         }
         // Three fit eleven; the same holds for every push below.
-        let _ = polygon.push_back(vertex);
+        let _ = polygon.push_back(ClipCorner::new(*vertex, k));
     }
     for plane in 0..PLANES {
         if codes.0 & (1 << plane) != 0 {
             let outside = (plane == NEAR && part == Part::Before) || (plane == FAR && part == Part::Beyond);
-            cut(&mut polygon, plane, !outside);
+            cut(polygon, plane, !outside);
         }
     }
-    for (vertex, _) in polygon.iter_mut() {
-        match part {
-            Part::Before => vertex.z = 0,
-            Part::Between => {}
-            Part::Beyond => vertex.z = vertex.w,
-        }
+    if polygon.len() < 3 {
+        polygon.clear();
     }
-    if polygon.len() >= 3 {
-        polygon.iter().for_each(emit);
+    polygon.iter_mut().for_each(|corner| part.clamp(&mut corner.vertex));
+}
+
+impl Part {
+    /// Brings what is before or beyond to its plane.
+    pub(super) fn clamp(self, vertex: &mut ClipVertex) {
+        match self {
+            Self::Before => vertex.z = 0,
+            Self::Between => {}
+            Self::Beyond => vertex.z = vertex.w,
+        }
     }
 }
 
@@ -168,57 +223,51 @@ pub fn clip_triangle<V: Varyings>(
 /// # Source
 /// Sutherland and Hodgman 1974, "Reentrant polygon clipping".
 #[inline(never)]
-fn cut<V: Varyings>(polygon: &mut Polygon<V>, plane: usize, inside: bool) {
+fn cut(polygon: &mut Polygon, plane: usize, inside: bool) {
     let Some(mut from) = polygon.back().copied() else { return };
-    let mut from_distance = distance(plane, &from.0);
     for _ in 0..polygon.len() {
         let Some(to) = polygon.pop_front() else { return };
-        let to_distance = distance(plane, &to.0);
-        if (from_distance >= 0) != (to_distance >= 0) {
-            // Always from the vertex inside to the one outside, so that AB is cut like BA.
-            let crossing = if from_distance >= 0 {
-                intersection(&from, from_distance, &to, to_distance, plane)
-            } else {
-                intersection(&to, to_distance, &from, from_distance, plane)
-            };
+        if let Some(crossing) = intersection(&from, &to, plane) {
             let _ = polygon.push_back(crossing);
         }
-        if (to_distance >= 0) == inside {
+        if (distance(plane, &to.vertex) >= 0) == inside {
             let _ = polygon.push_back(to);
         }
-        (from, from_distance) = (to, to_distance);
+        from = to;
     }
 }
 
-/// Where the edge from `a`, inside, to `b`, outside, meets the plane.
+/// Where an edge meets the plane, if its ends are on different sides of it.
 ///
 /// # Format
-/// t = da / (da - db) as 0.64, rounded down; coordinates are off by less than 1 + 2⁻⁷ of their unit.
+/// t = da / (da - db) as 0.64, rounded down, with a inside and b outside, so that AB is cut like BA; coordinates are off by
+/// less than 1 + 2⁻⁷ of their unit.
 #[inline(never)]
-pub(super) fn intersection<V: Varyings>(
-    a: &(ClipVertex, V),
-    da: i64,
-    b: &(ClipVertex, V),
-    db: i64,
-    plane: usize,
-) -> (ClipVertex, V) {
+pub(super) fn intersection(from: &ClipCorner, to: &ClipCorner, plane: usize) -> Option<ClipCorner> {
+    let (mut a, mut b) = (from, to);
+    let (mut da, mut db) = (distance(plane, &a.vertex), distance(plane, &b.vertex));
+    if (da >= 0) == (db >= 0) {
+        return None;
+    }
+    if da < 0 {
+        (a, b, da, db) = (b, a, db, da);
+    }
     let t = fraction(da as u64, da.abs_diff(db));
-    let mut v = ClipVertex {
-        x: along(a.0.x, b.0.x, t),
-        y: along(a.0.y, b.0.y, t),
-        z: along(a.0.z, b.0.z, t),
-        w: along(a.0.w, b.0.w, t),
-    };
+    let mut crossing = *a;
+    let ClipVertex { x, y, z, w } = &mut crossing.vertex;
+    let end = b.vertex;
+    for (value, end) in [x, y, z, w].into_iter().zip([end.x, end.y, end.z, end.w]) {
+        *value = along(*value, end, t);
+    }
+    for (value, end) in crossing.weights.iter_mut().zip(b.weights) {
+        *value = along(i64::from(*value), i64::from(end), t) as i32;
+    }
     match plane {
-        NEAR => v.z = 0,
-        FAR => v.z = v.w,
+        NEAR => crossing.vertex.z = 0,
+        FAR => crossing.vertex.z = crossing.vertex.w,
         _ => {}
     }
-    let mut varyings = a.1;
-    for (x, y) in varyings.as_mut().iter_mut().zip(b.1.as_ref()) {
-        *x = along(i64::from(*x), i64::from(*y), t) as i32;
-    }
-    (v, varyings)
+    Some(crossing)
 }
 
 /// `a + (b - a) t` with t as 0.64, rounded towards `a`.
@@ -256,8 +305,8 @@ mod tests {
     use super::*;
 
     fn corners(triangle: [[i64; 4]; 3]) -> usize {
-        let triangle = triangle.map(|[x, y, z, w]| (ClipVertex { x, y, z, w }, [0; 0]));
-        let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
+        let triangle = triangle.map(|[x, y, z, w]| ClipVertex { x, y, z, w });
+        let codes = triangle.iter().fold(0, |codes, v| codes | Outcode::of(v).0);
         let mut corners = 0;
         clip_triangle(triangle, Outcode(codes), Part::Between, |_| corners += 1);
         corners
@@ -275,13 +324,14 @@ mod tests {
     fn edge_through_the_eye_is_cut_where_it_can_be_projected() {
         let a = [(1 << 50) + 12_345, -(1 << 49), 1 << 48, 1 << 51];
         let triangle = [a, a.map(|c| -c), [1 << 50, 1 << 50, 1 << 50, 1 << 51]];
-        let triangle = triangle.map(|[x, y, z, w]| (ClipVertex { x, y, z, w }, [0; 0]));
-        let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
+        let triangle = triangle.map(|[x, y, z, w]| ClipVertex { x, y, z, w });
+        let codes = triangle.iter().fold(0, |codes, v| codes | Outcode::of(v).0);
         let project = |v: &ClipVertex| [v.x, v.y].map(|c| c as f64 / v.w as f64 * 131_072.0);
-        let [x, y] = project(&triangle[0].0);
+        let [x, y] = project(&triangle[0]);
         let mut near = 0;
-        clip_triangle(triangle, Outcode(codes), Part::Between, |(v, _)| {
-            near += u32::from((project(v)[0] - x).hypot(project(v)[1] - y) < 0.5);
+        clip_triangle(triangle, Outcode(codes), Part::Between, |corner| {
+            let v = project(&corner.vertex);
+            near += u32::from((v[0] - x).hypot(v[1] - y) < 0.5);
         });
         // Both ends of what is left of the edge.
         assert!(near >= 2);

@@ -1,38 +1,30 @@
 //! Clipping of lines: by the planes of [`clip_triangle`](super::clip_triangle), in the same order, with the same cuts.
 
 use super::clip::{FAR, NEAR, PLANES, distance, intersection};
-use super::{ClipVertex, Outcode, Part, Varyings};
+use super::{ClipCorner, ClipVertex, Outcode, Part};
 
 /// Cuts a line by the planes in `codes` (the outcodes of its ends, united): the ends of what is left in one part of it, if
-/// anything is.
+/// anything is. Their third weight is 0.
 ///
 /// An end that is visible passes unchanged, bit by bit; AB is cut like BA.
-pub fn clip_line<V: Varyings>(ends: &[(ClipVertex, V); 2], codes: Outcode, part: Part) -> Option<[(ClipVertex, V); 2]> {
-    let [mut a, mut b] = *ends;
+pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: Part) -> Option<[ClipCorner; 2]> {
+    let [a, b] = ends;
+    let (mut a, mut b) = (ClipCorner::new(a, 0), ClipCorner::new(b, 1));
     for plane in 0..PLANES {
         if codes.0 & (1 << plane) == 0 {
             continue;
         }
         let outside = (plane == NEAR && part == Part::Before) || (plane == FAR && part == Part::Beyond);
-        let (da, db) = (distance(plane, &a.0), distance(plane, &b.0));
-        let keeps_a = (da >= 0) != outside;
-        if (da >= 0) == (db >= 0) {
-            if !keeps_a {
-                return None;
-            }
-            continue;
-        }
-        // Always from the end inside to the one outside, whichever of them is kept.
-        let crossing = if da >= 0 { intersection(&a, da, &b, db, plane) } else { intersection(&b, db, &a, da, plane) };
-        *(if keeps_a { &mut b } else { &mut a }) = crossing;
-    }
-    for end in [&mut a, &mut b] {
-        match part {
-            Part::Before => end.0.z = 0,
-            Part::Between => {}
-            Part::Beyond => end.0.z = end.0.w,
+        let keeps_a = (distance(plane, &a.vertex) >= 0) != outside;
+        match intersection(&a, &b, plane) {
+            Some(crossing) if keeps_a => b = crossing,
+            Some(crossing) => a = crossing,
+            None if keeps_a => {}
+            None => return None,
         }
     }
+    part.clamp(&mut a.vertex);
+    part.clamp(&mut b.vertex);
     Some([a, b])
 }
 
@@ -44,12 +36,12 @@ mod tests {
 
     const ONE: i64 = 1 << 50;
 
-    fn codes(vertices: &[(ClipVertex, [i32; 1])]) -> Outcode {
-        Outcode(vertices.iter().fold(0, |all, v| all | Outcode::of(&v.0).0))
+    fn codes(vertices: &[ClipVertex]) -> Outcode {
+        Outcode(vertices.iter().fold(0, |all, v| all | Outcode::of(v).0))
     }
 
     /// Random ends in all directions, with w of either sign.
-    fn ends(count: usize) -> Vec<[(ClipVertex, [i32; 1]); 2]> {
+    fn ends(count: usize) -> Vec<[ClipVertex; 2]> {
         let mut state = 17_u64;
         let mut next = |limit: i64| {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -57,7 +49,7 @@ mod tests {
         };
         let mut end = || {
             let w = next(ONE);
-            (ClipVertex { x: next(20 * ONE), y: next(20 * ONE), z: next(ONE), w }, [next(1 << 20) as i32])
+            ClipVertex { x: next(20 * ONE), y: next(20 * ONE), z: next(ONE), w }
         };
         (0..count).map(|_| [end(), end()]).collect()
     }
@@ -66,15 +58,15 @@ mod tests {
     fn what_is_left_is_inside_of_all_planes() {
         let mut left = 0;
         for line in ends(20_000) {
-            let Some(cut) = clip_line(&line, codes(&line), Part::Between) else { continue };
+            let Some(cut) = clip_line(line, codes(&line), Part::Between) else { continue };
             left += 1;
             for (end, original) in cut.iter().zip(&line) {
                 // The cuts' rounding: a few units of 2⁵⁰, and 65 times that at the guard band.
                 for plane in 0..PLANES {
-                    assert!(distance(plane, &end.0) >= -400, "plane {plane}: {end:?}");
+                    assert!(distance(plane, &end.vertex) >= -400, "plane {plane}: {end:?}");
                 }
-                if Outcode::of(&original.0) == Outcode(0) {
-                    assert_eq!(end, original);
+                if Outcode::of(original) == Outcode(0) {
+                    assert_eq!(end.vertex, *original);
                 }
             }
         }
@@ -87,11 +79,15 @@ mod tests {
         for line in ends(20_000) {
             let [a, b] = line;
             let all = codes(&line);
-            let cut = clip_line(&line, all, Part::Between);
-            let back = clip_line(&[b, a], all, Part::Between);
-            assert_eq!(cut, back.map(|[a, b]| [b, a]), "{line:?}");
+            let cut = clip_line(line, all, Part::Between);
+            let back = clip_line([b, a], all, Part::Between);
+            let turned = |corner: ClipCorner| {
+                let [a, b, c] = corner.weights;
+                ClipCorner { weights: [b, a, c], ..corner }
+            };
+            assert_eq!(cut, back.map(|[a, b]| [turned(b), turned(a)]), "{line:?}");
             // As an edge of a triangle whose third vertex is inside.
-            let third = (ClipVertex { x: 0, y: 0, z: ONE / 4, w: ONE / 2 }, [0]);
+            let third = ClipVertex { x: 0, y: 0, z: ONE / 4, w: ONE / 2 };
             let mut corners = Vec::new();
             clip_triangle([a, b, third], all, Part::Between, |corner| corners.push(*corner));
             if let Some([a, b]) = cut {
@@ -104,12 +100,12 @@ mod tests {
 
     #[test]
     fn parts_before_and_beyond_meet_the_part_between() {
-        let v = |z, w| (ClipVertex { x: 0, y: 0, z, w }, [0]);
+        let v = |z, w| ClipVertex { x: 0, y: 0, z, w };
         let line = [v(-ONE / 4, ONE / 2), v(ONE, ONE / 2)];
         let all = codes(&line);
-        let parts = [Part::Before, Part::Between, Part::Beyond].map(|part| clip_line(&line, all, part));
+        let parts = [Part::Before, Part::Between, Part::Beyond].map(|part| clip_line(line, all, part));
         let [Some(before), Some(between), Some(beyond)] = parts else { panic!("{parts:?}") };
-        assert_eq!((before[0].0.z, before[1], between[0]), (0, between[0], before[1]));
-        assert_eq!((between[1], beyond[1].0.z), (beyond[0], beyond[1].0.w));
+        assert_eq!((before[0].vertex.z, before[1], between[0]), (0, between[0], before[1]));
+        assert_eq!((between[1], beyond[1].vertex.z), (beyond[0], beyond[1].vertex.w));
     }
 }

@@ -20,7 +20,7 @@ mod vertex;
 mod viewport;
 
 pub use bounds::{BoundingBox, BoundingSphere, Bounds, BoundsNode};
-pub use clip::{ClipVertex, DepthRange, Outcode, Part, clip_triangle};
+pub use clip::{ClipCorner, ClipVertex, DepthRange, Outcode, Part, clip_triangle, weighted};
 pub use clip_line::clip_line;
 pub use edges::{EdgesError, edges};
 pub use frustum::{Containment, Frustum, Plane};

@@ -138,7 +138,7 @@ fn pack_rows<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
     bytes: &mut [u8],
 ) {
     let row_bytes = row_bytes::<C>(width);
-    if row_bytes == 0 {
+    if width == 0 || row_bytes == 0 {
         return;
     }
     let rows = pixels.chunks_exact(width).zip(bytes.chunks_exact_mut(row_bytes));

@@ -4,7 +4,7 @@ use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, ClipVertex, Corner, Face, Mesh, Outcode, Part, Placed, ScreenVertex, Side, Transform, Varyings,
-    VertexShader, View, clip_triangle, signed_area,
+    VertexShader, View, clip_triangle, signed_area, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -12,8 +12,8 @@ use crate::raster::{PixelRect, pixel_rect};
 use crate::{Cull, Winding};
 use core::ops::Range;
 
-/// The corners of a clipped polygon on the screen.
-type Fan<V> = heapless::Vec<(ScreenVertex, V), 10>;
+/// The corners of a clipped polygon on the screen, with their weights.
+type Fan = heapless::Vec<(ScreenVertex, [i32; 3]), 10>;
 
 /// One draw.
 pub(super) struct Assembly<'s, 'a, F, S> {
@@ -94,7 +94,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         };
         let slot = Slot::new(&placed);
         if self.scene.records.has_vertices() {
-            let varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+            let varyings = self.vertex(index);
             self.scene.records.keep::<S>(index, slot, &varyings);
         }
         slot
@@ -120,7 +120,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1] | codes[2]);
         for part in self.state.range.parts(all) {
-            let mut fan = Fan::<S::Varyings>::new();
+            let mut fan = Fan::new();
             self.cut(corners, all, part, &mut fan);
             self.fan(&fan, corners, number);
         }
@@ -129,49 +129,52 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
     /// has left the stack when it is drawn.
     #[inline(never)]
-    fn cut(&self, corners: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan<S::Varyings>) {
-        let triangle = corners.iter().map(|k| {
-            let index = usize::from(*k);
-            (self.transformed(index), self.shader.vertex(&Corner::new(self.mesh, index)))
-        });
-        clip_triangle(triangle, codes, part, |(vertex, varyings)| {
-            if let Some(placed) = self.transform.project(vertex) {
+    fn cut(&self, [i, j, k]: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan) {
+        let vertex = |index: u16| self.transformed(usize::from(index));
+        clip_triangle([vertex(i), vertex(j), vertex(k)], codes, part, |corner| {
+            if let Some(placed) = self.transform.project(&corner.vertex) {
                 // There are no more corners than places.
-                let _ = fan.push((placed, *varyings));
+                let _ = fan.push((placed, corner.weights));
             }
         });
     }
 
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
-    fn fan(&mut self, fan: &Fan<S::Varyings>, corners: [u16; 3], number: usize) {
+    fn fan(&mut self, fan: &Fan, corners: [u16; 3], number: usize) {
+        let [i, j, k] = corners;
+        let vertex = |index: u16| self.vertex(usize::from(index));
+        let varyings = [vertex(i), vertex(j), vertex(k)];
         let recording = self.scene.phase == Phase::Record;
-        let mut first_index = 0;
-        let mut last_index = 0;
-        for (k, next) in fan.iter().enumerate() {
-            let mut next_index = 0;
+        let mut indices = [0; 2];
+        for (k, (placed, weights)) in fan.iter().enumerate() {
+            let mut index = 0;
             if recording {
-                next_index = self.scene.records.push_vertex();
-                let slot = Slot::new(&Placed::Screen(next.0));
-                self.scene.records.keep::<S>(usize::from(next_index), slot, &next.1);
+                index = self.scene.records.push_vertex();
+                let slot = Slot::new(&Placed::Screen(*placed));
+                self.scene.records.keep::<S>(usize::from(index), slot, &weighted(weights, &varyings));
             }
-            if k == 0 {
-                first_index = next_index;
-            } else if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k - 1)) {
-                let v = [first.0, last.0, next.0];
+            if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k.wrapping_sub(1))) {
+                let v = [first.0, last.0, *placed];
                 if let Some((row, side)) = self.visible(&v) {
                     let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
                     if recording {
-                        self.record(row, [first_index, last_index, next_index], word);
+                        self.record(row, [indices[0], indices[1], index], word);
                     } else {
                         // What the records would keep of the varyings, so that the picture is the same without them.
-                        let varyings = [rounded::<S>(&first.1), rounded::<S>(&last.1), rounded::<S>(&next.1)];
-                        self.draw(&v, &varyings, word);
+                        let at = |weights| rounded::<S>(&weighted(weights, &varyings));
+                        self.draw(&v, &[at(&first.1), at(&last.1), at(weights)], word);
                     }
                 }
             }
-            last_index = next_index;
+            indices[usize::from(k > 0)] = index;
         }
+    }
+
+    /// The varyings of a vertex.
+    #[inline]
+    pub(super) fn vertex(&self, index: usize) -> S::Varyings {
+        self.shader.vertex(&Corner::new(self.mesh, index))
     }
 
     /// A triangle that needs no clipping.
@@ -191,7 +194,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         if self.scene.records.has_vertices() {
             return self.scene.records.corner::<S>(index).1;
         }
-        rounded::<S>(&self.shader.vertex(&Corner::new(self.mesh, usize::from(index))))
+        rounded::<S>(&self.vertex(usize::from(index)))
     }
 
     /// 5. Culling by winding, and of what covers no pixel: in which row the triangle can begin, and which side it shows.

@@ -7,6 +7,7 @@ use zstrip::Scene;
 use zstrip::fragment::PixelFormat;
 use zstrip::geometry::{
     ClipVertex, DepthRange, Mesh, Outcode, Positions, ScreenVertex, Transform, Viewport, clip_triangle, project,
+    weighted,
 };
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::output::{Buffers, FrameSlice, FramebufferRenderer, Renderer, Stats, Strip, StripPixels};
@@ -188,7 +189,10 @@ pub fn snapped<const K: usize>(
         } else {
             for part in range.parts(all) {
                 let mut corners = Vec::new();
-                clip_triangle(vertices, all, part, |corner| corners.extend(placed(corner)));
+                let varyings = vertices.map(|v| v.1);
+                clip_triangle(vertices.map(|v| v.0), all, part, |corner| {
+                    corners.extend(placed(&(corner.vertex, weighted(&corner.weights, &varyings))));
+                });
                 fan(corners);
             }
         }

@@ -1,0 +1,93 @@
+//! Scenes in formats other than RGB565: dithered ones, and strips packed for panels.
+
+use super::{room, torus_gouraud};
+use core::convert::Infallible;
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8};
+use zstrip::fragment::PixelFormat;
+use zstrip::math::Angle;
+use zstrip::output::{
+    Buffers, Dither, Dithered, PackedFormat, Packer, Pages, Renderer, Rgb332, Rgb565Be, Rows, Strip, StripPixels,
+};
+
+/// Memory for a frame: colours, packed strips and whatever else a pixel takes are in `color`.
+pub struct Memory<'m> {
+    pub color: &'m mut [u16],
+    pub depth: &'m mut [u16],
+    pub records: &'m mut [u32],
+}
+
+/// Takes a strip's bytes.
+pub type Sink<'s> = dyn FnMut(&[u8]) + 's;
+
+/// A scene in a format.
+pub struct FormatInfo {
+    /// Its name in reports.
+    pub name: &'static str,
+    /// Hands each strip's bytes to a sink.
+    pub draw: fn(Memory<'_>, &mut Sink<'_>),
+}
+
+/// All of them.
+pub const FORMATS: &[FormatInfo] = &[
+    FormatInfo {
+        name: "room_dithered",
+        draw: |memory, sink| direct::<Dithered<Rgb565Be>>(memory, sink, |scene| room(scene, Angle(0))),
+    },
+    FormatInfo {
+        name: "torus_332",
+        draw: |memory, sink| direct::<Dithered<Rgb332>>(memory, sink, |scene| torus_gouraud(scene, Angle(0))),
+    },
+    FormatInfo { name: "torus_pages", draw: |memory, sink| packed::<Pages>((80, 64), Dither::BAYER_8, memory, sink) },
+    FormatInfo {
+        name: "torus_gray2",
+        draw: |memory, sink| packed::<Rows<Gray2>>((317, 240), Dither::BAYER_4, memory, sink),
+    },
+    FormatInfo {
+        name: "torus_gray4",
+        draw: |memory, sink| packed::<Rows<Gray4>>((317, 240), Dither::BAYER_8, memory, sink),
+    },
+];
+
+/// Draws 320×240 pixels of a format.
+fn direct<P: PixelFormat>(memory: Memory<'_>, sink: &mut Sink<'_>, draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>)) {
+    let Memory { color, depth, records } = memory;
+    let Ok(color) = bytemuck::try_cast_slice_mut(color) else { return };
+    let Ok(mut renderer) = Renderer::<P>::new((320, 240), Buffers { color, depth, records }) else { return };
+    let to_sink = |strip: &StripPixels<'_, P>| {
+        sink(strip.bytes());
+        Ok::<(), Infallible>(())
+    };
+    // A frame that fails lacks strips, which shows in its hash.
+    let _ = renderer.frame_to(to_sink, P::to_color(P::pack([24, 28, 24])), draw);
+}
+
+/// Draws the torus in greys and packs them.
+fn packed<F: PackedFormat>(screen: (u16, u16), dither: Dither<F::Color>, memory: Memory<'_>, sink: &mut Sink<'_>) {
+    let Memory { color, depth, records } = memory;
+    // Half for greys, half for what they are packed to.
+    let bytes: &mut [u8] = bytemuck::cast_slice_mut(color);
+    let Some((color, bytes)) = bytes.split_at_mut_checked(bytes.len() / 2) else { return };
+    let width = usize::from(screen.0);
+    let page = usize::from(F::ROWS);
+    let rows = (color.len().min(depth.len()) / width / page * page).min(usize::from(screen.1));
+    let (Some(color), Some(depth)) = (color.get_mut(..width * rows), depth.get_mut(..width * rows)) else { return };
+    let Ok(mut renderer) = Renderer::<Gray8>::new(screen, Buffers { color, depth, records }) else { return };
+    let Ok(mut packer) = Packer::<F>::new(screen, renderer.strip_rows(), dither, bytes) else { return };
+    let to_sink = |strip: &StripPixels<'_, Gray8>| {
+        sink(packer.pack(strip));
+        Ok::<(), Infallible>(())
+    };
+    let _ = renderer.frame_to(to_sink, Gray8::new(26), |scene| torus_gouraud(scene, Angle(0)));
+}
+
+/// FNV-1a 64 of a frame's bytes.
+pub fn hash(format: &FormatInfo, memory: Memory<'_>) -> u64 {
+    let mut hash = 0xcbf2_9ce4_8422_2325_u64;
+    (format.draw)(memory, &mut |bytes| {
+        for byte in bytes {
+            hash = (hash ^ u64::from(*byte)).wrapping_mul(0x100_0000_01b3);
+        }
+    });
+    hash
+}
