@@ -1,7 +1,7 @@
 //! Blending: what becomes of a shader's colour and the one that is there.
 
-use super::{DepthTest, Fragment, Fragments, PixelFormat, Rgba, Shader};
-use crate::geometry::{Corner, Face, VertexShader};
+use super::{AnyDepth, DepthTest, Fragment, Fragments, PixelFormat, Rgba, Shader};
+use crate::geometry::{Corner, Face, Varyings, VertexShader};
 use crate::math::Vec3;
 
 /// A way to blend pixels of format `P`.
@@ -199,11 +199,23 @@ impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: D) {
+        self.blended(face, span, test.any());
+    }
+}
+
+impl<S, M> Blend<S, M> {
+    /// Draws a span fragment by fragment.
+    #[inline(never)]
+    fn blended<P: PixelFormat>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: AnyDepth)
+    where
+        M: BlendMode<P>,
+        S: Shader<M::Source>,
+    {
         let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
         let side = steps.side;
         for (color, stored) in color.iter_mut().zip(depth) {
             let depth = (z >> 16) as u16;
-            if !D::ENABLED || test.passes(depth, *stored) {
+            if test.passes(depth, *stored) {
                 let fragment = Fragment { face, varyings: &varyings, position, depth, side };
                 if let Some(source) = self.shader.fragment(&fragment) {
                     test.write(depth, stored);
@@ -212,9 +224,7 @@ impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<
             }
             position.0 = position.0.wrapping_add(1);
             z = z.wrapping_add_signed(steps.dz_dx);
-            for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-                *value = value.wrapping_add(*step);
-            }
+            varyings.step(&steps.d_dx);
         }
     }
 }

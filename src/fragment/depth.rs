@@ -58,6 +58,9 @@ pub trait DepthTest: Copy {
 
     /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
     fn write(self, z: u16, stored: &mut u16);
+
+    /// The same test as a value: for loops in which it costs little, but two more copies of the loop much.
+    fn any(self) -> AnyDepth;
 }
 
 /// [`DepthState::LESS`].
@@ -76,6 +79,10 @@ impl DepthTest for LessWrite {
     fn write(self, z: u16, stored: &mut u16) {
         *stored = z;
     }
+
+    fn any(self) -> AnyDepth {
+        AnyDepth::new(DepthState::LESS)
+    }
 }
 
 /// [`DepthState::OFF`].
@@ -92,27 +99,37 @@ impl DepthTest for NoDepth {
 
     #[inline(always)]
     fn write(self, _: u16, _: &mut u16) {}
+
+    fn any(self) -> AnyDepth {
+        AnyDepth::new(DepthState::OFF)
+    }
 }
 
-/// Any other test.
+/// Any test: that the difference of a depth and the stored one is in a range.
+///
+/// # Format
+/// Differences are in -65,535..=65,535. Modulo 2³² even all numbers but 0 are a range.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyDepth {
-    less: bool,
-    equal: bool,
-    greater: bool,
+    lowest: i32,
+    count: u32,
     write: bool,
 }
 
 impl AnyDepth {
     /// From its description.
     pub const fn new(state: DepthState) -> Self {
-        use Compare::*;
-        Self {
-            less: matches!(state.compare, Less | LessEqual | NotEqual | Always),
-            equal: matches!(state.compare, Equal | LessEqual | GreaterEqual | Always),
-            greater: matches!(state.compare, Greater | GreaterEqual | NotEqual | Always),
-            write: state.write,
-        }
+        let (lowest, count) = match state.compare {
+            Compare::Never => (0, 0),
+            Compare::Less => (-65_535, 65_535),
+            Compare::Equal => (0, 1),
+            Compare::LessEqual => (-65_535, 65_536),
+            Compare::Greater => (1, 65_535),
+            Compare::NotEqual => (1, u32::MAX),
+            Compare::GreaterEqual => (0, 65_536),
+            Compare::Always => (i32::MIN, u32::MAX),
+        };
+        Self { lowest, count, write: state.write }
     }
 }
 
@@ -121,17 +138,39 @@ impl DepthTest for AnyDepth {
 
     #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
-        match z.cmp(&stored) {
-            core::cmp::Ordering::Less => self.less,
-            core::cmp::Ordering::Equal => self.equal,
-            core::cmp::Ordering::Greater => self.greater,
-        }
+        let difference = i32::from(z) - i32::from(stored);
+        (difference.wrapping_sub(self.lowest) as u32) < self.count
     }
 
     #[inline(always)]
     fn write(self, z: u16, stored: &mut u16) {
         if self.write {
             *stored = z;
+        }
+    }
+
+    fn any(self) -> AnyDepth {
+        self
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_tests_compare_as_they_say() {
+        use Compare::*;
+        let depths = [0, 1, 2, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF_u16];
+        for (z, stored) in depths.iter().flat_map(|z| depths.iter().map(move |stored| (*z, *stored))) {
+            let expected = [false, z < stored, z == stored, z <= stored, z > stored, z != stored, z >= stored, true];
+            let compares = [Never, Less, Equal, LessEqual, Greater, NotEqual, GreaterEqual, Always];
+            for (compare, expected) in compares.into_iter().zip(expected) {
+                let test = AnyDepth::new(DepthState { compare, write: false });
+                assert_eq!(test.passes(z, stored), expected, "{z} {compare:?} {stored}");
+            }
+            assert_eq!(LessWrite.any().passes(z, stored), LessWrite.passes(z, stored));
+            assert!(NoDepth.any().passes(z, stored));
         }
     }
 }

@@ -85,7 +85,9 @@ impl VertexShader for Gouraud {
 impl<P: PixelFormat> Shader<P> for Gouraud {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
-        Some(P::pack_at(fragment.varyings.map(unsqueeze), fragment.position))
+        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
+        let [r, g, b] = *fragment.varyings;
+        Some(P::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
     }
 
     #[inline]
@@ -98,7 +100,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
         if P::PACKED {
             packed_span(span, test);
         } else {
-            fragments(self, face, span, test);
+            fragments(self, face, span, test.any());
         }
     }
 }

@@ -147,7 +147,7 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
         if Format::PACKED {
             packed_span(span, test);
         } else {
-            fragments(self, face, span, test);
+            fragments(self, face, span, test.any());
         }
     }
 }

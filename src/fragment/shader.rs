@@ -1,7 +1,7 @@
 //! The fragment stage's seam, and the loop over the pixels of a span.
 
-use super::{DepthTest, PixelFormat};
-use crate::geometry::{Side, VertexShader};
+use super::{AnyDepth, DepthTest, PixelFormat};
+use crate::geometry::{Side, Varyings, VertexShader};
 
 /// A fragment that passed the depth test: what the fragment stage sees of it.
 #[derive(Clone, Copy, Debug)]
@@ -67,23 +67,23 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings>, test: D) {
-        fragments(self, face, span, test);
+        fragments(self, face, span, test.any());
     }
 }
 
-/// Draws a span fragment by fragment.
-#[inline(always)]
-pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
+/// Draws a span fragment by fragment, in the one loop that a shader is compiled into.
+#[inline(never)]
+pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
     face: u32,
     span: Fragments<'_, P, S::Varyings>,
-    test: D,
+    test: AnyDepth,
 ) {
     let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
     let side = steps.side;
     for (color, stored) in color.iter_mut().zip(depth) {
         let depth = (z >> 16) as u16;
-        if !D::ENABLED || test.passes(depth, *stored) {
+        if test.passes(depth, *stored) {
             if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side }) {
                 test.write(depth, stored);
                 *color = value;
@@ -91,8 +91,6 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
         }
         position.0 = position.0.wrapping_add(1);
         z = z.wrapping_add_signed(steps.dz_dx);
-        for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-            *value = value.wrapping_add(*step);
-        }
+        varyings.step(&steps.d_dx);
     }
 }

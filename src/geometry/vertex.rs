@@ -12,11 +12,44 @@ pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
     const LEN: usize;
     /// All zero.
     const ZERO: Self;
+
+    /// Adds `change`, modulo 2³².
+    #[inline]
+    fn step(&mut self, change: &Self) {
+        for (value, change) in self.as_mut().iter_mut().zip(change.as_ref()) {
+            *value = value.wrapping_add(*change);
+        }
+    }
 }
 
 impl<const N: usize> Varyings for [i32; N] {
     const LEN: usize = N;
     const ZERO: Self = [0; N];
+
+    #[inline(always)]
+    fn step(&mut self, change: &Self) {
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+        let (values, changes) = (self.as_mut_slice(), change.as_slice());
+        step_one(values, changes, 0);
+        step_one(values, changes, 1);
+        step_one(values, changes, 2);
+        step_one(values, changes, 3);
+        step_one(values, changes, 4);
+        step_one(values, changes, 5);
+        step_one(values, changes, 6);
+        step_one(values, changes, 7);
+        for (value, change) in values.iter_mut().zip(changes).skip(8) {
+            *value = value.wrapping_add(*change);
+        }
+    }
+}
+
+/// Steps a value, if there are so many.
+#[inline(always)]
+fn step_one(values: &mut [i32], changes: &[i32], k: usize) {
+    if let (Some(value), Some(change)) = (values.get_mut(k), changes.get(k)) {
+        *value = value.wrapping_add(*change);
+    }
 }
 
 /// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
