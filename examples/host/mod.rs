@@ -2,6 +2,7 @@
 #![allow(dead_code)] // each program uses its part
 
 pub mod show;
+pub mod viewer;
 
 use std::error::Error;
 use std::fs::File;

@@ -4,10 +4,13 @@
 #![allow(dead_code)] // each program uses its part
 #![allow(long_running_const_eval)] // a landscape is computed
 
+pub mod dashboard;
 pub mod formats;
 pub mod horizon;
+pub mod labels;
 pub mod landscape;
 pub mod light;
+pub mod overlay;
 pub mod polygons;
 pub mod pot;
 pub mod soup;
@@ -48,6 +51,12 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
     SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
+    SceneInfo { name: "overlay", draw: |scene, turn| overlay::draw(scene, turn) },
+    // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
+    #[cfg(not(proof = "all"))]
+    SceneInfo { name: "dashboard", draw: |scene, turn| dashboard::draw(scene, turn) },
+    #[cfg(not(proof = "all"))]
+    SceneInfo { name: "labels", draw: |scene, turn| labels::draw(scene, turn) },
 ];
 
 /// Dark blue-grey.

@@ -43,7 +43,7 @@ pub const TABLE: i32 = -540;
 
 /// Point and unit tangent of a curve at `k` of `n`.
 const fn curve(c: &Curve, k: usize, n: usize) -> (Flat, Flat) {
-    let (t, s) = (((k << 16) / n) as i64, ((n - k << 16) / n) as i64);
+    let (t, s) = (((k << 16) / n) as i64, (((n - k) << 16) / n) as i64);
     let (mut point, mut tangent) = ([0; 2], [0; 2]);
     let mut axis = 0;
     while axis < 2 {

@@ -22,7 +22,7 @@ const fn colors() -> [[u8; 3]; VERTICES] {
     let mut colors = [[0; 3]; VERTICES];
     let mut k = 0;
     while k < VERTICES {
-        colors[k] = if (k % ROW + k / ROW) % 2 == 0 { [235, 225, 205] } else { [105, 85, 80] };
+        colors[k] = if (k % ROW + k / ROW) & 1 == 0 { [235, 225, 205] } else { [105, 85, 80] };
         k += 1;
     }
     colors

@@ -1,7 +1,7 @@
 //! Blending: what becomes of a shader's colour and the one that is there.
 
-use super::{AnyDepth, DepthTest, Fragment, Fragments, PixelFormat, Rgba, Shader};
-use crate::geometry::{Corner, Face, Varyings, VertexShader};
+use super::{Fragment, PixelFormat, Rgba8888, Shader};
+use crate::geometry::{Corner, Face, VertexShader};
 use crate::math::Vec3;
 
 /// A way to blend pixels of format `P`.
@@ -10,10 +10,10 @@ use crate::math::Vec3;
 /// |---|---|---|
 /// | [`Replace`] | source | `P` |
 /// | [`Opacity`] | source · opacity + there · (1 - opacity) | `P` |
-/// | [`Alpha`] | source · alpha + there · (1 - alpha) | [`Rgba`] |
+/// | [`Alpha`] | source · alpha + there · (1 - alpha) | [`Rgba8888`] |
 /// | [`Add`] | source + there, at most 1 | `P` |
-/// | [`AddAlpha`] | source · alpha + there, at most 1 | [`Rgba`] |
-/// | [`Multiply`] | source · there | [`Rgba`] |
+/// | [`AddAlpha`] | source · alpha + there, at most 1 | [`Rgba8888`] |
+/// | [`Multiply`] | source · there | [`Rgba8888`] |
 ///
 /// Modes whose source is `P` work in the format itself, in one word for RGB565; the others in 8 bits a channel, exactly
 /// rounded, before surplus bits are cut (and not dithered again: a pixel that nothing is added to stays as it is).
@@ -70,13 +70,13 @@ fn channels([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], f: impl Fn(u32, u32) -> u32)
 }
 
 impl<P: PixelFormat> BlendMode<P> for Alpha {
-    type Source = Rgba;
+    type Source = Rgba8888;
 
     #[inline(always)]
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
         let [.., alpha] = source;
         let alpha = u32::from(alpha);
-        P::pack(channels(Rgba::unpack(source), P::unpack(there), |s, t| by_255(s * alpha + t * (255 - alpha))))
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * alpha + t * (255 - alpha))))
     }
 }
 
@@ -98,13 +98,13 @@ impl<P: PixelFormat> BlendMode<P> for Add {
 pub struct AddAlpha;
 
 impl<P: PixelFormat> BlendMode<P> for AddAlpha {
-    type Source = Rgba;
+    type Source = Rgba8888;
 
     #[inline(always)]
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
         let [.., alpha] = source;
         let alpha = u32::from(alpha);
-        P::pack(channels(Rgba::unpack(source), P::unpack(there), |s, t| (by_255(s * alpha) + t).min(255)))
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| (by_255(s * alpha) + t).min(255)))
     }
 }
 
@@ -113,17 +113,17 @@ impl<P: PixelFormat> BlendMode<P> for AddAlpha {
 pub struct Multiply;
 
 impl<P: PixelFormat> BlendMode<P> for Multiply {
-    type Source = Rgba;
+    type Source = Rgba8888;
 
     #[inline(always)]
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
-        P::pack(channels(Rgba::unpack(source), P::unpack(there), |s, t| by_255(s * t)))
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * t)))
     }
 }
 
 /// A shader whose colours are blended with what is there.
 ///
-/// It has to be the outermost of nested shaders, `Blend<Fogged<..>>`: only a whole span knows the pixels that are there.
+/// It has to be the outermost of nested shaders, `Blend<Fogged<..>>`: inner ones do not see the pixel that is there.
 /// What is transparent is drawn after all else, from back to front: see
 /// [`sort_back_to_front`](crate::geometry::sort_back_to_front); and without leaving its depth:
 /// [`DepthState::TEST`](super::DepthState::TEST).
@@ -191,40 +191,27 @@ impl<S: VertexShader, M> VertexShader for Blend<S, M> {
 }
 
 impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<S, M> {
+    const STEP: usize = S::STEP;
+
     /// Blended with black.
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
         Some(self.mode.blend(self.shader.fragment(fragment)?, P::pack([0; 3])))
     }
 
-    #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: D) {
-        self.blended(face, span, test.any());
+    #[inline(always)]
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
     }
-}
 
-impl<S, M> Blend<S, M> {
-    /// Draws a span fragment by fragment.
-    #[inline(never)]
-    fn blended<P: PixelFormat>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: AnyDepth)
-    where
-        M: BlendMode<P>,
-        S: Shader<M::Source>,
-    {
-        let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
-        let side = steps.side;
-        for (color, stored) in color.iter_mut().zip(depth) {
-            let depth = (z >> 16) as u16;
-            if test.passes(depth, *stored) {
-                let fragment = Fragment { face, varyings: &varyings, position, depth, side };
-                if let Some(source) = self.shader.fragment(&fragment) {
-                    test.write(depth, stored);
-                    *color = self.mode.blend(source, *color);
-                }
+    #[inline(always)]
+    fn paint(&self, fragment: &Fragment<'_, S::Varyings>, pixel: &mut P::Raw) -> bool {
+        match self.shader.fragment(fragment) {
+            Some(source) => {
+                *pixel = self.mode.blend(source, *pixel);
+                true
             }
-            position.0 = position.0.wrapping_add(1);
-            z = z.wrapping_add_signed(steps.dz_dx);
-            varyings.step(&steps.d_dx);
+            None => false,
         }
     }
 }

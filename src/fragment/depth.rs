@@ -48,19 +48,44 @@ impl Default for DepthState {
     }
 }
 
+/// Pixels that a span has at most: the widest screen.
+pub const MAX_SPAN: usize = crate::geometry::Viewport::MAX_SIZE as usize;
+
 /// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
 pub trait DepthTest: Copy {
-    /// Whether depth plays a part at all; otherwise neither method is called.
+    /// Whether depth plays a part at all; otherwise neither `passes` nor `write` has to be called.
     const ENABLED: bool;
 
+    /// What there is of a pixel's depth: `u16`, or nothing where depth plays no part, so that the same loops do without a
+    /// depth buffer.
+    type Stored: Copy;
+
+    /// What is stored of as many pixels from `start` on, or of fewer at the end of `depths`. `nothing` is for tests that
+    /// need none.
+    fn stored<'d>(
+        depths: &'d mut [u16],
+        nothing: &'d mut [(); MAX_SPAN],
+        start: usize,
+        length: usize,
+    ) -> &'d mut [Self::Stored];
+
     /// Compares `z` with the stored depth.
-    fn passes(self, z: u16, stored: u16) -> bool;
+    fn passes(self, z: u16, stored: Self::Stored) -> bool;
 
     /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
-    fn write(self, z: u16, stored: &mut u16);
+    fn write(self, z: u16, stored: &mut Self::Stored);
 
-    /// The same test as a value: for loops in which it costs little, but two more copies of the loop much.
-    fn any(self) -> AnyDepth;
+    /// The same test as a value, and depths as numbers, where depth plays a part: for long loops, of which three copies cost
+    /// more than the test does.
+    fn any(self, stored: &mut [Self::Stored]) -> Option<(AnyDepth, &mut [u16])>;
+}
+
+/// Depths from `start` on, `length` of them or as many as there are.
+#[inline(always)]
+fn part(depths: &mut [u16], start: usize, length: usize) -> &mut [u16] {
+    // In two steps, each a comparison; a range is checked at both ends at once, which small cores pay twice for.
+    let depths = depths.get_mut(start..).unwrap_or_default();
+    depths.get_mut(..length).unwrap_or_default()
 }
 
 /// [`DepthState::LESS`].
@@ -69,6 +94,13 @@ pub struct LessWrite;
 
 impl DepthTest for LessWrite {
     const ENABLED: bool = true;
+
+    type Stored = u16;
+
+    #[inline(always)]
+    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
+        part(depths, start, length)
+    }
 
     #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
@@ -80,8 +112,9 @@ impl DepthTest for LessWrite {
         *stored = z;
     }
 
-    fn any(self) -> AnyDepth {
-        AnyDepth::new(DepthState::LESS)
+    #[inline(always)]
+    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
+        Some((AnyDepth::new(DepthState::LESS), stored))
     }
 }
 
@@ -92,16 +125,24 @@ pub struct NoDepth;
 impl DepthTest for NoDepth {
     const ENABLED: bool = false;
 
+    type Stored = ();
+
     #[inline(always)]
-    fn passes(self, _: u16, _: u16) -> bool {
+    fn stored<'d>(_: &'d mut [u16], nothing: &'d mut [(); MAX_SPAN], _: usize, length: usize) -> &'d mut [()] {
+        nothing.get_mut(..length).unwrap_or_default()
+    }
+
+    #[inline(always)]
+    fn passes(self, _: u16, (): ()) -> bool {
         true
     }
 
     #[inline(always)]
-    fn write(self, _: u16, _: &mut u16) {}
+    fn write(self, _: u16, (): &mut ()) {}
 
-    fn any(self) -> AnyDepth {
-        AnyDepth::new(DepthState::OFF)
+    #[inline(always)]
+    fn any(self, _: &mut [()]) -> Option<(AnyDepth, &mut [u16])> {
+        None
     }
 }
 
@@ -136,6 +177,13 @@ impl AnyDepth {
 impl DepthTest for AnyDepth {
     const ENABLED: bool = true;
 
+    type Stored = u16;
+
+    #[inline(always)]
+    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
+        part(depths, start, length)
+    }
+
     #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
         let difference = i32::from(z) - i32::from(stored);
@@ -149,8 +197,9 @@ impl DepthTest for AnyDepth {
         }
     }
 
-    fn any(self) -> AnyDepth {
-        self
+    #[inline(always)]
+    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
+        Some((self, stored))
     }
 }
 
@@ -169,8 +218,8 @@ mod tests {
                 let test = AnyDepth::new(DepthState { compare, write: false });
                 assert_eq!(test.passes(z, stored), expected, "{z} {compare:?} {stored}");
             }
-            assert_eq!(LessWrite.any().passes(z, stored), LessWrite.passes(z, stored));
-            assert!(NoDepth.any().passes(z, stored));
+            let less = LessWrite.any(&mut []).map(|(test, _)| test.passes(z, stored));
+            assert_eq!(less, Some(LessWrite.passes(z, stored)));
         }
     }
 }

@@ -84,14 +84,14 @@ impl<P: PixelFormat> Shader<P> for Flat {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
         flat_span(face, span, test);
     }
 }
 
 /// Draws a span in the colour of a face's word.
 #[inline]
-pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
     if P::DITHER.is_some() {
         return dithered_span(unpacked(face), span, test);
     }

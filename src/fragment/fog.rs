@@ -189,6 +189,13 @@ impl<S: VertexShader> VertexShader for Fogged<'_, S> {
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for Fogged<'_, S> {
+    const STEP: usize = S::STEP;
+
+    #[inline(always)]
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
+    }
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
         let left = u32::from(self.table.left(fragment.depth));

@@ -49,14 +49,20 @@ mod flat;
 mod fog;
 mod gouraud;
 mod matcap;
+mod perspective;
 mod pixel;
+mod sample;
 mod shaded;
 mod shader;
+mod texel;
+mod texture;
+mod texture_span;
+mod textured;
 
-pub use alpha::Rgba;
+pub use alpha::Rgba8888;
 pub use bias::DepthBias;
 pub use blend::{Add, AddAlpha, Alpha, Blend, BlendMode, Multiply, Opacity, Replace};
-pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, MAX_SPAN, NoDepth};
 pub use depth_only::DepthOnly;
 pub use discard::{AlphaTest, ScreenDoor};
 pub use dither::dither_word;
@@ -65,6 +71,13 @@ pub use flat::Flat;
 pub use fog::{FogCurve, FogTable, Fogged};
 pub use gouraud::Gouraud;
 pub use matcap::Matcap;
+pub use perspective::Corrected;
 pub use pixel::PixelFormat;
+pub use sample::{Bilinear, Clamp, Filter, Mirror, Nearest, Repeat, Wrap};
 pub use shaded::{PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
 pub use shader::{Fragment, Fragments, Shader, Steps};
+pub use texel::{
+    Gray8Texel, Keyed, MaskTexel, PaletteTexel, Rgb565LeTexel, Rgb565Texel, Rgb888Texel, Rgba, TexelFormat,
+};
+pub use texture::{Image, Texture, TextureError, Tile, WithAlpha};
+pub use textured::{LitTexture, Textured};

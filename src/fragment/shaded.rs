@@ -97,7 +97,7 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     }
 
     #[inline]
-    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 0]>, test: T) {
+    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 0], T::Stored>, test: T) {
         flat_span(face, span, test);
     }
 }
@@ -143,11 +143,11 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     }
 
     #[inline]
-    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 3]>, test: T) {
+    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 3], T::Stored>, test: T) {
         if Format::PACKED {
             packed_span(span, test);
         } else {
-            fragments(self, face, span, test.any());
+            fragments(self, face, span, test);
         }
     }
 }

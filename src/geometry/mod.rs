@@ -16,6 +16,7 @@ mod mesh;
 mod order;
 mod project;
 mod transform;
+mod varyings;
 mod vertex;
 mod viewport;
 
@@ -33,7 +34,8 @@ pub use material::Material;
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub use order::{sort_back_to_front, view_depth};
 pub(crate) use project::small;
-pub use project::{DepthScale, ScreenVertex, project, signed_area};
+pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
 pub use transform::{Placed, Transform, View, place};
-pub use vertex::{Corner, Face, Side, Varyings, VertexShader};
+pub use varyings::{Correction, InverseW, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
+pub use vertex::{Corner, Face, Side, VertexShader};
 pub use viewport::{Viewport, ViewportError};

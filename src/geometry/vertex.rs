@@ -1,56 +1,7 @@
 //! The vertex stage's seam: what a shader sees of a vertex or a face, and what it hands on.
 
-use super::{Mesh, Positions};
+use super::{Mesh, Positions, Varyings};
 use crate::math::{Vec3, isqrt, mul_high_signed, reciprocal};
-
-/// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes.
-///
-/// Interpolation is linear in screen space, for values that differ by less than 2³¹ over the triangle. Each is within 2¹³
-/// of its exact value (and 2 for each pixel of a small triangle), so give what has to be smooth some 16 fractional bits.
-pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
-    /// How many.
-    const LEN: usize;
-    /// All zero.
-    const ZERO: Self;
-
-    /// Adds `change`, modulo 2³².
-    #[inline]
-    fn step(&mut self, change: &Self) {
-        for (value, change) in self.as_mut().iter_mut().zip(change.as_ref()) {
-            *value = value.wrapping_add(*change);
-        }
-    }
-}
-
-impl<const N: usize> Varyings for [i32; N] {
-    const LEN: usize = N;
-    const ZERO: Self = [0; N];
-
-    #[inline(always)]
-    fn step(&mut self, change: &Self) {
-        // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
-        let (values, changes) = (self.as_mut_slice(), change.as_slice());
-        step_one(values, changes, 0);
-        step_one(values, changes, 1);
-        step_one(values, changes, 2);
-        step_one(values, changes, 3);
-        step_one(values, changes, 4);
-        step_one(values, changes, 5);
-        step_one(values, changes, 6);
-        step_one(values, changes, 7);
-        for (value, change) in values.iter_mut().zip(changes).skip(8) {
-            *value = value.wrapping_add(*change);
-        }
-    }
-}
-
-/// Steps a value, if there are so many.
-#[inline(always)]
-fn step_one(values: &mut [i32], changes: &[i32], k: usize) {
-    if let (Some(value), Some(change)) = (values.get_mut(k), changes.get(k)) {
-        *value = value.wrapping_add(*change);
-    }
-}
 
 /// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
 /// white (colours).

@@ -116,6 +116,11 @@ macro_rules! sixteen_bits {
                 $store(add_rgb565($load(a), $load(b)))
             }
 
+            #[inline(always)]
+            fn from_rgb565(raw: u16) -> u16 {
+                $store(raw)
+            }
+
             const PACKED: bool = true;
 
             #[inline(always)]
