@@ -3,13 +3,13 @@
 //! ```text
 //! cargo run --release --example horizon -- --help
 //! ```
-mod host;
-mod scenes;
 #[path = "host/demo.rs"]
 mod demo;
+mod host;
+mod scenes;
 
-use minifb::Key;
 use demo::Demo;
+use minifb::Key;
 use std::process::ExitCode;
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;

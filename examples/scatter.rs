@@ -3,10 +3,10 @@
 //! ```text
 //! cargo run --release --example scatter -- --help
 //! ```
-mod host;
-mod scenes;
 #[path = "host/demo.rs"]
 mod demo;
+mod host;
+mod scenes;
 
 use demo::Demo;
 use std::process::ExitCode;

@@ -3,13 +3,13 @@
 //! ```text
 //! cargo run --release --example wireframe -- --help
 //! ```
-mod host;
-mod scenes;
 #[path = "host/demo.rs"]
 mod demo;
+mod host;
+mod scenes;
 
-use scenes::wires::BEHIND_LINES;
 use demo::Demo;
+use scenes::wires::BEHIND_LINES;
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Compare, DepthOnly, DepthState, Flat};

@@ -52,16 +52,41 @@ struct Ground {
     colors: [[u8; 3]; VERTICES],
 }
 
+/// Heights of all vertices, computed once: the compiler takes its time for noise.
+const HEIGHTS: [i32; VERTICES] = {
+    let mut heights = [0; VERTICES];
+    let mut k = 0;
+    while k < VERTICES {
+        let (x, z) = place(k);
+        heights[k] = height(x, z);
+        k += 1;
+    }
+    heights
+};
+
+/// The height of a vertex, or of the nearest one where the row or column is out of the ground.
+const fn vertex_height(column: i32, row: i32) -> i32 {
+    let last = CELLS as i32;
+    let column = if column < 0 { 0 } else { column.saturating_sub((column > last) as i32) };
+    let row = if row < 0 { 0 } else { row.saturating_sub((row > last) as i32) };
+    HEIGHTS[row as usize * ROW + column as usize]
+}
+
 const fn ground() -> Ground {
     let mut g = Ground { positions: [[0; 3]; VERTICES], normals: [[0; 3]; VERTICES], colors: [[0; 3]; VERTICES] };
     let mut k = 0;
     while k < VERTICES {
         let (x, z) = place(k);
-        let y = height(x, z);
+        let (column, row) = ((k % ROW) as i32, (k / ROW) as i32);
+        let y = HEIGHTS[k];
         // 16 units are 2¹⁵.
         g.positions[k] = [(x * 2048 / 1000) as i16, (y * 2048 / 1000) as i16, (z * 2048 / 1000) as i16];
-        let slope = [height(x - 150, z) - height(x + 150, z), height(x, z - 150) - height(x, z + 150)];
-        if let Some(n) = Vec3::from_bits([slope[0] << 8, 300 << 8, slope[1] << 8]).normalized() {
+        // Over two cells of 500.
+        let slope = [
+            vertex_height(column - 1, row) - vertex_height(column + 1, row),
+            vertex_height(column, row - 1) - vertex_height(column, row + 1),
+        ];
+        if let Some(n) = Vec3::from_bits([slope[0] << 8, 1000 << 8, slope[1] << 8]).normalized() {
             let n = n.to_bits();
             g.normals[k] = [(n[0] >> 2) as i16, (n[1] >> 2) as i16, (n[2] >> 2) as i16];
         }
@@ -136,14 +161,16 @@ pub static TREES: [Vec3; PINES] = trees();
 const fn trees() -> [Vec3; PINES] {
     let mut trees = [Vec3::ZERO; PINES];
     let (mut tried, mut k) = (0, 0);
-    while k < PINES && tried < 4000 {
+    while k < PINES && tried < 1000 {
         let x = (lattice(tried, 11) as i32 - 32_768) * 11 / 32;
         let z = (lattice(tried, 77) as i32 - 32_768) * 11 / 32;
-        let y = height(x, z);
-        let slope = height(x + 100, z) - height(x - 100, z) + height(x, z + 100) - height(x, z - 100);
-        if y > 120 && y < 1000 && slope.abs() < 160 && noise(x, z, 1700) > 30_000 {
-            trees[k] = Vec3::from_milli(x, y - 30, z);
-            k += 1;
+        let y = if noise(x, z, 1700) > 30_000 { height(x, z) } else { 0 };
+        if y > 120 && y < 1000 {
+            let slope = height(x + 100, z) - height(x - 100, z) + height(x, z + 100) - height(x, z - 100);
+            if slope.abs() < 160 {
+                trees[k] = Vec3::from_milli(x, y - 30, z);
+                k += 1;
+            }
         }
         tried += 1;
     }

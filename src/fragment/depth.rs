@@ -74,6 +74,10 @@ pub trait DepthTest: Copy {
 
     /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
     fn write(self, z: u16, stored: &mut Self::Stored);
+
+    /// The same test as a value, and depths as numbers, where depth plays a part: for long loops, of which three copies cost
+    /// more than the test does.
+    fn any(self, stored: &mut [Self::Stored]) -> Option<(AnyDepth, &mut [u16])>;
 }
 
 /// Depths from `start` on, `length` of them or as many as there are.
@@ -107,6 +111,11 @@ impl DepthTest for LessWrite {
     fn write(self, z: u16, stored: &mut u16) {
         *stored = z;
     }
+
+    #[inline(always)]
+    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
+        Some((AnyDepth::new(DepthState::LESS), stored))
+    }
 }
 
 /// [`DepthState::OFF`].
@@ -130,27 +139,38 @@ impl DepthTest for NoDepth {
 
     #[inline(always)]
     fn write(self, _: u16, (): &mut ()) {}
+
+    #[inline(always)]
+    fn any(self, _: &mut [()]) -> Option<(AnyDepth, &mut [u16])> {
+        None
+    }
 }
 
-/// Any other test.
+/// Any test: that the difference of a depth and the stored one is in a range.
+///
+/// # Format
+/// Differences are in -65,535..=65,535. Modulo 2³² even all numbers but 0 are a range.
 #[derive(Clone, Copy, Debug)]
 pub struct AnyDepth {
-    less: bool,
-    equal: bool,
-    greater: bool,
+    lowest: i32,
+    count: u32,
     write: bool,
 }
 
 impl AnyDepth {
     /// From its description.
     pub const fn new(state: DepthState) -> Self {
-        use Compare::*;
-        Self {
-            less: matches!(state.compare, Less | LessEqual | NotEqual | Always),
-            equal: matches!(state.compare, Equal | LessEqual | GreaterEqual | Always),
-            greater: matches!(state.compare, Greater | GreaterEqual | NotEqual | Always),
-            write: state.write,
-        }
+        let (lowest, count) = match state.compare {
+            Compare::Never => (0, 0),
+            Compare::Less => (-65_535, 65_535),
+            Compare::Equal => (0, 1),
+            Compare::LessEqual => (-65_535, 65_536),
+            Compare::Greater => (1, 65_535),
+            Compare::NotEqual => (1, u32::MAX),
+            Compare::GreaterEqual => (0, 65_536),
+            Compare::Always => (i32::MIN, u32::MAX),
+        };
+        Self { lowest, count, write: state.write }
     }
 }
 
@@ -166,17 +186,40 @@ impl DepthTest for AnyDepth {
 
     #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
-        match z.cmp(&stored) {
-            core::cmp::Ordering::Less => self.less,
-            core::cmp::Ordering::Equal => self.equal,
-            core::cmp::Ordering::Greater => self.greater,
-        }
+        let difference = i32::from(z) - i32::from(stored);
+        (difference.wrapping_sub(self.lowest) as u32) < self.count
     }
 
     #[inline(always)]
     fn write(self, z: u16, stored: &mut u16) {
         if self.write {
             *stored = z;
+        }
+    }
+
+    #[inline(always)]
+    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
+        Some((self, stored))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_tests_compare_as_they_say() {
+        use Compare::*;
+        let depths = [0, 1, 2, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF_u16];
+        for (z, stored) in depths.iter().flat_map(|z| depths.iter().map(move |stored| (*z, *stored))) {
+            let expected = [false, z < stored, z == stored, z <= stored, z > stored, z != stored, z >= stored, true];
+            let compares = [Never, Less, Equal, LessEqual, Greater, NotEqual, GreaterEqual, Always];
+            for (compare, expected) in compares.into_iter().zip(expected) {
+                let test = AnyDepth::new(DepthState { compare, write: false });
+                assert_eq!(test.passes(z, stored), expected, "{z} {compare:?} {stored}");
+            }
+            let less = LessWrite.any(&mut []).map(|(test, _)| test.passes(z, stored));
+            assert_eq!(less, Some(LessWrite.passes(z, stored)));
         }
     }
 }

@@ -85,7 +85,9 @@ impl VertexShader for Gouraud {
 impl<P: PixelFormat> Shader<P> for Gouraud {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
-        Some(P::pack_at(fragment.varyings.map(unsqueeze), fragment.position))
+        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
+        let [r, g, b] = *fragment.varyings;
+        Some(P::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
     }
 
     #[inline]

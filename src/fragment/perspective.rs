@@ -132,16 +132,13 @@ pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: Dept
             let depth = (z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
                 let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
-                if let Some(value) = shader.over(&fragment, *color) {
+                if shader.paint(&fragment, color) {
                     test.write(depth, stored);
-                    *color = value;
                 }
             }
             position.0 = position.0.wrapping_add(1);
             z = z.wrapping_add_signed(steps.dz_dx);
-            for (value, step) in varyings.as_mut().iter_mut().zip(change.as_ref()) {
-                *value = value.wrapping_add(*step);
-            }
+            varyings.step(&change);
         }
         varyings = next;
     }

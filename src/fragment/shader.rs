@@ -1,7 +1,7 @@
 //! The fragment stage's seam, and the loop over the pixels of a span.
 
 use super::perspective::corrected_fragments;
-use super::{DepthTest, PixelFormat};
+use super::{AnyDepth, DepthState, DepthTest, PixelFormat};
 use crate::geometry::{Correction, Side, Varyings, VertexShader};
 
 /// A fragment that passed the depth test: what the fragment stage sees of it.
@@ -75,13 +75,6 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
 
-    /// The colour of a pixel whose colour is `there` now: by default the fragment's; blending mixes the two.
-    #[inline(always)]
-    fn over(&self, fragment: &Fragment<'_, Self::Varyings>, there: P::Raw) -> Option<P::Raw> {
-        let _ = there;
-        self.fragment(fragment)
-    }
-
     /// A word for the fragments of a triangle, from the varyings at its vertices and twice its area in 2⁻¹⁶ px²: a level of
     /// detail.
     #[inline(always)]
@@ -99,6 +92,19 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         [0; 2]
     }
 
+    /// Colours a pixel, or discards the fragment and says `false`. Only what blends with the pixel that is there has to
+    /// override it.
+    #[inline(always)]
+    fn paint(&self, fragment: &Fragment<'_, Self::Varyings>, pixel: &mut P::Raw) -> bool {
+        match self.fragment(fragment) {
+            Some(value) => {
+                *pixel = value;
+                true
+            }
+            None => false,
+        }
+    }
+
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings, D::Stored>, test: D) {
@@ -106,8 +112,11 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     }
 }
 
+/// Pixels of a span that are drawn at a time where there are no depths.
+const CHUNK: usize = 32;
+
 /// Draws a span fragment by fragment.
-#[inline(always)]
+#[inline]
 pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
@@ -117,21 +126,47 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     if S::Varyings::PERSPECTIVE > 0 {
         return corrected_fragments(shader, face, span, test);
     }
+    let (first, Fragments { mut color, depth, z, mut varyings, steps, position }) = (span.position.0, span);
+    if let Some((test, depth)) = test.any(depth) {
+        return linear_fragments(shader, face, Fragments { color, depth, z, varyings, steps, position }, test);
+    }
+    // The same loop, with depths that are nobody's.
+    let (mut position, mut nothing) = (position, [0; CHUNK]);
+    let always = AnyDepth::new(DepthState::OFF);
+    while !color.is_empty() {
+        let pixels = color.len().min(CHUNK);
+        let Some((chunk, rest)) = core::mem::take(&mut color).split_at_mut_checked(pixels) else { return };
+        color = rest;
+        let depth = &mut nothing;
+        let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(position.0.wrapping_sub(first)));
+        linear_fragments(shader, face, Fragments { color: chunk, depth, z, varyings, steps, position }, always);
+        position.0 = position.0.wrapping_add(pixels as i32);
+        for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+            *value = value.wrapping_add(step.wrapping_mul(pixels as i32));
+        }
+    }
+}
+
+/// Draws a span fragment by fragment, in the one loop that a shader is compiled into.
+#[inline(never)]
+fn linear_fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
+    shader: &S,
+    face: u32,
+    span: Fragments<'_, P, S::Varyings, u16>,
+    test: AnyDepth,
+) {
     let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
     let (side, level) = (steps.side, steps.level);
     for (color, stored) in color.iter_mut().zip(depth) {
         let depth = (z >> 16) as u16;
-        if !D::ENABLED || test.passes(depth, *stored) {
+        if test.passes(depth, *stored) {
             let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
-            if let Some(value) = shader.over(&fragment, *color) {
+            if shader.paint(&fragment, color) {
                 test.write(depth, stored);
-                *color = value;
             }
         }
         position.0 = position.0.wrapping_add(1);
         z = z.wrapping_add_signed(steps.dz_dx);
-        for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-            *value = value.wrapping_add(*step);
-        }
+        varyings.step(&steps.d_dx);
     }
 }

@@ -25,6 +25,14 @@ pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
     /// What the fragment stage must know of a triangle to correct them.
     type Correction: Correction;
 
+    /// Adds `change`, modulo 2³².
+    #[inline]
+    fn step(&mut self, change: &Self) {
+        for (value, change) in self.as_mut().iter_mut().zip(change.as_ref()) {
+            *value = value.wrapping_add(*change);
+        }
+    }
+
     /// Puts 1 / w, as [`inverse_w`](super::inverse_w) gives it, into its place.
     #[inline]
     fn set_inverse_w(&mut self, inverse_w: u32) {
@@ -38,6 +46,36 @@ impl<const N: usize> Varyings for [i32; N] {
     const LEN: usize = N;
     const ZERO: Self = [0; N];
     type Correction = ();
+
+    #[inline(always)]
+    fn step(&mut self, change: &Self) {
+        step(self, change);
+    }
+}
+
+/// Adds `changes`, modulo 2³². Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+#[inline(always)]
+fn step<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
+    let (values, changes) = (values.as_mut_slice(), changes.as_slice());
+    step_one(values, changes, 0);
+    step_one(values, changes, 1);
+    step_one(values, changes, 2);
+    step_one(values, changes, 3);
+    step_one(values, changes, 4);
+    step_one(values, changes, 5);
+    step_one(values, changes, 6);
+    step_one(values, changes, 7);
+    for (value, change) in values.iter_mut().zip(changes).skip(8) {
+        *value = value.wrapping_add(*change);
+    }
+}
+
+/// Steps a value, if there are so many.
+#[inline(always)]
+fn step_one(values: &mut [i32], changes: &[i32], k: usize) {
+    if let (Some(value), Some(change)) = (values.get_mut(k), changes.get(k)) {
+        *value = value.wrapping_add(*change);
+    }
 }
 
 /// Varyings of which the first `P` are perspective-correct, and those after them linear on the screen; `N` is one more than
@@ -102,6 +140,11 @@ impl<const P: usize, const N: usize> AsMut<[i32]> for Perspective<P, N> {
 }
 
 impl<const P: usize, const N: usize> Varyings for Perspective<P, N> {
+    #[inline(always)]
+    fn step(&mut self, change: &Self) {
+        step(&mut self.0, &change.0);
+    }
+
     const LEN: usize = N;
     const ZERO: Self = Self([0; N]);
     const PERSPECTIVE: usize = P;
