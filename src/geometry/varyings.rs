@@ -7,6 +7,7 @@
 //! Plain arrays are interpolated the first way. [`Perspective`] divides a part of itself; what it takes to do so is kept
 //! in its [`Correction`], which for arrays is nothing at all.
 
+use super::DISTANCE_CORNERS;
 use core::fmt::Debug;
 
 /// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes, or
@@ -129,7 +130,7 @@ pub trait Correction: Copy + Debug {
     fn wide_w(&self) -> WidePlane;
 }
 
-/// Words of 1 / w at the corners of a clipped polygon, of which there are at most ten.
+/// Words of 1 / w at the corners of a clipped polygon, of which there are not more than places.
 pub trait InverseW: Default {
     /// Adds a corner's.
     fn push(&mut self, inverse_w: impl FnOnce() -> u32);
@@ -149,7 +150,7 @@ impl InverseW for () {
     }
 }
 
-impl InverseW for heapless::Vec<u32, 10> {
+impl InverseW for heapless::Vec<u32, DISTANCE_CORNERS> {
     #[inline]
     fn push(&mut self, inverse_w: impl FnOnce() -> u32) {
         let _ = heapless::Vec::push(self, inverse_w());
@@ -235,7 +236,7 @@ pub struct Lanes<const P: usize> {
 }
 
 impl<const P: usize> Correction for Lanes<P> {
-    type Corners = heapless::Vec<u32, 10>;
+    type Corners = heapless::Vec<u32, DISTANCE_CORNERS>;
 
     const NONE: Self = Self {
         class: PerspectiveClass::Affine,
