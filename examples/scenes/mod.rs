@@ -7,7 +7,9 @@ pub mod formats;
 pub mod horizon;
 pub mod polygons;
 pub mod soup;
+pub mod textured;
 pub mod torus;
+pub mod water;
 pub mod wires;
 
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
@@ -39,8 +41,17 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
+    SceneInfo { name: "crates", draw: |scene, turn| crates(scene, turn) },
+    SceneInfo { name: "close", draw: |scene, turn| textured::close(scene, turn) },
+    SceneInfo { name: "water", draw: |scene, turn| water::water(scene, turn, 1) },
     SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
 ];
+
+/// Crates, mip chains, filters, and a fence with holes.
+fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    textured::crates(scene, turn, textured::Look { bilinear: true, mips: true });
+    textured::fence(scene, turn);
+}
 
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
