@@ -8,6 +8,7 @@
 mod assembly;
 mod canvas;
 mod lines;
+mod overlay;
 mod stroke;
 mod triangle;
 

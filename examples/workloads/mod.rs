@@ -165,7 +165,7 @@ impl<P: PixelFormat> Shader<P> for FaceColors {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
         Shader::<P>::span(&self.0, face, span, test);
     }
 }

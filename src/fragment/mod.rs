@@ -17,7 +17,7 @@ mod texture_span;
 mod textured;
 
 pub use bias::DepthBias;
-pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, NoDepth};
+pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, MAX_SPAN, NoDepth};
 pub use depth_only::DepthOnly;
 pub use dither::dither_word;
 pub use fill::fill;

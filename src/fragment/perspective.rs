@@ -107,7 +107,7 @@ pub(super) fn nth(difference: i32, n: usize) -> i32 {
 pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    span: Fragments<'_, P, S::Varyings>,
+    span: Fragments<'_, P, S::Varyings, D::Stored>,
     test: D,
 ) {
     const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };

@@ -23,11 +23,11 @@ pub struct Fragment<'a, V> {
 
 /// The pixels of a span and everything that is interpolated along it.
 #[derive(Debug)]
-pub struct Fragments<'a, P: PixelFormat, V: Varyings> {
+pub struct Fragments<'a, P: PixelFormat, V: Varyings, Z> {
     /// Colours, to be written where the depth test passes.
     pub color: &'a mut [P::Raw],
-    /// Stored depths, as many.
-    pub depth: &'a mut [u16],
+    /// Stored depths, as many ([`DepthTest::Stored`]).
+    pub depth: &'a mut [Z],
     /// Depth at the first pixel, 16.16, with the half that rounds it already added.
     pub z: u32,
     /// Varyings at the first pixel; perspective-correct ones as what is linear on the screen, for [`Corrected`](super::Corrected).
@@ -94,7 +94,7 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings, D::Stored>, test: D) {
         fragments(self, face, span, test);
     }
 }
@@ -104,7 +104,7 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    span: Fragments<'_, P, S::Varyings>,
+    span: Fragments<'_, P, S::Varyings, D::Stored>,
     test: D,
 ) {
     if S::Varyings::PERSPECTIVE > 0 {

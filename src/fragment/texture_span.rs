@@ -20,7 +20,7 @@ pub(super) const STEP: usize = 16;
 #[inline(never)]
 pub(super) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings>(
     texture: &T,
-    span: Fragments<'_, P, V>,
+    span: Fragments<'_, P, V, D::Stored>,
     test: D,
 ) {
     let Fragments { mut color, mut depth, z, varyings, steps, .. } = span;
@@ -119,7 +119,7 @@ impl Pen {
         texture: &T,
         test: D,
         color: &mut P::Raw,
-        stored: &mut u16,
+        stored: &mut D::Stored,
     ) {
         let depth = (self.z >> 16) as u16;
         if !D::ENABLED || test.passes(depth, *stored) {

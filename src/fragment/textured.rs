@@ -120,7 +120,7 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>, D::Stored>, test: D) {
         match self.level(span.steps.level) {
             Some(texture) if W::REPEATS && F::NEAREST && span.steps.correction.class() != PerspectiveClass::Wide => {
                 texture_span(texture, span, test);

@@ -2,6 +2,7 @@
 
 use super::clip::ClipVertex;
 use crate::math::{Scalar, mul_high, mul_high_signed, reciprocal};
+use embedded_graphics_core::geometry::Point;
 
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,6 +19,11 @@ impl ScreenVertex {
     /// From raw 24.8 coordinates and depth.
     pub const fn new(x: i32, y: i32, z: u16) -> Self {
         Self { x, y, z }
+    }
+
+    /// The pixel it is in.
+    pub const fn pixel(&self) -> Point {
+        Point::new(self.x >> 8, self.y >> 8)
     }
 }
 

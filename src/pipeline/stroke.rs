@@ -2,7 +2,8 @@
 
 use super::triangle::Painter;
 use crate::fragment::{
-    AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, PixelFormat, Shader, Steps,
+    AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, MAX_SPAN, NoDepth,
+    PixelFormat, Shader, Steps,
 };
 use crate::geometry::{Corner, Face, ScreenVertex, Side, Varyings, VertexShader};
 use crate::output::Framebuffer;
@@ -166,7 +167,7 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
         }
     }
     loop {
-        match painter.state.depth {
+        match painter.test() {
             DepthState { compare: Compare::Less, write: true } => run.draw::<F, S, _, DASHED>(painter, LessWrite),
             other => run.draw::<F, S, _, DASHED>(painter, AnyDepth::new(other)),
         }
@@ -202,7 +203,7 @@ struct Run<'r, V: Varyings> {
 impl<V: Varyings> Run<'_, V> {
     /// Draws all of its pixels, each as a span of its own.
     #[inline(always)]
-    fn draw<F: Framebuffer, S: Shader<F::Format, Varyings = V>, D: DepthTest, const DASHED: bool>(
+    fn draw<F: Framebuffer, S: Shader<F::Format, Varyings = V>, D: DepthTest<Stored = u16>, const DASHED: bool>(
         &mut self,
         painter: &mut Painter<'_, '_, F, S>,
         test: D,
@@ -213,7 +214,10 @@ impl<V: Varyings> Run<'_, V> {
             if !DASHED || *pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
                 let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
-                if let ([color], Some(depth)) = (color, painter.target.depth.get_mut(at)) {
+                // Without a depth buffer, the test is one that passes.
+                let mut nowhere = 0;
+                let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
+                if let [color] = color {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
                     let span = Fragments { color, depth, z: *z, varyings: *values, steps, position: (x, y) };
                     painter.shader.span(*face, span, test);
@@ -377,7 +381,7 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings, D::Stored>, test: D) {
         let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
         let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
         let (x, y) = (position.0 - origin.0, position.1 - origin.1);
@@ -443,13 +447,20 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
     let steps = Steps::linear(0, d_dx, words, Side::Front);
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
     let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
+    let (test, mut nothing) = (painter.test(), [(); MAX_SPAN]);
     for y in rect.y {
         let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
         let color = painter.target.framebuffer.span(y as u32, column, length);
+        let (varyings, steps, position) = (values, &steps, (rect.x.start, y));
+        if test == DepthState::OFF {
+            let depth = nothing.get_mut(..color.len()).unwrap_or_default();
+            painter.shader.span(face, Fragments { color, depth, z, varyings, steps, position }, NoDepth);
+            continue;
+        }
         let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
-        let span = Fragments { color, depth, z, varyings: values, steps: &steps, position: (rect.x.start, y) };
-        match painter.state.depth {
+        let span = Fragments { color, depth, z, varyings, steps, position };
+        match test {
             DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, LessWrite),
             other => painter.shader.span(face, span, AnyDepth::new(other)),
         }

@@ -1,7 +1,7 @@
 //! Stages 8 to 11: a triangle on the screen → pixels.
 
 use super::{State, Target};
-use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, NoDepth, Shader, Steps};
+use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps};
 use crate::geometry::{Correction, ScreenVertex, Varyings, signed_area};
 use crate::output::Framebuffer;
 use crate::raster::{Gradients, PixelRect, Trapezoids, homogenize, widen};
@@ -17,6 +17,11 @@ pub struct Painter<'p, 't, F, S> {
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
+    /// The depth test: without a depth buffer, every fragment passes.
+    pub(super) fn test(&self) -> DepthState {
+        if self.target.depth.is_empty() { DepthState::OFF } else { self.state.depth }
+    }
+
     /// Draws a triangle.
     #[inline(never)]
     pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
@@ -54,7 +59,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         // 9. Spans, between two edges from row to row.
         let columns = &self.clip.x;
         let width = usize::from(self.screen.0);
+        let test = self.test();
         let framebuffer = &mut *self.target.framebuffer;
+        let mut nothing = [(); MAX_SPAN];
         let mut parts = Trapezoids::new(v, area, &self.clip.y);
         while let Some(rows) = parts.next() {
             let mut y = rows.start;
@@ -71,20 +78,28 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 if length > 0 {
                     let (column, length) = (start as usize, length as usize);
                     let color = framebuffer.span(y as u32, column, length);
-                    // As many depths as pixels, should the framebuffer be narrower than the screen.
-                    let Some(depths) = self.target.depth.get_mut(row + column..) else { return };
-                    let Some(depths) = depths.get_mut(..color.len()) else { return };
                     let mut varyings = values;
                     for (value, dx) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
                         *value = value.wrapping_add(dx.wrapping_mul(start));
                     }
                     let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
-                    let span = Fragments { color, depth: depths, z, varyings, steps: &steps, position: (start, y) };
                     // 10, 11. Depth test and fragments, in a loop of its own for each kind of test.
-                    match self.state.depth {
-                        DepthState { compare: Compare::Less, write: true } => self.shader.span(face, span, LessWrite),
-                        DepthState { compare: Compare::Always, write: false } => self.shader.span(face, span, NoDepth),
-                        other => self.shader.span(face, span, AnyDepth::new(other)),
+                    let (steps, position) = (&steps, (start, y));
+                    if test == DepthState::OFF {
+                        let depth = nothing.get_mut(..color.len()).unwrap_or_default();
+                        let span = Fragments { color, depth, z, varyings, steps, position };
+                        self.shader.span(face, span, NoDepth);
+                    } else {
+                        // As many depths as pixels, should the framebuffer be narrower than the screen.
+                        let Some(depth) = self.target.depth.get_mut(row + column..) else { return };
+                        let Some(depth) = depth.get_mut(..color.len()) else { return };
+                        let span = Fragments { color, depth, z, varyings, steps, position };
+                        match test {
+                            DepthState { compare: Compare::Less, write: true } => {
+                                self.shader.span(face, span, LessWrite);
+                            }
+                            other => self.shader.span(face, span, AnyDepth::new(other)),
+                        }
                     }
                 }
                 parts.left.step();

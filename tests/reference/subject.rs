@@ -45,7 +45,7 @@ impl Shader<Rgb565> for Reached<'_> {
         Some(1)
     }
 
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0]>, _: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0], D::Stored>, _: D) {
         let (x, y) = span.position;
         for (k, color) in span.color.iter_mut().enumerate() {
             *color = 1;
