@@ -44,7 +44,7 @@ impl<const N: usize> Varyings for [i32; N] {
 /// Varyings of which the first `P` are perspective-correct, and those after them linear on the screen; `N` is one more than
 /// all of them, as the pipeline keeps 1 / w in the last place.
 ///
-/// Perspective-correct values may differ by less than 2³⁰ over a triangle. They are within 2⁻¹³ of the largest difference
+/// Perspective-correct values may differ by less than 2²⁸ over a triangle. They are within 2⁻¹² of the largest difference
 /// (and half a unit) of the exact value; the sub-span mode adds what [`Shader::STEP`](crate::fragment::Shader::STEP) says.
 ///
 /// ```
@@ -221,7 +221,7 @@ impl WidePlane {
 pub struct Lane {
     /// The value at the first vertex.
     pub base: i32,
-    /// By how much differences from it are scaled up, so that the largest is in 2²⁹..2³⁰.
+    /// By how much differences from it are scaled up, so that the largest is in 2²⁷..2²⁸.
     pub shift: u32,
     /// h / w, where it is [`Wide`](PerspectiveClass::Wide).
     pub plane: WidePlane,
