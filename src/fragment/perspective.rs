@@ -8,6 +8,7 @@
 //! Both ends of a span are pixels of the triangle, so nothing is ever divided by what q = 1 / w is outside of it. At the ends
 //! varyings are exact, and so they are on both sides of an edge that two triangles share: no seam, whatever the step.
 
+use super::shader::step;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader, Steps};
 use crate::geometry::{Correction, Lane, PerspectiveClass, Varyings};
 use crate::math::{Divisor, mul_high_signed};
@@ -139,9 +140,7 @@ pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: Dept
             }
             position.0 = position.0.wrapping_add(1);
             z = z.wrapping_add_signed(steps.dz_dx);
-            for (value, step) in varyings.as_mut().iter_mut().zip(change.as_ref()) {
-                *value = value.wrapping_add(*step);
-            }
+            step(varyings.as_mut(), change.as_ref());
         }
         varyings = next;
     }

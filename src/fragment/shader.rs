@@ -123,8 +123,26 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
         }
         position.0 = position.0.wrapping_add(1);
         z = z.wrapping_add_signed(steps.dz_dx);
-        for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-            *value = value.wrapping_add(*step);
-        }
+        step(varyings.as_mut(), steps.d_dx.as_ref());
+    }
+}
+
+/// Steps varyings by a pixel. Spelled out for the first six: at `opt-level = "s"` a loop would stay a loop, through memory.
+#[inline(always)]
+pub(super) fn step(values: &mut [i32], steps: &[i32]) {
+    let ([a, values @ ..], [da, steps @ ..]) = (values, steps) else { return };
+    *a = a.wrapping_add(*da);
+    let ([b, values @ ..], [db, steps @ ..]) = (values, steps) else { return };
+    *b = b.wrapping_add(*db);
+    let ([c, values @ ..], [dc, steps @ ..]) = (values, steps) else { return };
+    *c = c.wrapping_add(*dc);
+    let ([d, values @ ..], [dd, steps @ ..]) = (values, steps) else { return };
+    *d = d.wrapping_add(*dd);
+    let ([e, values @ ..], [de, steps @ ..]) = (values, steps) else { return };
+    *e = e.wrapping_add(*de);
+    let ([f, values @ ..], [df, steps @ ..]) = (values, steps) else { return };
+    *f = f.wrapping_add(*df);
+    for (value, step) in values.iter_mut().zip(steps) {
+        *value = value.wrapping_add(*step);
     }
 }
