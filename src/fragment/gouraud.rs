@@ -2,6 +2,7 @@
 
 use super::dither::{spread, spread_step};
 use super::flat::channels;
+use super::luma::{luma_span, weighted};
 use super::shader::fragments;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
 use crate::geometry::{Corner, Light, Lit, VertexShader};
@@ -96,13 +97,22 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
 
     #[inline]
     fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
-        if P::PACKED { prepare::<P>(rgb, d_dx) } else { [0; 2] }
+        if P::PACKED {
+            prepare::<P>(rgb, d_dx)
+        } else if P::IS_LUMA {
+            [weighted(*d_dx), 0]
+        } else {
+            [0; 2]
+        }
     }
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3]>, test: D) {
         if P::PACKED {
             packed_span(span, test);
+        } else if P::IS_LUMA {
+            let [step, _] = span.steps.words;
+            luma_span(span, step, test);
         } else {
             fragments(self, face, span, test);
         }

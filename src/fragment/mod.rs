@@ -7,6 +7,7 @@ mod dither;
 mod fill;
 mod flat;
 mod gouraud;
+mod luma;
 mod pixel;
 mod shader;
 
@@ -17,5 +18,6 @@ pub use dither::dither_word;
 pub use fill::fill;
 pub use flat::Flat;
 pub use gouraud::Gouraud;
+pub use luma::luma;
 pub use pixel::PixelFormat;
 pub use shader::{Fragment, Fragments, Shader, Steps};

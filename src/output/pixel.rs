@@ -1,7 +1,7 @@
 //! The pixel formats.
 
 use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
-use crate::fragment::PixelFormat;
+use crate::fragment::{PixelFormat, luma};
 use core::convert::identity;
 use embedded_graphics_core::pixelcolor::raw::RawU16;
 use embedded_graphics_core::pixelcolor::{
@@ -49,8 +49,8 @@ const fn from_bgr565(raw: u16) -> [u8; 3] {
 
 /// The same from channels in one word.
 #[inline(always)]
-const fn bgr565_from_packed(word: u32, _: u32) -> u16 {
-    bgr565([(word >> 24) as u8, (word >> 2) as u8, (word >> 13) as u8])
+const fn bgr565_from_packed(word: u32, green: u32) -> u16 {
+    (word >> 27 | word >> 16 << 11 | word << 1 & green) as u16
 }
 
 /// A format of 16 bits: its colour, its functions from and to 8 bits a channel and from packed channels, and how the 16 bits
@@ -224,19 +224,31 @@ three_bytes!(
     identity
 );
 
-/// 8-bit grey: luma of the colour, with the weights of BT.601 in 1/256 (77, 150, 29), cut.
+/// 8-bit grey: the [`luma`] of the colour.
 impl PixelFormat for Gray8 {
     type Raw = u8;
     type Color = Gray8;
 
     #[inline(always)]
     fn pack(rgb: [u8; 3]) -> u8 {
-        ((rgb[0] as u32 * 77 + rgb[1] as u32 * 150 + rgb[2] as u32 * 29) >> 8) as u8
+        luma(rgb)
     }
 
     #[inline(always)]
     fn unpack(raw: u8) -> [u8; 3] {
         [raw; 3]
+    }
+
+    #[inline(always)]
+    fn luma(raw: u8) -> u8 {
+        raw
+    }
+
+    const IS_LUMA: bool = true;
+
+    #[inline(always)]
+    fn from_luma(luma: u8) -> u8 {
+        luma
     }
 
     fn from_color(color: Gray8) -> u8 {
@@ -274,6 +286,7 @@ mod tests {
     fn packing_is_the_inverse_of_unpacking() {
         check::<Rgb565>(0..=u16::MAX, Rgb888::from);
         check::<Rgb565Be>(0..=u16::MAX, Rgb888::from);
+        assert_eq!(Bgr565::from_packed(0x89AB_CDEF, green_mask()), Bgr565::pack([0x89, 0x7B, 0x5E]));
         check::<Bgr565>(0..=u16::MAX, Rgb888::from);
         check::<Bgr565Be>(0..=u16::MAX, Rgb888::from);
         check::<Rgb332>(0..=u8::MAX, |color| color);
