@@ -130,12 +130,25 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             if self.find_draw(fingerprint(&state, mesh, mvp, &self.viewport, stride), stride) {
                 self.replay(&state, shader);
             }
-            return;
+        } else {
+            self.assemble(&state, mesh, mvp, shader, stride);
         }
+    }
+
+    /// Records a draw, or draws it directly.
+    #[inline(never)]
+    fn assemble<S: Shader<F::Format>>(
+        &mut self,
+        state: &State,
+        mesh: &Mesh<'_>,
+        mvp: &Projective,
+        shader: &S,
+        stride: usize,
+    ) {
         // 1. Culling of whole meshes.
-        if let Some(transform) = self.begin_draw(&state, mesh, mvp, stride, S::DISPLACES) {
+        if let Some(transform) = self.begin_draw(state, mesh, mvp, stride, S::DISPLACES) {
             let clip = self.clip_rect(&self.band);
-            let mut assembly = Assembly { scene: self, state: &state, mesh, shader, transform: &transform, clip };
+            let mut assembly = Assembly { scene: self, state, mesh, shader, transform: &transform, clip };
             match mesh.data().hierarchy {
                 Some(nodes) if !S::DISPLACES => assembly.parts(nodes, mvp),
                 _ => assembly.triangles(0..mesh.triangle_count()),
@@ -241,6 +254,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 
     /// Draws the recorded triangles of this draw in the current strip.
+    #[inline(never)]
     fn replay<S: Shader<F::Format>>(&mut self, state: &State, shader: &S) {
         let end = self.target.rows.end;
         let clip = self.clip_rect(&self.target.rows);

@@ -4,9 +4,11 @@
 #![allow(dead_code)] // each program uses its part
 
 pub mod formats;
+pub mod horizon;
 pub mod polygons;
 pub mod soup;
 pub mod torus;
+pub mod wires;
 
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Flat, Gouraud, Shader};
@@ -36,6 +38,8 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "cycle", draw: |scene, turn| cycle(scene, turn) },
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
+    SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
+    SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
 ];
 
 /// Dark blue-grey.

@@ -1,6 +1,6 @@
 //! A torus: radii 1 and 0.4, 32 × 16 quads, axis y.
 
-use zstrip::geometry::{Mesh, MeshData, Positions};
+use zstrip::geometry::{Mesh, MeshData, Positions, Topology, edges};
 use zstrip::math::{Angle, Scalar, Vec3};
 
 const AROUND: usize = 32;
@@ -68,6 +68,37 @@ const fn indices() -> [u16; 3 * TRIANGLES] {
     indices
 }
 
+/// The same without diagonals: corners of quads, counter-clockwise.
+const fn quads() -> [u16; 4 * VERTICES] {
+    let mut corners = [0; 4 * VERTICES];
+    let mut quad = 0;
+    while quad < VERTICES {
+        // a, c, b and a, d, c.
+        let k = 6 * quad;
+        let quad_corners = [INDICES[k], INDICES[k + 4], INDICES[k + 1], INDICES[k + 2]];
+        let mut corner = 0;
+        while corner < 4 {
+            corners[4 * quad + corner] = quad_corners[corner];
+            corner += 1;
+        }
+        quad += 1;
+    }
+    corners
+}
+
+const fn find_edges() -> [[u16; 2]; 2 * VERTICES] {
+    let mut found = [[0; 2]; 2 * VERTICES];
+    let mut room = [[0; 2]; 4 * VERTICES];
+    match edges(&QUADS, &mut room) {
+        Ok(edges) => {
+            assert!(edges.len() == found.len(), "each vertex has four edges, each edge two");
+            found.copy_from_slice(edges);
+        }
+        Err(_) => panic!("more edges than sides"),
+    }
+    found
+}
+
 /// Unit normals of the faces, from the vertices' positions.
 const fn face_normals() -> [[i16; 3]; TRIANGLES] {
     let mut normals = [[0; 3]; TRIANGLES];
@@ -115,3 +146,20 @@ pub static MESH: Mesh<'static> = Mesh::constant(MeshData {
         offset: Vec3::ZERO,
     })
 });
+
+const CORNERS: [u16; 4 * VERTICES] = quads();
+
+/// The torus as quads.
+pub static QUADS: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    indices: Some(&CORNERS),
+    normals: Some(&NORMALS),
+    ..MeshData::new(Positions::Quantized {
+        points: &POSITIONS,
+        scale: Scalar::from_bits(SCALE as i32),
+        offset: Vec3::ZERO,
+    })
+});
+
+/// Its edges, each once.
+pub static EDGES: [[u16; 2]; 2 * VERTICES] = find_edges();

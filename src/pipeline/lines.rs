@@ -10,8 +10,8 @@ use super::triangle::Painter;
 use super::{Phase, Scene, State, Stroke, Thin, fingerprint};
 use crate::fragment::Shader;
 use crate::geometry::{
-    Corner, Face, Lines, Mesh, Outcode, Points, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader, View,
-    clip_line, project, weighted,
+    Corner, Face, Lines, Mesh, Outcode, Part, Points, Positions, ScreenVertex, Side, Transform, Varyings, VertexShader,
+    View, clip_line, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot, VERTEX_WORDS};
@@ -28,6 +28,20 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 
     /// Draws lines by other rules, with a stroke of one's choice.
+    ///
+    /// **Lines on a surface.** A line has the depth of its own points; the surface it outlines has that of its pixels' centres,
+    /// up to half a pixel away in x and in y. So push the surface back, by one step and once its slope, and nothing of its
+    /// own hides a line on it, while what lies nearer still does:
+    ///
+    /// ```
+    /// # use zstrip::State;
+    /// # use zstrip::fragment::DepthBias;
+    /// # use zstrip::math::Scalar;
+    /// const SURFACE: State = State { bias: DepthBias { constant: 1, slope: Scalar::ONE }, ..State::DEFAULT };
+    /// ```
+    /// Where surfaces must keep their depths, pull lines forward instead, by a bias of `constant: -1` and more the steeper
+    /// the surface is. For a wireframe with hidden lines removed, draw the surface with
+    /// [`DepthOnly`](crate::fragment::DepthOnly) first.
     pub fn draw_lines_with<S: Shader<F::Format>, K: Stroke>(
         &mut self,
         state: State,
@@ -170,7 +184,8 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
             let place = if slot.is_on_screen() {
                 Some(slot.screen())
             } else if slot.outcode() & !self.state.range.clamped().0 == 0 {
-                project(&self.assembly().transformed(index))
+                let assembly = self.assembly();
+                assembly.transform.project(&assembly.transformed(index))
             } else {
                 None
             };
@@ -197,7 +212,11 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     fn assembly(&mut self) -> Assembly<'_, 'a, F, S> {
         let Self { scene, state, vertices, mvp, shader, clip, transform } = self;
         let view = || View::new(mvp, &scene.viewport);
-        let transform = transform.get_or_insert_with(|| Transform::of(view(), vertices, S::DISPLACES));
+        let transform = transform.get_or_insert_with(|| {
+            let mut transform = Transform::of(view(), vertices, S::DISPLACES);
+            transform.set_depth_scale(state.depth_scale);
+            transform
+        });
         Assembly { scene, state, mesh: vertices, shader, transform, clip: clip.clone() }
     }
 
@@ -237,19 +256,24 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1]);
-        let [i, j] = corners.map(usize::from);
-        let assembly = self.assembly();
-        let (ends, varyings) =
-            ([assembly.transformed(i), assembly.transformed(j)], [assembly.vertex(i), assembly.vertex(j)]);
-        let at_corners = [varyings[0], varyings[1], varyings[1]];
         for part in self.state.range.parts(all) {
-            let Some([a, b]) = clip_line(ends, all, part) else { continue };
-            if let (Some(placed_a), Some(placed_b)) = (project(&a.vertex), project(&b.vertex)) {
-                // What the records would keep of the varyings, as for ends that are not cut.
-                let varyings = |weights| rounded::<S>(&weighted(weights, &at_corners));
-                let ends = [(placed_a, varyings(&a.weights)), (placed_b, varyings(&b.weights))];
+            if let Some(ends) = self.cut(corners, all, part) {
                 self.draw(&ends, corners, number, stroke);
             }
         }
+    }
+
+    /// What is left of a part of a line, on the screen. In a function of its own, so that its ends in clip space have left
+    /// the stack when it is drawn.
+    #[inline(never)]
+    fn cut(&mut self, corners: [u16; 2], codes: Outcode, part: Part) -> Option<[(ScreenVertex, S::Varyings); 2]> {
+        let assembly = self.assembly();
+        let [i, j] = corners.map(usize::from);
+        let [a, b] = clip_line([assembly.transformed(i), assembly.transformed(j)], codes, part)?;
+        let (from, to) = (assembly.transform.project(&a.vertex)?, assembly.transform.project(&b.vertex)?);
+        let (first, last) = (assembly.vertex(i), assembly.vertex(j));
+        // What the records would keep of the varyings, as for ends that are not cut.
+        let at = |weights| rounded::<S>(&weighted(weights, &[first, last, last]));
+        Some([(from, at(&a.weights)), (to, at(&b.weights))])
     }
 }

@@ -145,12 +145,14 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     // Values at the first pixel of the window; if it lies before the one that values are given for, those of the end.
     let before = skipped < along.origin();
     let on = skipped.wrapping_sub(along.origin()) as i32;
-    let z = z.wrapping_add(1 << 15);
+    // With the half that rounds, and the bias.
+    let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
+    let z = z.wrapping_add(bias);
     let mut run = Run { pixels, z, values: moved, pattern: pattern.rotate_right(skipped & 31), face, steps: &steps };
     let mut rest = 0;
     if before {
         rest = run.pixels.shorten(1);
-        run.z = u32::from(a.z) << 16 | 1 << 15;
+        run.z = (u32::from(a.z) << 16).wrapping_add(bias);
         // Moved as the others.
         for (((value, from), moved), start) in
             run.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
@@ -173,6 +175,17 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
         }
         run.pixels.lengthen(rest);
         (run.z, run.values, rest) = (z, moved, 0);
+    }
+}
+
+impl<F, S> Painter<'_, '_, F, S> {
+    /// What is to be added to depths between two, in 16.16, that change by so much from pixel to pixel: the bias, and the half
+    /// that rounds.
+    #[inline]
+    fn bias(&self, [nearest, farthest]: [u16; 2], dz: i32) -> u32 {
+        let bias = self.state.bias;
+        let steps = if bias.is_none() { 0 } else { bias.steps(nearest..farthest, dz, 0) };
+        (steps as u32) << 16 | 1 << 15
     }
 }
 
@@ -420,12 +433,12 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
     let words = painter.shader.prepare(&mut values, &d_dx);
     let steps = Steps { dz_dx: 0, d_dx, words, side: Side::Front };
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
+    let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
     for y in rect.y {
         let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
         let color = painter.target.framebuffer.span(y as u32, column, length);
         let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
-        let z = u32::from(z) << 16 | 1 << 15;
         let span = Fragments { color, depth, z, varyings: values, steps: &steps, position: (rect.x.start, y) };
         match painter.state.depth {
             DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, LessWrite),

@@ -1,6 +1,6 @@
 //! Unit vectors along lines, which have a width.
 
-use crate::math::{mul_high, mul_high_signed, reciprocal};
+use crate::math::{isqrt, mul_high, mul_high_signed, reciprocal};
 
 /// The vector of length 1 in the direction of (x, y); zero for the zero vector.
 ///
@@ -17,8 +17,7 @@ pub(crate) fn unit(x: i32, y: i32) -> (i32, i32) {
     let (x, y) = (x << up, y << up);
     let (a, b) = (x >> 15, y >> 15);
     // 2²⁸..=2³¹; the root is in 2¹⁴..2¹⁶.
-    let root = (a * a).wrapping_add(b * b) as u32;
-    let root = root.isqrt().max(1);
+    let root = isqrt((a * a).wrapping_add(b * b) as u32).max(1);
     let zeros = root.leading_zeros();
     // 2⁴⁶ / root.
     let scale = reciprocal(root << zeros) >> 17_u32.saturating_sub(zeros);

@@ -1,0 +1,73 @@
+//! Lines and points in space: a wireframe with its hidden lines removed, axes, a cloud of points.
+
+use super::{Rgb888, standard_camera, torus, torus_model};
+use zstrip::fragment::{Compare, DepthBias, DepthOnly, DepthState, Flat, Gouraud};
+use zstrip::geometry::{Joined, Lines, MeshData, Points, Positions};
+use zstrip::math::{Angle, Scalar, Vec3};
+use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thick};
+
+/// The edges of the torus.
+pub static TORUS: Lines<'static> = match Lines::of_mesh(&torus::QUADS, &torus::EDGES) {
+    Ok(lines) => lines,
+    Err(_) => panic!("edges of another mesh"),
+};
+
+/// Three axes from the origin, as long as the torus is wide.
+pub static AXES: Lines<'static> = Lines::constant(
+    Joined::Pairs,
+    MeshData {
+        indices: Some(&[0, 1, 2, 3, 4, 5]),
+        colors: Some(&[[90, 20, 20], [255, 60, 60], [20, 90, 20], [60, 255, 60], [30, 40, 110], [80, 120, 255]]),
+        ..MeshData::new(Positions::Exact(&[
+            Vec3::from_milli(-1600, 0, 0),
+            Vec3::from_milli(1600, 0, 0),
+            Vec3::from_milli(0, -1600, 0),
+            Vec3::from_milli(0, 1600, 0),
+            Vec3::from_milli(0, 0, -1600),
+            Vec3::from_milli(0, 0, 1600),
+        ]))
+    },
+);
+
+/// How many points there are.
+const POINTS: usize = 60;
+
+/// A spiral around the torus.
+const fn spiral() -> [Vec3; POINTS] {
+    let mut points = [Vec3::ZERO; POINTS];
+    let mut k = 0;
+    while k < POINTS {
+        let around = Angle((k * 65_536 / POINTS) as u16);
+        let across = Angle((7 * k * 65_536 / POINTS) as u16);
+        let ring = 65_536 + (across.cos().to_bits() as i64 * 3) / 5;
+        let (x, z) = (around.cos().to_bits() as i64 * ring, around.sin().to_bits() as i64 * ring);
+        points[k] = Vec3::from_bits([(x >> 16) as i32, across.sin().to_bits() / 5 * 3, (z >> 16) as i32]);
+        k += 1;
+    }
+    points
+}
+
+/// The points of a spiral around the torus.
+pub static SPIRAL: Points<'static> = Points::constant(MeshData::new(Positions::Exact(&SPIRAL_POINTS)));
+static SPIRAL_POINTS: [Vec3; POINTS] = spiral();
+
+/// Surfaces are pushed back, by a step and by what their depth changes over a pixel, so that lines on them are seen.
+pub const BEHIND_LINES: State = State { bias: DepthBias { constant: 1, slope: Scalar::ONE }, ..State::DEFAULT };
+
+/// Lines that lie behind something.
+const HIDDEN: State = State { depth: DepthState { compare: Compare::Greater, write: false }, ..State::DEFAULT };
+
+/// The torus as a wireframe, with hidden lines removed.
+pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = standard_camera(scene) * torus_model(turn);
+    scene.draw_with(BEHIND_LINES, &torus::MESH, &mvp, &DepthOnly);
+    scene.draw_lines(&TORUS, &mvp, &Flat::unlit(Rgb888::new(150, 220, 255)));
+    scene.draw_lines_with(State::DEFAULT, &AXES, &mvp, &Gouraud::colors_unlit(), &Thick::px(2));
+    scene.draw_lines_with(HIDDEN, &AXES, &mvp, &Gouraud::colors_unlit(), &Dashed::EVEN);
+    let blended = State { depth: DepthState { compare: Compare::Less, write: false }, ..State::DEFAULT };
+    scene.draw_points(State::DEFAULT, &SPIRAL, &mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), 3 << 8);
+    let loop_through = Lines::new(Joined::Loop, MeshData::new(Positions::Exact(&SPIRAL_POINTS)));
+    if let Ok(spiral) = loop_through {
+        scene.draw_lines_with(blended, &spiral, &mvp, &Flat::unlit(Rgb888::new(255, 120, 60)), &Smooth::px(1));
+    }
+}
