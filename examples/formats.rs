@@ -194,8 +194,8 @@ mod sheet {
             ("Gray2, NEAREST", greys::<Gray2>(Dither::NEAREST)),
             ("Gray2, BAYER_8", greys::<Gray2>(Dither::BAYER_8)),
             ("BinaryColor, NEAREST", greys::<BinaryColor>(Dither::NEAREST)),
-            ("BinaryColor, BAYER_4", greys::<BinaryColor>(Dither::BAYER_4)),
             ("BinaryColor, BAYER_8", greys::<BinaryColor>(Dither::BAYER_8)),
+            ("BinaryColor, BRIGHT_8", greys::<BinaryColor>(Dither::BRIGHT_8)),
             ("Gray2, BAYER_4", greys::<Gray2>(Dither::BAYER_4)),
             ("Gray4, BAYER_4", greys::<Gray4>(Dither::BAYER_4)),
         ]
