@@ -8,6 +8,7 @@
 mod assembly;
 mod canvas;
 mod lines;
+mod overlay;
 mod stroke;
 mod triangle;
 
@@ -123,6 +124,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         const {
             assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
             assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
+            assert!(S::ZERO_BITS == 0 || S::Varyings::PERSPECTIVE == 0, "perspective takes all bits of varyings");
             assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
         };
         let stride = S::WORDS + VERTEX_WORDS;

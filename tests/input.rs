@@ -119,6 +119,9 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
     assert_eq!(build((320, 240), 320 * 16, 320 * 9 + 319), Ok(9));
     assert_eq!(build((320, 240), 320 * 7, 320 * 9), Ok(7));
     assert_eq!(build((10, 4), 1000, 1000), Ok(4));
+    // No depth at all is no mistake.
+    assert_eq!(build((320, 240), 320 * 5, 0), Ok(5));
+    assert_eq!(told(build((320, 240), 320 * 5, 1)), RendererError::DepthTooShort(1, 320));
 
     let mut depth = [0; 100];
     let short = FramebufferRenderer::new((320, 240), &mut depth, &mut []);

@@ -1,6 +1,8 @@
 //! What the examples on a desktop share: a picture made of strips, as a PNG file and as a window wants it.
 #![allow(dead_code)] // each program uses its part
 
+pub mod viewer;
+
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;

@@ -3,8 +3,11 @@
 //! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
 #![allow(dead_code)] // each program uses its part
 
+pub mod dashboard;
 pub mod formats;
 pub mod horizon;
+pub mod labels;
+pub mod overlay;
 pub mod polygons;
 pub mod soup;
 pub mod torus;
@@ -40,6 +43,12 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
     SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
+    SceneInfo { name: "overlay", draw: |scene, turn| overlay::draw(scene, turn) },
+    // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
+    #[cfg(not(proof = "all"))]
+    SceneInfo { name: "dashboard", draw: |scene, turn| dashboard::draw(scene, turn) },
+    #[cfg(not(proof = "all"))]
+    SceneInfo { name: "labels", draw: |scene, turn| labels::draw(scene, turn) },
 ];
 
 /// Dark blue-grey.

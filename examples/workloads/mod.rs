@@ -13,7 +13,9 @@
 pub mod reference;
 
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::fragment::{DepthState, DepthTest, Flat, Fragment, Fragments, Gouraud, PixelFormat, Shader};
+use zstrip::fragment::{
+    DepthState, DepthTest, Flat, Fragment, Fragments, Gouraud, PixelFormat, Shader, Textured, Tile,
+};
 use zstrip::geometry::{Corner, Face, Light, Mesh, MeshData, Positions, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::output::{Buffers, Renderer, Stats, StripPixels};
@@ -38,6 +40,8 @@ pub enum Workload {
     Quad,
     /// The same quad, depth test and write, Gouraud colours.
     GouraudQuad,
+    /// A quad tilted by 60°, with a texture of 64 x 64 texels, perspective-correct; depth test and write.
+    TexturedQuad,
     /// A torus of 1,024 triangles, flat.
     FlatTorus,
     /// The same torus, lit at its vertices.
@@ -52,6 +56,7 @@ pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&
         Workload::Empty => frame(buffers, sink, |_| {}),
         Workload::Quad => quad(buffers, sink),
         Workload::GouraudQuad => gouraud_quad(buffers, sink),
+        Workload::TexturedQuad => textured_quad(buffers, sink),
         Workload::FlatTorus => flat_torus(buffers, sink),
         Workload::GouraudTorus => gouraud_torus(buffers, sink),
         Workload::Tiny => tiny(buffers, sink),
@@ -87,6 +92,11 @@ pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
 #[inline(never)]
 pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
     frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::colors_unlit()))
+}
+
+#[inline(never)]
+pub fn textured_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    frame(buffers, sink, |scene| scene.draw(&TILTED, &IN_VIEW, &Textured::new(&TEXTURE)))
 }
 
 #[inline(never)]
@@ -155,7 +165,7 @@ impl<P: PixelFormat> Shader<P> for FaceColors {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
         Shader::<P>::span(&self.0, face, span, test);
     }
 }
@@ -262,6 +272,66 @@ pub static QUAD: Mesh<'static> = Mesh::constant(MeshData {
     colors: Some(&QUAD_COLORS),
     ..MeshData::new(quantities(&QUAD_POINTS, [0.0, 0.0, 2.0], 2.0))
 });
+
+// A quad of 2 x 3, its top turned away by 60°: top left, top right, bottom left, bottom right.
+
+const TILTED_MIDDLE: [f64; 3] = [0.0, 0.0, 2.615];
+pub const TILTED_POSITIONS: [[f64; 3]; 4] = {
+    let (y, z) = (1.5 * 0.5, 1.5 * root(3.0) / 2.0);
+    let [_, _, middle] = TILTED_MIDDLE;
+    [[-1.0, y, middle + z], [1.0, y, middle + z], [-1.0, -y, middle - z], [1.0, -y, middle - z]]
+};
+pub const TILTED_UVS: [[i32; 2]; 4] = [[0, 0], [1, 0], [0, 1], [1, 1]];
+
+const TILTED_POINTS: [[i16; 3]; 4] = {
+    let mut points = [[0; 3]; 4];
+    let mut k = 0;
+    while k < 4 {
+        points[k] = quantized(TILTED_POSITIONS[k], TILTED_MIDDLE, 2.0);
+        k += 1;
+    }
+    points
+};
+
+const TILTED_COORDINATES: [[Scalar; 2]; 4] = {
+    let mut coordinates = [[Scalar::ZERO; 2]; 4];
+    let mut k = 0;
+    while k < 4 {
+        let [u, v] = TILTED_UVS[k];
+        coordinates[k] = [Scalar::from_bits(u << 16), Scalar::from_bits(v << 16)];
+        k += 1;
+    }
+    coordinates
+};
+
+pub static TILTED: Mesh<'static> = Mesh::constant(MeshData {
+    indices: Some(&QUAD_INDICES),
+    uvs: Some(&TILTED_COORDINATES),
+    ..MeshData::new(quantities(&TILTED_POINTS, TILTED_MIDDLE, 2.0))
+});
+
+/// Sides of the texture.
+pub const TEXELS: usize = 64;
+
+/// A chequered gradient with marks in two corners.
+pub static TEXELS_565: [[u16; TEXELS]; TEXELS] = {
+    let mut texels = [[0; TEXELS]; TEXELS];
+    let mut k = 0;
+    while k < TEXELS * TEXELS {
+        let (u, v) = (k % TEXELS, k / TEXELS);
+        let blue = if (u / 8 + v / 8) % 2 == 1 { 255 } else { 40 };
+        let [r, g, b] = match (u / 8, v / 8) {
+            (0, 0) => [255, 0, 0],
+            (7, 0) => [0, 255, 0],
+            _ => [64 + 3 * u, 64 + 3 * v, blue],
+        };
+        texels[v][u] = ((r >> 3) << 11 | (g >> 2) << 5 | b >> 3) as u16;
+        k += 1;
+    }
+    texels
+};
+
+pub static TEXTURE: Tile<'static, TEXELS, TEXELS> = Tile::new(&TEXELS_565);
 
 // The torus: axis y, radii 1 and 0.4, 32 x 16 quads, turned by RX and then RY, three units away.
 

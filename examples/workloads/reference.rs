@@ -25,6 +25,7 @@ pub fn draw(workload: Workload) -> Picture {
         Workload::Empty => {}
         Workload::Quad => picture.quad(|_| super::QUAD_COLOR),
         Workload::GouraudQuad => picture.quad(|k| super::QUAD_COLORS[k]),
+        Workload::TexturedQuad => picture.tilted(),
         Workload::FlatTorus => picture.torus(|triangle, _| super::TORUS_FACE_NORMALS[triangle]),
         Workload::GouraudTorus => picture.torus(|_, vertex| super::TORUS_NORMALS[vertex]),
         Workload::Tiny => picture.tiny(),
@@ -39,6 +40,22 @@ impl Picture {
                 let k = usize::from(corners[c]);
                 Vertex { position: super::QUAD_POSITIONS[k], color: color(k).map(f64::from) }
             }));
+        }
+    }
+
+    /// Texture coordinates take the place of colours until all is drawn.
+    fn tilted(&mut self) {
+        for corners in super::QUAD_INDICES.chunks(3) {
+            self.triangle(&[0, 1, 2].map(|c: usize| {
+                let k = usize::from(corners[c]);
+                let [u, v] = super::TILTED_UVS[k].map(f64::from);
+                Vertex { position: super::TILTED_POSITIONS[k], color: [u, v, 0.0] }
+            }));
+        }
+        for color in self.colors.iter_mut().flatten() {
+            let [x, y] = [color[0], color[1]].map(|c| ((c * super::TEXELS as f64) as usize) % super::TEXELS);
+            let raw = super::TEXELS_565[y][x];
+            *color = [raw >> 11 << 3, (raw >> 5 & 63) << 2, (raw & 31) << 3].map(f64::from);
         }
     }
 

@@ -46,16 +46,40 @@ impl Default for DepthState {
     }
 }
 
+/// Pixels that a span has at most: the widest screen.
+pub const MAX_SPAN: usize = crate::geometry::Viewport::MAX_SIZE as usize;
+
 /// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
 pub trait DepthTest: Copy {
-    /// Whether depth plays a part at all; otherwise neither method is called.
+    /// Whether depth plays a part at all; otherwise neither `passes` nor `write` has to be called.
     const ENABLED: bool;
 
+    /// What there is of a pixel's depth: `u16`, or nothing where depth plays no part, so that the same loops do without a
+    /// depth buffer.
+    type Stored: Copy;
+
+    /// What is stored of as many pixels from `start` on, or of fewer at the end of `depths`. `nothing` is for tests that
+    /// need none.
+    fn stored<'d>(
+        depths: &'d mut [u16],
+        nothing: &'d mut [(); MAX_SPAN],
+        start: usize,
+        length: usize,
+    ) -> &'d mut [Self::Stored];
+
     /// Compares `z` with the stored depth.
-    fn passes(self, z: u16, stored: u16) -> bool;
+    fn passes(self, z: u16, stored: Self::Stored) -> bool;
 
     /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
-    fn write(self, z: u16, stored: &mut u16);
+    fn write(self, z: u16, stored: &mut Self::Stored);
+}
+
+/// Depths from `start` on, `length` of them or as many as there are.
+#[inline(always)]
+fn part(depths: &mut [u16], start: usize, length: usize) -> &mut [u16] {
+    // In two steps, each a comparison; a range is checked at both ends at once, which small cores pay twice for.
+    let depths = depths.get_mut(start..).unwrap_or_default();
+    depths.get_mut(..length).unwrap_or_default()
 }
 
 /// [`DepthState::LESS`].
@@ -64,6 +88,13 @@ pub struct LessWrite;
 
 impl DepthTest for LessWrite {
     const ENABLED: bool = true;
+
+    type Stored = u16;
+
+    #[inline(always)]
+    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
+        part(depths, start, length)
+    }
 
     #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
@@ -83,13 +114,20 @@ pub struct NoDepth;
 impl DepthTest for NoDepth {
     const ENABLED: bool = false;
 
+    type Stored = ();
+
     #[inline(always)]
-    fn passes(self, _: u16, _: u16) -> bool {
+    fn stored<'d>(_: &'d mut [u16], nothing: &'d mut [(); MAX_SPAN], _: usize, length: usize) -> &'d mut [()] {
+        nothing.get_mut(..length).unwrap_or_default()
+    }
+
+    #[inline(always)]
+    fn passes(self, _: u16, (): ()) -> bool {
         true
     }
 
     #[inline(always)]
-    fn write(self, _: u16, _: &mut u16) {}
+    fn write(self, _: u16, (): &mut ()) {}
 }
 
 /// Any other test.
@@ -116,6 +154,13 @@ impl AnyDepth {
 
 impl DepthTest for AnyDepth {
     const ENABLED: bool = true;
+
+    type Stored = u16;
+
+    #[inline(always)]
+    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
+        part(depths, start, length)
+    }
 
     #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {

@@ -50,10 +50,14 @@ pub(super) fn dithered<P: PixelFormat + ?Sized>(rgb: [u8; 3], addends: &[u32; 8]
 }
 
 /// A span of one colour, in a dithered format.
-pub(super) fn dithered_span<P: PixelFormat, D: DepthTest>(rgb: [u8; 3], span: Fragments<'_, P, [i32; 0]>, test: D) {
+pub(super) fn dithered_span<P: PixelFormat, D: DepthTest>(
+    rgb: [u8; 3],
+    span: Fragments<'_, P, [i32; 0], D::Stored>,
+    test: D,
+) {
     let Fragments { color, depth, z, steps, position, .. } = span;
     let [r, g, b] = rgb;
     let varyings = [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)];
-    let steps = &Steps { dz_dx: steps.dz_dx, d_dx: [0; 3], words: [0; 2], side: steps.side };
+    let steps = &Steps::linear(steps.dz_dx, [0; 3], [0; 2], steps.side);
     packed_span::<P, D>(Fragments { color, depth, z, varyings, steps, position }, test);
 }

@@ -84,7 +84,7 @@ impl<P: PixelFormat> Shader<P> for Flat {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0]>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
         if P::DITHER.is_some() {
             return dithered_span(unpacked(face), span, test);
         }

@@ -107,7 +107,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3]>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
         if P::PACKED {
             packed_span(span, test);
         } else if P::IS_LUMA {
@@ -166,7 +166,7 @@ fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
 /// channels are off by at most 1/2, and by 1/16 from the records (1/8 for red): in all, within 1 of 255 before the lower
 /// bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(never)]
-pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3]>, test: D) {
+pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
     let Fragments { color, depth, z, varyings, steps, position } = span;
     let [step, correction] = steps.words;
     let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(spread::<P>(varyings)), step, mask: P::packed_mask() };
@@ -220,7 +220,7 @@ struct Pen {
 impl Pen {
     /// Draws a pixel and steps to the next one.
     #[inline(always)]
-    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, addend: u32, color: &mut P::Raw, depth: &mut u16) {
+    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, addend: u32, color: &mut P::Raw, depth: &mut D::Stored) {
         let z = (self.z >> 16) as u16;
         if !D::ENABLED || test.passes(z, *depth) {
             test.write(z, depth);

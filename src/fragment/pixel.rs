@@ -33,6 +33,13 @@ pub trait PixelFormat {
         Self::pack([luma; 3])
     }
 
+    /// From RGB565.
+    #[inline(always)]
+    fn from_rgb565(raw: u16) -> Self::Raw {
+        let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
+        Self::pack([(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8])
+    }
+
     /// Packs a colour for a pixel of the screen: dithered, if the format dithers.
     #[inline(always)]
     fn pack_at(rgb: [u8; 3], position: (i32, i32)) -> Self::Raw {

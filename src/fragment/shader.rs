@@ -1,7 +1,8 @@
 //! The fragment stage's seam, and the loop over the pixels of a span.
 
+use super::perspective::corrected_fragments;
 use super::{DepthTest, PixelFormat};
-use crate::geometry::{Side, VertexShader};
+use crate::geometry::{Correction, Side, Varyings, VertexShader};
 
 /// A fragment that passed the depth test: what the fragment stage sees of it.
 #[derive(Clone, Copy, Debug)]
@@ -16,18 +17,20 @@ pub struct Fragment<'a, V> {
     pub depth: u16,
     /// Which side of the triangle is seen.
     pub side: Side,
+    /// What [`Shader::level`] made of the triangle.
+    pub level: u32,
 }
 
 /// The pixels of a span and everything that is interpolated along it.
 #[derive(Debug)]
-pub struct Fragments<'a, P: PixelFormat, V> {
+pub struct Fragments<'a, P: PixelFormat, V: Varyings, Z> {
     /// Colours, to be written where the depth test passes.
     pub color: &'a mut [P::Raw],
-    /// Stored depths, as many.
-    pub depth: &'a mut [u16],
+    /// Stored depths, as many ([`DepthTest::Stored`]).
+    pub depth: &'a mut [Z],
     /// Depth at the first pixel, 16.16, with the half that rounds it already added.
     pub z: u32,
-    /// Varyings at the first pixel.
+    /// Varyings at the first pixel; perspective-correct ones as what is linear on the screen, for [`Corrected`](super::Corrected).
     pub varyings: V,
     /// How depth and varyings change.
     pub steps: &'a Steps<V>,
@@ -37,23 +40,48 @@ pub struct Fragments<'a, P: PixelFormat, V> {
 
 /// What all spans of a triangle share.
 #[derive(Clone, Copy, Debug)]
-pub struct Steps<V> {
+pub struct Steps<V: Varyings> {
     /// Change of depth a pixel, modulo 2³².
     pub dz_dx: i32,
     /// Change of the varyings a pixel, modulo 2³².
     pub d_dx: V,
+    /// What to make of perspective-correct ones.
+    pub correction: V::Correction,
     /// What [`Shader::prepare`] made of them.
     pub words: [u32; 2],
     /// Which side of the triangle is seen.
     pub side: Side,
+    /// What [`Shader::level`] made of it.
+    pub level: u32,
+}
+
+impl<V: Varyings> Steps<V> {
+    /// Of something that is linear on the screen.
+    #[inline]
+    pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 2], side: Side) -> Self {
+        Self { dz_dx, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
+    }
 }
 
 /// The programmable fragment stage: colours pixels of format `P`.
 ///
 /// A shader is compiled into the pixel loop; nothing is called indirectly.
 pub trait Shader<P: PixelFormat>: VertexShader {
+    /// For how many pixels perspective-correct varyings are taken as linear: 1 divides at each pixel; 4, 8, 16 or 32 at
+    /// every so many of them and at both ends of a span, which is faster, and off by little: see
+    /// [`Perspective`](crate::geometry::Perspective).
+    const STEP: usize = 1;
+
     /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
+
+    /// A word for the fragments of a triangle, from the varyings at its vertices and twice its area in 2⁻¹⁶ px²: a level of
+    /// detail.
+    #[inline(always)]
+    fn level(&self, corners: &[Self::Varyings; 3], area: u64) -> u32 {
+        let _ = (corners, area);
+        0
+    }
 
     /// Whatever of the span loop's work can be done once a triangle: called before its spans with the varyings at one of
     /// its pixels, which may be moved (all of its spans will be), and with their changes a pixel. Yields words for the
@@ -66,7 +94,7 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings, D::Stored>, test: D) {
         fragments(self, face, span, test);
     }
 }
@@ -76,15 +104,19 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    span: Fragments<'_, P, S::Varyings>,
+    span: Fragments<'_, P, S::Varyings, D::Stored>,
     test: D,
 ) {
+    if S::Varyings::PERSPECTIVE > 0 {
+        return corrected_fragments(shader, face, span, test);
+    }
     let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
-    let side = steps.side;
+    let (side, level) = (steps.side, steps.level);
     for (color, stored) in color.iter_mut().zip(depth) {
         let depth = (z >> 16) as u16;
         if !D::ENABLED || test.passes(depth, *stored) {
-            if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side }) {
+            if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side, level })
+            {
                 test.write(depth, stored);
                 *color = value;
             }

@@ -10,6 +10,7 @@ mod lines;
 mod mesh;
 mod project;
 mod transform;
+mod varyings;
 mod vertex;
 mod viewport;
 
@@ -22,7 +23,8 @@ pub use light::{Light, Lit, NORMAL_ONE};
 pub use lines::{Joined, Lines, Points};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub(crate) use project::small;
-pub use project::{DepthScale, ScreenVertex, project, signed_area};
+pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
 pub use transform::{Placed, Transform, View, place};
-pub use vertex::{Corner, Face, Side, Varyings, VertexShader};
+pub use varyings::{Correction, InverseW, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
+pub use vertex::{Corner, Face, Side, VertexShader};
 pub use viewport::{Viewport, ViewportError};

@@ -2,6 +2,7 @@
 
 use super::clip::ClipVertex;
 use crate::math::{Scalar, mul_high, mul_high_signed, reciprocal};
+use embedded_graphics_core::geometry::Point;
 
 /// A vertex on the screen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -18,6 +19,11 @@ impl ScreenVertex {
     /// From raw 24.8 coordinates and depth.
     pub const fn new(x: i32, y: i32, z: u16) -> Self {
         Self { x, y, z }
+    }
+
+    /// The pixel it is in.
+    pub const fn pixel(&self) -> Point {
+        Point::new(self.x >> 8, self.y >> 8)
     }
 }
 
@@ -65,6 +71,20 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     let depth = |c: i64| (((c << (shift - 1)) as u64) >> 31) as u32;
     let placed = divide(position(v.x), position(v.y), depth(v.z.clamp(0, v.w)), depth(v.w));
     Some(ScreenVertex { x: placed.x.clamp(-LIMIT, LIMIT), y: placed.y.clamp(-LIMIT, LIMIT), ..placed })
+}
+
+/// 1 / w of a vertex, on a scale that all vertices of a draw share; 0 unless w > 0.
+///
+/// # Format
+/// Mantissa · 2^exponent: the exponent in the lower 6 bits, the mantissa, with its top bit set, in the 26 above them;
+/// relative error below 2⁻²⁵.
+#[inline]
+pub fn inverse_w(v: &ClipVertex) -> u32 {
+    if v.w <= 0 {
+        return 0;
+    }
+    let exponent = v.w.leading_zeros();
+    reciprocal(((v.w << (exponent - 1)) >> 31) as u32) & !63 | exponent
 }
 
 /// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.

@@ -1,23 +1,7 @@
 //! The vertex stage's seam: what a shader sees of a vertex or a face, and what it hands on.
 
-use super::{Mesh, Positions};
+use super::{Mesh, Positions, Varyings};
 use crate::math::{Vec3, isqrt, mul_high_signed, reciprocal};
-
-/// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes.
-///
-/// Interpolation is linear in screen space, for values that differ by less than 2³¹ over the triangle. Each is within 2¹³
-/// of its exact value (and 2 for each pixel of a small triangle), so give what has to be smooth some 16 fractional bits.
-pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
-    /// How many.
-    const LEN: usize;
-    /// All zero.
-    const ZERO: Self;
-}
-
-impl<const N: usize> Varyings for [i32; N] {
-    const LEN: usize = N;
-    const ZERO: Self = [0; N];
-}
 
 /// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
 /// white (colours).

@@ -20,6 +20,7 @@ pub use format::{Scalar, Wide};
 pub use micromath::FloatError;
 pub use precision::{DepthPrecision, PrecisionError};
 pub use projective::{ProjectionError, Projective};
-pub use reciprocal::{mul_high, mul_high_signed, reciprocal};
+pub(crate) use reciprocal::SMALL_CORE;
+pub use reciprocal::{CoarseDivisor, Divisor, mul_high, mul_high_signed, reciprocal};
 pub use root::isqrt;
 pub use vector::Vec3;

@@ -2,18 +2,18 @@
 
 /// Whether the core multiplies 32 × 32 bits to 32 only, so that a wide product is best put together by hand: Armv6-M,
 /// recognized by its lack of compare-and-swap. (`__aeabi_lmul` takes three times as long.)
-const NARROW: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
+pub(crate) const SMALL_CORE: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
 /// High word of a 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high(a: u32, b: u32) -> u32 {
-    if NARROW { mul_high_by_halves(a, b) } else { ((a as u64 * b as u64) >> 32) as u32 }
+    if SMALL_CORE { mul_high_by_halves(a, b) } else { ((a as u64 * b as u64) >> 32) as u32 }
 }
 
 /// High word of a signed by unsigned 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
-    if NARROW { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
+    if SMALL_CORE { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
 }
 
 /// [`mul_high`] from [`mul_high_signed`], which takes `a` for a - 2³² when its top bit is set: b is missing then.
@@ -76,9 +76,123 @@ pub const fn reciprocal(x: u32) -> u32 {
     if r2 < 1 << 30 { u32::MAX } else { r2 }
 }
 
+/// A number to divide others by: a reciprocal of 16 bits, and what is wrong with it.
+///
+/// Cheaper than [`reciprocal`] where products of 32 × 32 bits are not at hand.
+#[derive(Clone, Copy, Debug)]
+pub struct Divisor {
+    /// Brings the divisor to 2³¹..2³².
+    shift: u32,
+    /// 2⁴⁷ / x of the divisor x there, within 2⁻¹⁴·⁹: in 2¹⁵..=2¹⁶, and a little.
+    reciprocal: i32,
+    /// 2³¹ - x `reciprocal` / 2¹⁶: below 2¹⁶·¹.
+    defect: i32,
+}
+
+impl Divisor {
+    /// Of a number, which is not 0.
+    #[inline(always)]
+    pub fn new(q: u32) -> Self {
+        let shift = q.leading_zeros() & 31;
+        let x = q << shift;
+        let r0 = SEED[(x >> 23) as usize & 0xFF] as i32;
+        // The first step of `reciprocal`, rounded to 16 bits.
+        let x16 = (x >> 16) + ((x >> 15) & 1);
+        let defect = (1_i32 << 31).wrapping_sub((x16 as i32).wrapping_mul(r0));
+        let r = r0 + ((r0 * (defect >> 8) + (1 << 22)) >> 23);
+        let product = (x >> 16).wrapping_mul(r as u32).wrapping_add((x & 0xFFFF).wrapping_mul(r as u32) >> 16);
+        Self { shift, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(product as i32) }
+    }
+
+    /// `n` / q as 1.31.
+    ///
+    /// # Format
+    /// |n| ≤ q / 2. Off by less than 6 units: twice the second of two steps' 2⁻²⁹·⁸, and bits cut.
+    #[inline(always)]
+    pub fn divide(&self, n: i32) -> i32 {
+        self.divide_shifted(n << self.shift)
+    }
+
+    /// The same for an `n` that has been shifted already by as much as the divisor lacks to 2³¹.
+    #[inline(always)]
+    pub fn divide_shifted(&self, n: i32) -> i32 {
+        let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
+        let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+        h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 15)
+    }
+}
+
+/// Out of line, for cores that cannot count them.
+#[cold]
+#[inline(never)]
+fn leading_zeros(q: u32) -> u32 {
+    q.leading_zeros()
+}
+
+/// [`Divisor`], with what the table knows for a reciprocal.
+#[derive(Clone, Copy, Debug)]
+pub struct CoarseDivisor {
+    shift: u32,
+    /// 2⁴⁷ / x within 2⁻⁹.
+    reciprocal: i32,
+    /// 2²⁵ - x `reciprocal` / 2²²: below 2¹⁶·¹.
+    defect: i32,
+}
+
+impl CoarseDivisor {
+    /// Of a number, which is not 0. `shift` is likely to be the number of its leading zeros, and becomes that.
+    #[inline(always)]
+    pub fn near(q: u32, shift: &mut u32) -> Self {
+        let mut x = q << (*shift & 31);
+        if x >> (*shift & 31) != q || x >> 31 == 0 {
+            *shift = leading_zeros(q);
+            x = q << (*shift & 31);
+        }
+        let r = SEED[(x >> 23) as usize & 0xFF] as u32;
+        let product = (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16);
+        Self { shift: *shift & 31, reciprocal: r as i32, defect: (1_i32 << 31).wrapping_sub(product as i32) >> 6 }
+    }
+
+    /// `n` / q as 1.31.
+    ///
+    /// # Format
+    /// |n| ≤ q / 2. Off by less than 2⁻¹⁸ of the quotient, the square of the table's error, and 192 units for bits cut.
+    #[inline(always)]
+    pub fn divide(&self, n: i32) -> i32 {
+        let n = n << self.shift;
+        let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
+        let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+        h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 9)
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn divisors_are_within_their_bounds() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 15
+        };
+        let (mut worst, mut worst_coarse) = (0_f64, 0_f64);
+        let boundaries = (0..1 << 17).map(|k| (1 << 31) + (k << 14)).chain((0..1 << 16).map(|k| u32::MAX - (k << 15)));
+        for x in boundaries.flat_map(|x: u32| [x, x.wrapping_sub(1) | 1 << 31, x >> 7, x >> 20]) {
+            for n in [x / 2, random() % (x / 2 + 1)] {
+                for n in [n as i32, -(n as i32)] {
+                    let exact = f64::from(n) / f64::from(x) * 2f64.powi(31);
+                    worst = worst.max((f64::from(Divisor::new(x).divide(n)) - exact).abs());
+                    let coarse = CoarseDivisor::near(x, &mut (random() % 32)).divide(n);
+                    worst_coarse = worst_coarse.max((f64::from(coarse) - exact).abs() - exact.abs() / 262_144.0);
+                }
+            }
+        }
+        std::println!("worst {worst:.2} units; coarse: {worst_coarse:.2} beside 2^-18");
+        assert!(worst < 6.0, "worst {worst} units");
+        assert!(worst_coarse < 192.0, "worst {worst_coarse} units beside 2^-18 of the quotient");
+    }
 
     /// Worst relative error over `count` inputs from a multiplicative walk, against exact division.
     fn worst(inputs: impl Iterator<Item = u32>) -> f64 {

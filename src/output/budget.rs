@@ -30,6 +30,11 @@ impl RamBudget {
         Self { color: pixels * size_of::<P::Raw>(), depth: pixels * 2, records: 0, rows }
     }
 
+    /// Without a depth buffer: for what is drawn in the painter's order, and for 2-D drawing.
+    pub const fn without_depth(self) -> Self {
+        Self { depth: 0, ..self }
+    }
+
     /// With room for the records of a scene; see [`records_len`](super::records_len).
     pub const fn with_records(
         self,

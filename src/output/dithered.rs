@@ -57,6 +57,11 @@ impl<P: Ditherable> PixelFormat for Dithered<P> {
         P::unpack(raw)
     }
 
+    #[inline(always)]
+    fn from_rgb565(raw: u16) -> P::Raw {
+        P::from_rgb565(raw)
+    }
+
     const DITHER: Option<[u32; 3]> = Some(P::BITS);
 
     #[inline(always)]

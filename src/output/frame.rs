@@ -16,7 +16,7 @@ use embedded_graphics_core::primitives::Rectangle;
 pub struct Buffers<'b, P: PixelFormat> {
     /// Colours of a strip: as many whole rows as fit make its height, which `depth` limits as well.
     pub color: &'b mut [P::Raw],
-    /// Depths of a strip.
+    /// Depths of a strip. May be empty: then there is no depth, and every depth test passes.
     pub depth: &'b mut [u16],
     /// Records; may be empty. See [`records_len`](super::records_len).
     pub records: &'b mut [u32],
@@ -31,7 +31,7 @@ pub enum RendererError {
     Screen(ViewportError),
     /// The colour buffer does not hold one row: how many pixels it has, and how many a row has.
     ColorTooShort(usize, u16),
-    /// The depth buffer does not hold one row: how many pixels it has, and how many a row has.
+    /// The depth buffer is not empty, but does not hold one row: how many pixels it has, and how many a row has.
     DepthTooShort(usize, u16),
 }
 
@@ -138,8 +138,12 @@ impl<'b> Engine<'b> {
         records: &'b mut [u32],
     ) -> Result<Self, RendererError> {
         let viewport = Viewport::full(screen.0, screen.1).map_err(RendererError::Screen)?;
-        let Some(depth_rows) = depth.len().checked_div(usize::from(screen.0)).filter(|rows| *rows > 0) else {
-            return Err(RendererError::DepthTooShort(depth.len(), screen.0));
+        let depth_rows = match depth.len() {
+            0 => usize::MAX,
+            length => match length.checked_div(usize::from(screen.0)) {
+                None | Some(0) => return Err(RendererError::DepthTooShort(length, screen.0)),
+                Some(rows) => rows,
+            },
         };
         let strip_rows = rows.min(depth_rows).min(usize::from(screen.1)) as u16;
         Ok(Self { grid: Grid { viewport, strips: StripRows::new(strip_rows) }, depth, records })
@@ -283,6 +287,11 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         Ok(Self { engine: Engine::new(screen, rows, depth, records)?, color })
     }
 
+    /// Width and height of the screen.
+    pub fn screen(&self) -> (u16, u16) {
+        self.engine.grid.screen()
+    }
+
     /// Rows of a strip; the last one may have fewer.
     pub const fn strip_rows(&self) -> u16 {
         self.engine.grid.strips.rows
@@ -300,7 +309,22 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         background: P::Color,
         draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
     ) -> Result<Stats, FrameError<D::Error>> {
-        self.frame_to(OnDisplay(display), background, draw)
+        self.frame_to(OnDisplay::new(display), background, draw)
+    }
+
+    /// Draws a frame on a part of an embedded-graphics display, as large as the renderer's screen and with its corner at
+    /// `top_left`; the rest of the display is left to others. See also [`FrameView`](super::FrameView).
+    ///
+    /// # Errors
+    /// As [`frame`](Self::frame).
+    pub fn frame_at<D: DrawTarget<Color = P::Color>>(
+        &mut self,
+        display: &mut D,
+        top_left: Point,
+        background: P::Color,
+        draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    ) -> Result<Stats, FrameError<D::Error>> {
+        self.frame_to(OnDisplay::at(display, top_left), background, draw)
     }
 
     /// Draws a frame, each finished strip going to a sink.
@@ -407,7 +431,7 @@ fn strip_into<'c, P: PixelFormat>(
     Ok(Some(StripPixels::new(area, color)))
 }
 
-/// Draws frames straight into a framebuffer, with a depth buffer as high as the screen or only a strip of it.
+/// Draws frames straight into a framebuffer, with a depth buffer as high as the screen, or only a strip of it, or none.
 #[derive(Debug)]
 pub struct FramebufferRenderer<'b> {
     engine: Engine<'b>,
@@ -417,7 +441,7 @@ impl<'b> FramebufferRenderer<'b> {
     /// For a screen of `(width, height)` pixels; as many rows as `depth` holds are drawn at a time.
     ///
     /// # Errors
-    /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or `depth` does not hold one row.
+    /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or `depth` is not empty and does not hold one row.
     pub fn new(screen: (u16, u16), depth: &'b mut [u16], records: &'b mut [u32]) -> Result<Self, RendererError> {
         Ok(Self { engine: Engine::new(screen, usize::MAX, depth, records)? })
     }

@@ -53,10 +53,16 @@ const fn bgr565_from_packed(word: u32, green: u32) -> u16 {
     (word >> 27 | word >> 16 << 11 | word << 1 & green) as u16
 }
 
-/// A format of 16 bits: its colour, its functions from and to 8 bits a channel and from packed channels, and how the 16 bits
+/// BGR565 from RGB565.
+#[inline(always)]
+const fn exchanged(raw: u16) -> u16 {
+    raw >> 11 | raw & 0x7E0 | raw << 11
+}
+
+/// A format of 16 bits: its colour, its functions from and to 8 bits a channel, from packed channels and from RGB565, and how the 16 bits
 /// come into memory, and back.
 macro_rules! sixteen_bits {
-    ($(#[$doc:meta])* $format:ty, $color:ty, ($pack:path, $unpack:path, $packed:path), $store:path, $load:path) => {
+    ($(#[$doc:meta])* $format:ty, $color:ty, ($pack:path, $unpack:path, $packed:path, $rgb:path), $store:path, $load:path) => {
         $(#[$doc])*
         impl PixelFormat for $format {
             type Raw = u16;
@@ -70,6 +76,11 @@ macro_rules! sixteen_bits {
             #[inline(always)]
             fn unpack(raw: u16) -> [u8; 3] {
                 $unpack($load(raw))
+            }
+
+            #[inline(always)]
+            fn from_rgb565(raw: u16) -> u16 {
+                $store($rgb(raw))
             }
 
             const PACKED: bool = true;
@@ -104,7 +115,7 @@ sixteen_bits!(
     /// 16-bit pixels in the processor's byte order.
     Rgb565,
     Rgb565,
-    (rgb565, from_rgb565, rgb565_from_packed),
+    (rgb565, from_rgb565, rgb565_from_packed, identity),
     identity,
     identity
 );
@@ -112,7 +123,7 @@ sixteen_bits!(
     /// 16-bit pixels with blue on top, in the processor's byte order.
     Bgr565,
     Bgr565,
-    (bgr565, from_bgr565, bgr565_from_packed),
+    (bgr565, from_bgr565, bgr565_from_packed, exchanged),
     identity,
     identity
 );
@@ -122,13 +133,13 @@ sixteen_bits!(
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb565Be;
 
-sixteen_bits!(Rgb565Be, Rgb565, (rgb565, from_rgb565, rgb565_from_packed), u16::to_be, u16::from_be);
+sixteen_bits!(Rgb565Be, Rgb565, (rgb565, from_rgb565, rgb565_from_packed, identity), u16::to_be, u16::from_be);
 
 /// BGR565 with the high byte first in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Bgr565Be;
 
-sixteen_bits!(Bgr565Be, Bgr565, (bgr565, from_bgr565, bgr565_from_packed), u16::to_be, u16::from_be);
+sixteen_bits!(Bgr565Be, Bgr565, (bgr565, from_bgr565, bgr565_from_packed, exchanged), u16::to_be, u16::from_be);
 
 /// 8-bit pixels: 3 bits of red, 3 of green, 2 of blue, as displays with 256 colours take them. embedded-graphics has no such
 /// colour: [`Rgb888`] stands in.
@@ -271,6 +282,9 @@ mod tests {
     ) {
         assert_eq!(P::unpack(P::pack([255; 3])), [255; 3]);
         assert_eq!(P::unpack(P::pack([0; 3])), [0; 3]);
+        for raw in [0x1234, 0xFEDC, 0x07E0, 0x801F, 0xF801] {
+            assert_eq!(P::from_rgb565(raw), P::pack(from_rgb565(raw)));
+        }
         for raw in raws {
             assert_eq!(P::pack(P::unpack(raw)), raw);
             assert_eq!(P::from_color(P::to_color(raw)), raw);

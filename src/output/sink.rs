@@ -2,6 +2,7 @@
 
 use crate::fragment::PixelFormat;
 use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::geometry::Point;
 use embedded_graphics_core::primitives::Rectangle;
 
 /// A finished strip: whole rows of the screen, from left to right and from top to bottom.
@@ -60,12 +61,29 @@ impl<P: PixelFormat, E, F: FnMut(&StripPixels<'_, P>) -> Result<(), E>> StripSin
 
 /// Any embedded-graphics display as a sink: strips arrive through `fill_contiguous`.
 #[derive(Debug)]
-pub struct OnDisplay<'d, D>(pub &'d mut D);
+pub struct OnDisplay<'d, D> {
+    display: &'d mut D,
+    top_left: Point,
+}
+
+impl<'d, D> OnDisplay<'d, D> {
+    /// From the display's own corner on.
+    pub const fn new(display: &'d mut D) -> Self {
+        Self::at(display, Point::zero())
+    }
+
+    /// As a rectangle of the display with its corner at `top_left`; what is off the display is the display's to leave out.
+    pub const fn at(display: &'d mut D, top_left: Point) -> Self {
+        Self { display, top_left }
+    }
+}
 
 impl<P: PixelFormat, D: DrawTarget<Color = P::Color>> StripSink<P> for OnDisplay<'_, D> {
     type Error = D::Error;
 
     fn strip(&mut self, strip: &StripPixels<'_, P>) -> Result<(), D::Error> {
-        self.0.fill_contiguous(&strip.area, strip.colors())
+        let Rectangle { top_left: Point { x, y }, size } = strip.area;
+        let corner = Point::new(self.top_left.x.saturating_add(x), self.top_left.y.saturating_add(y));
+        self.display.fill_contiguous(&Rectangle::new(corner, size), strip.colors())
     }
 }

@@ -3,8 +3,8 @@
 use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
-    BoundsNode, ClipVertex, Corner, Face, Mesh, Outcode, Part, Placed, ScreenVertex, Side, Transform, Varyings,
-    VertexShader, View, clip_triangle, signed_area, weighted,
+    BoundsNode, ClipVertex, Corner, Correction, Face, InverseW, Mesh, Outcode, Part, Placed, ScreenVertex, Side,
+    Transform, Varyings, VertexShader, View, clip_triangle, inverse_w, signed_area, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -14,6 +14,9 @@ use core::ops::Range;
 
 /// The corners of a clipped polygon on the screen, with their weights.
 type Fan = heapless::Vec<(ScreenVertex, [i32; 3]), 10>;
+
+/// 1 / w at these corners, if varyings take it.
+type InverseWs<S> = <<<S as VertexShader>::Varyings as Varyings>::Correction as Correction>::Corners;
 
 /// One draw.
 pub(super) struct Assembly<'s, 'a, F, S> {
@@ -120,31 +123,39 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1] | codes[2]);
         for part in self.state.range.parts(all) {
-            let mut fan = Fan::new();
-            self.cut(corners, all, part, &mut fan);
-            self.fan(&fan, corners, number);
+            let (mut fan, mut inverse_ws) = (Fan::new(), InverseWs::<S>::default());
+            self.cut(corners, all, part, &mut fan, &mut inverse_ws);
+            self.fan(&fan, &inverse_ws, corners, number);
         }
     }
 
     /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
     /// has left the stack when it is drawn.
     #[inline(never)]
-    fn cut(&self, [i, j, k]: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan) {
+    fn cut(&self, [i, j, k]: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan, inverse_ws: &mut InverseWs<S>) {
         let vertex = |index: u16| self.transformed(usize::from(index));
         clip_triangle([vertex(i), vertex(j), vertex(k)], codes, part, |corner| {
             if let Some(placed) = self.transform.project(&corner.vertex) {
                 // There are no more corners than places.
                 let _ = fan.push((placed, corner.weights));
+                inverse_ws.push(|| inverse_w(&corner.vertex));
             }
         });
     }
 
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
-    fn fan(&mut self, fan: &Fan, corners: [u16; 3], number: usize) {
+    fn fan(&mut self, fan: &Fan, inverse_ws: &InverseWs<S>, corners: [u16; 3], number: usize) {
         let [i, j, k] = corners;
         let vertex = |index: u16| self.vertex(usize::from(index));
         let varyings = [vertex(i), vertex(j), vertex(k)];
+        let at = |k: usize, weights: &[i32; 3]| {
+            let mut varyings: S::Varyings = weighted(weights, &varyings);
+            if S::Varyings::PERSPECTIVE > 0 {
+                varyings.set_inverse_w(inverse_ws.get(k));
+            }
+            varyings
+        };
         let recording = self.scene.phase == Phase::Record;
         let mut indices = [0; 2];
         for (k, (placed, weights)) in fan.iter().enumerate() {
@@ -152,7 +163,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if recording {
                 index = self.scene.records.push_vertex();
                 let slot = Slot::new(&Placed::Screen(*placed));
-                self.scene.records.keep::<S>(usize::from(index), slot, &weighted(weights, &varyings));
+                self.scene.records.keep::<S>(usize::from(index), slot, &at(k, weights));
             }
             if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k.wrapping_sub(1))) {
                 let v = [first.0, last.0, *placed];
@@ -162,8 +173,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                         self.record(row, [indices[0], indices[1], index], word);
                     } else {
                         // What the records would keep of the varyings, so that the picture is the same without them.
-                        let at = |weights| rounded::<S>(&weighted(weights, &varyings));
-                        self.draw(&v, &[at(&first.1), at(&last.1), at(weights)], word);
+                        let at = |k, weights| rounded::<S>(&at(k, weights));
+                        self.draw(&v, &[at(0, &first.1), at(k - 1, &last.1), at(k, weights)], word);
                     }
                 }
             }
@@ -171,10 +182,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// The varyings of a vertex.
+    /// The varyings of a vertex, with 1 / w if they take it.
     #[inline]
     pub(super) fn vertex(&self, index: usize) -> S::Varyings {
-        self.shader.vertex(&Corner::new(self.mesh, index))
+        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+        if S::Varyings::PERSPECTIVE > 0 {
+            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
+        }
+        varyings
     }
 
     /// A triangle that needs no clipping.

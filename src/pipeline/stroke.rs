@@ -2,7 +2,8 @@
 
 use super::triangle::Painter;
 use crate::fragment::{
-    AnyDepth, Compare, DepthState, DepthTest, Fragment, Fragments, LessWrite, PixelFormat, Shader, Steps,
+    AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, MAX_SPAN, NoDepth,
+    PixelFormat, Shader, Steps,
 };
 use crate::geometry::{Corner, Face, ScreenVertex, Side, Varyings, VertexShader};
 use crate::output::Framebuffer;
@@ -141,7 +142,7 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     }
     let mut moved = values;
     let words = painter.shader.prepare(&mut moved, &d_dx);
-    let steps = Steps { dz_dx: dz, d_dx, words, side: Side::Front };
+    let steps = Steps::linear(dz, d_dx, words, Side::Front);
     // Values at the first pixel of the window; if it lies before the one that values are given for, those of the end.
     let before = skipped < along.origin();
     let on = skipped.wrapping_sub(along.origin()) as i32;
@@ -166,7 +167,7 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
         }
     }
     loop {
-        match painter.state.depth {
+        match painter.test() {
             DepthState { compare: Compare::Less, write: true } => run.draw::<F, S, _, DASHED>(painter, LessWrite),
             other => run.draw::<F, S, _, DASHED>(painter, AnyDepth::new(other)),
         }
@@ -190,7 +191,7 @@ impl<F, S> Painter<'_, '_, F, S> {
 }
 
 /// Pixels of a line, and what is interpolated over them.
-struct Run<'r, V> {
+struct Run<'r, V: Varyings> {
     pixels: LinePixels,
     z: u32,
     values: V,
@@ -202,7 +203,7 @@ struct Run<'r, V> {
 impl<V: Varyings> Run<'_, V> {
     /// Draws all of its pixels, each as a span of its own.
     #[inline(always)]
-    fn draw<F: Framebuffer, S: Shader<F::Format, Varyings = V>, D: DepthTest, const DASHED: bool>(
+    fn draw<F: Framebuffer, S: Shader<F::Format, Varyings = V>, D: DepthTest<Stored = u16>, const DASHED: bool>(
         &mut self,
         painter: &mut Painter<'_, '_, F, S>,
         test: D,
@@ -213,7 +214,10 @@ impl<V: Varyings> Run<'_, V> {
             if !DASHED || *pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
                 let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
-                if let ([color], Some(depth)) = (color, painter.target.depth.get_mut(at)) {
+                // Without a depth buffer, the test is one that passes.
+                let mut nowhere = 0;
+                let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
+                if let [color] = color {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
                     let span = Fragments { color, depth, z: *z, varyings: *values, steps, position: (x, y) };
                     painter.shader.span(*face, span, test);
@@ -368,12 +372,16 @@ impl<S: VertexShader> VertexShader for Covered<'_, S> {
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
+    }
+
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
         self.shader.fragment(fragment)
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings, D::Stored>, test: D) {
         let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
         let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
         let (x, y) = (position.0 - origin.0, position.1 - origin.1);
@@ -381,14 +389,19 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
             base.wrapping_add(step.0.wrapping_mul(x)).wrapping_add(step.1.wrapping_mul(y))
         };
         let (mut distance, mut way) = (at(self.coverage.distance, distance_step), at(self.coverage.way, way_step));
-        let side = steps.side;
+        let (side, level) = (steps.side, steps.level);
+        let mut corrected = (S::Varyings::PERSPECTIVE > 0).then(|| Corrected::new(varyings, steps, position));
         for (color, stored) in color.iter_mut().zip(depth) {
+            if let Some(corrected) = &mut corrected {
+                varyings = corrected.varyings();
+                corrected.advance(1);
+            }
             // Overlaps as 1.8.
             let across = outer.wrapping_sub(distance.wrapping_abs()).min(most) >> 12;
             let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
             let depth = (z >> 16) as u16;
             if across > 0 && along > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
-                let fragment = Fragment { face, varyings: &varyings, position, depth, side };
+                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
                 if let Some(value) = self.shader.fragment(&fragment) {
                     test.write(depth, stored);
                     *color = mix::<P>(*color, value, (across * along) >> 8);
@@ -431,16 +444,23 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
     }
     let (mut values, d_dx) = (*varyings, S::Varyings::ZERO);
     let words = painter.shader.prepare(&mut values, &d_dx);
-    let steps = Steps { dz_dx: 0, d_dx, words, side: Side::Front };
+    let steps = Steps::linear(0, d_dx, words, Side::Front);
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
     let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
+    let (test, mut nothing) = (painter.test(), [(); MAX_SPAN]);
     for y in rect.y {
         let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
         let color = painter.target.framebuffer.span(y as u32, column, length);
+        let (varyings, steps, position) = (values, &steps, (rect.x.start, y));
+        if test == DepthState::OFF {
+            let depth = nothing.get_mut(..color.len()).unwrap_or_default();
+            painter.shader.span(face, Fragments { color, depth, z, varyings, steps, position }, NoDepth);
+            continue;
+        }
         let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
-        let span = Fragments { color, depth, z, varyings: values, steps: &steps, position: (rect.x.start, y) };
-        match painter.state.depth {
+        let span = Fragments { color, depth, z, varyings, steps, position };
+        match test {
             DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, LessWrite),
             other => painter.shader.span(face, span, AnyDepth::new(other)),
         }

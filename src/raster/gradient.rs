@@ -11,7 +11,7 @@
 //! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
-use crate::geometry::{ScreenVertex, small};
+use crate::geometry::{ScreenVertex, WidePlane, small};
 use crate::math::mul_high_signed;
 
 /// What all plane equations of a triangle share.
@@ -170,6 +170,28 @@ impl Gradients {
     }
 }
 
+impl Gradients {
+    /// The plane through the values at the three vertices with 32 fractional bits, modulo 2⁶⁴, by long division; each of its
+    /// three numbers is rounded down.
+    #[inline(never)]
+    pub fn plane_wide(&self, values: [i32; 3]) -> WidePlane {
+        let [v0, v1, v2] = values.map(i64::from);
+        let (v1, v2) = (v1 - v0, v2 - v0);
+        let [x1, x2] = self.x.map(i64::from);
+        let [y1, y2] = self.y.map(i64::from);
+        let (a, b) = (v1 * y2 - v2 * y1, v2 * x1 - v1 * x2);
+        let area = self.area.unsigned_abs();
+        let divided = |n: Wide, bits: u32| {
+            let n = if self.area < 0 { n.negated() } else { n };
+            i64::from(divide_modulo(n, area, bits)) << 32 | i64::from(divide_modulo(n, area, bits + 32))
+        };
+        let (dx, dy) = (divided(Wide::product(a, 1), 8), divided(Wide::product(b, 1), 8));
+        let base = (v0 << 32).wrapping_add(divided(Wide::product(a, self.to.0).plus(Wide::product(b, self.to.1)), 0));
+        let (ox, oy) = (i64::from(self.origin.0), i64::from(self.origin.1));
+        WidePlane { base: base.wrapping_sub(dx.wrapping_mul(ox)).wrapping_sub(dy.wrapping_mul(oy)), dx, dy }
+    }
+}
+
 /// Whether a difference of coordinates is within -2¹⁷..2¹⁷: 512 px.
 #[inline]
 fn medium(difference: i32) -> bool {
@@ -208,17 +230,17 @@ impl Wide {
     }
 }
 
-/// ⌊n 2^bits / den⌋ modulo 2³², 0 < den < 2⁵¹.
+/// ⌊n 2^bits / den⌋ modulo 2³², 0 < den < 2⁵¹, `bits` up to 64.
 ///
 /// Long division, bit by bit: it is rare, and wider divisions are code that small programs need not link.
 #[inline(never)]
 fn divide_modulo(n: Wide, den: u64, bits: u32) -> u32 {
     // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
     let flip = (n.high >> 63) as u32;
-    let words = [(n.high >> 32) as u32 ^ flip, n.high as u32 ^ flip, n.low ^ flip, flip];
+    let words = [(n.high >> 32) as u32 ^ flip, n.high as u32 ^ flip, n.low ^ flip, flip, flip];
     let mut rest = 0_u64;
     let mut quotient = 0_u32;
-    for (mut word, bits) in words.into_iter().zip([32, 32, 32, bits]) {
+    for (mut word, bits) in words.into_iter().zip([32, 32, 32, bits.min(32), bits.saturating_sub(32)]) {
         if word == 0 && rest == 0 && quotient == 0 {
             continue;
         }
@@ -250,7 +272,7 @@ mod tests {
             let (a, b) = (next() as i64 >> (4 + next() % 58), (next() as i64 >> (38 + next() % 24)) as i32);
             let (c, d) = (next() as i64 >> (4 + next() % 58), (next() as i64 >> (38 + next() % 24)) as i32);
             let den = (next() >> (13 + next() % 50)).max(1);
-            let bits = (next() % 25) as u32;
+            let bits = (next() % 45) as u32;
             let exact = i128::from(a) * i128::from(b) + i128::from(c) * i128::from(d);
             let n = Wide::product(a, b).plus(Wide::product(c, d));
             let expected = (exact << bits).div_euclid(i128::from(den)) as u32;

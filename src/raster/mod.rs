@@ -6,6 +6,7 @@ mod direction;
 mod edge;
 mod gradient;
 mod line;
+mod perspective;
 mod point;
 mod triangle;
 
@@ -14,5 +15,6 @@ pub(crate) use direction::unit;
 pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
+pub use perspective::{homogenize, widen};
 pub use point::square;
 pub use triangle::{PixelRect, Trapezoids, first_centre, pixel_rect, spans};

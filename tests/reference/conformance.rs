@@ -13,7 +13,8 @@
 //! | `nearclip_pairs` | the same for two triangles together |
 //! | `lines` | exactly these pixels, in drawing order |
 //! | `points` | exactly this rectangle |
-//! | `persp`, `msaa4` | not yet checked |
+//! | `persp` | u and v within 1/16 of a unit |
+//! | `msaa4` | not yet checked |
 
 use std::fmt;
 use std::path::Path;
@@ -36,6 +37,15 @@ pub type ScreenTriangle = [[i32; 2]; 3];
 /// These files have clip-space **y down**: screen X = (x/w + 1) * width/2 and Y = (y/w + 1) * height/2.
 pub type ClipTriangle = [[i32; 4]; 3];
 
+/// A triangle on the screen with clip w (1/65536) and texture coordinates at its vertices.
+#[derive(Clone, Copy, Debug)]
+pub struct PerspectiveTriangle {
+    pub v: ScreenTriangle,
+    pub w: [i32; 3],
+    pub u: [i32; 3],
+    pub t: [i32; 3],
+}
+
 /// What a rasterizer must offer to be checked. Nothing is culled, pixels outside the viewport are not reported.
 pub trait Rasterizer {
     /// Covers one triangle: calls `hit(x, y)` once for every pixel.
@@ -44,6 +54,9 @@ pub trait Rasterizer {
     /// Draws triangles with depth codes in order (test `Less`, clear value 65535), and returns, per pixel in rows, the winner
     /// (0 = none, else 1-based) and the stored depth.
     fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>);
+
+    /// Perspective-correct u and t at the centres of the pixels that a triangle covers, in rows; `None` at others.
+    fn perspective(&mut self, width: u32, height: u32, triangle: &PerspectiveTriangle) -> Vec<Option<[f64; 2]>>;
 
     /// Clips and covers triangles without a depth test: calls `hit(triangle index, x, y)` for every pixel of each.
     fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32));
@@ -123,7 +136,8 @@ pub fn check_file(path: &Path, rasterizer: &mut dyn Rasterizer) -> Result<Outcom
         "nearclip_pairs" => (check_near_clip_pairs, 64),
         "lines" => (check_lines, 64),
         "points" => (check_points, 64),
-        "persp" | "msaa4" => return Ok(Outcome::NotYet),
+        "persp" => (check_perspective, 128),
+        "msaa4" => return Ok(Outcome::NotYet),
         _ => {
             return Err(CheckError::UnknownFile { file: path.display().to_string() });
         }
@@ -213,6 +227,31 @@ fn check_meshes(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(S
             })
         });
         Ok((format!("id {} ({kind})", record.text(0)?), verdict))
+    };
+    table.records.iter().map(check).collect()
+}
+
+fn check_perspective(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(String, Verdict)>, BadRecord> {
+    let check = |record: &Record| {
+        record.expect_fields(18)?;
+        let [w, u, t] = record.triangle(7)?;
+        let samples = record.list::<u32>(17)?;
+        if samples.len() != 4 * record.number::<usize>(16)? {
+            return Err(record.bad("not as many samples as announced"));
+        }
+        let triangle = PerspectiveTriangle { v: record.triangle(1)?, w, u, t };
+        let got = rasterizer.perspective(table.width, table.height, &triangle);
+        let wrong = samples.chunks_exact(4).find_map(|sample| {
+            let value = got.get((sample[1] * table.width + sample[0]) as usize).copied().flatten();
+            let expected = [sample[2], sample[3]].map(|value| f64::from(value) / 4096.0);
+            let off = value.map(|value| (value[0] - expected[0]).abs().max((value[1] - expected[1]).abs()));
+            match off {
+                // The data is rounded, too.
+                Some(off) if off <= 1.0 / 16.0 + 0.5 / 4096.0 => None,
+                _ => Some(format!("({}, {}) is {value:?}, expected {expected:?}", sample[0], sample[1])),
+            }
+        });
+        Ok((format!("id {}", record.text(0)?), wrong.map_or(Ok(()), Err)))
     };
     table.records.iter().map(check).collect()
 }

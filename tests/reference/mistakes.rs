@@ -1,6 +1,6 @@
 //! Rasterizers that are wrong on purpose: each conformance check must find the mistakes that concern it.
 
-use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
+use super::conformance::{ClipTriangle, PerspectiveTriangle, Rasterizer, ScreenTriangle};
 use super::exact;
 use super::homogeneous::{Vertex, Viewport, for_each_sample};
 use super::model::Model;
@@ -40,12 +40,16 @@ pub enum Mistake {
     Backward,
     /// Reports a pixel beyond the right border.
     LeavesViewport,
+    /// Texture coordinates are linear on the screen.
+    NoPerspective,
+    /// Texture coordinates are too large by 1/8.
+    CoordinatesOff,
     /// Draws nothing.
     Nothing,
 }
 
 impl Mistake {
-    pub const ALL: [Mistake; 17] = [
+    pub const ALL: [Mistake; 19] = [
         Mistake::ShiftedByOne,
         Mistake::AllEdgesOwn,
         Mistake::BottomRight,
@@ -62,6 +66,8 @@ impl Mistake {
         Mistake::SecondShifted,
         Mistake::Backward,
         Mistake::LeavesViewport,
+        Mistake::NoPerspective,
+        Mistake::CoordinatesOff,
         Mistake::Nothing,
     ];
 
@@ -154,6 +160,20 @@ impl Rasterizer for Mistake {
             }
         }
         (winners, depths)
+    }
+
+    fn perspective(&mut self, width: u32, height: u32, triangle: &PerspectiveTriangle) -> Vec<Option<[f64; 2]>> {
+        let w = if *self == Mistake::NoPerspective { [1; 3] } else { triangle.w };
+        let exact = Model.perspective(width, height, &PerspectiveTriangle { w, ..*triangle });
+        let off = if *self == Mistake::CoordinatesOff { 0.125 } else { 0.0 };
+        let mut values = vec![None; exact.len()];
+        for (x, y) in self.pixels(width, height, triangle.v) {
+            let index = (y * width + x) as usize;
+            if let Some(value) = values.get_mut(index) {
+                *value = exact[index].map(|uv: [f64; 2]| uv.map(|c| c + off));
+            }
+        }
+        values
     }
 
     fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32)) {

@@ -2,7 +2,7 @@
 //!
 //! It passes every record, which shows that files, checker and references agree on the rules.
 
-use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
+use super::conformance::{ClipTriangle, PerspectiveTriangle, Rasterizer, ScreenTriangle};
 use super::homogeneous::{Vertex, Viewport, for_each_sample};
 use super::{diamonds, exact};
 
@@ -31,6 +31,19 @@ impl Rasterizer for Model {
             });
         }
         (winners, depths)
+    }
+
+    fn perspective(&mut self, width: u32, height: u32, triangle: &PerspectiveTriangle) -> Vec<Option<[f64; 2]>> {
+        let tri = exact::widen(triangle.v);
+        let mut values = vec![None; width as usize * height as usize];
+        exact::for_each_pixel(tri, width, height, |x, y| {
+            let at = exact::center(x.into(), y.into());
+            values[(y * width + x) as usize] = Some([triangle.u, triangle.t].map(|at_vertices| {
+                let (num, den) = exact::perspective_at(tri, triangle.w.map(i64::from), at_vertices.map(i64::from), at);
+                num as f64 / den as f64
+            }));
+        });
+        values
     }
 
     fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32)) {

@@ -3,11 +3,11 @@
 //! Screen positions become homogeneous vertices with w = 1 that project to exactly the same 1/256 px: the viewports of
 //! the data are powers of two.
 
-use super::conformance::{ClipTriangle, Rasterizer, ScreenTriangle};
+use super::conformance::{ClipTriangle, PerspectiveTriangle, Rasterizer, ScreenTriangle};
 use std::cell::RefCell;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::fragment::{DepthState, DepthTest, Fragment, Fragments, Shader};
-use zstrip::geometry::{Corner, Face, Mesh, MeshData, Positions, VertexShader};
+use zstrip::geometry::{Corner, Face, Mesh, MeshData, Perspective, Positions, VertexShader};
 use zstrip::math::{Projective, Scalar};
 use zstrip::output::{FrameSlice, FramebufferRenderer};
 use zstrip::raster::{Line, PixelRect, square};
@@ -45,7 +45,7 @@ impl Shader<Rgb565> for Reached<'_> {
         Some(1)
     }
 
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0]>, _: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0], D::Stored>, _: D) {
         let (x, y) = span.position;
         for (k, color) in span.color.iter_mut().enumerate() {
             *color = 1;
@@ -72,6 +72,33 @@ impl VertexShader for Numbered {
 impl Shader<Rgb565> for Numbered {
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         Some(fragment.face as u16)
+    }
+}
+
+/// Where coordinates are reported: pixel, u and t in 1/2^20.
+type Report<'a> = RefCell<&'a mut dyn FnMut((i32, i32), [i32; 2])>;
+
+/// Reports perspective-correct coordinates, one reciprocal every `STEP` pixels.
+struct Coordinates<'a, const STEP: usize> {
+    triangle: &'a PerspectiveTriangle,
+    report: Report<'a>,
+}
+
+impl<const STEP: usize> VertexShader for Coordinates<'_, STEP> {
+    type Varyings = Perspective<2, 3>;
+
+    fn vertex(&self, corner: &Corner<'_>) -> Perspective<2, 3> {
+        let k = corner.index();
+        Perspective::new([self.triangle.u[k] << 20, self.triangle.t[k] << 20], [])
+    }
+}
+
+impl<const STEP: usize> Shader<Rgb565> for Coordinates<'_, STEP> {
+    const STEP: usize = STEP;
+
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<u16> {
+        (self.report.borrow_mut())(fragment.position, fragment.varyings.corrected());
+        None
     }
 }
 
@@ -116,6 +143,30 @@ impl Subject {
         (color, depth)
     }
 
+    /// Perspective-correct coordinates by pixel, one reciprocal every `STEP` pixels.
+    pub fn coordinates<const STEP: usize>(
+        &self,
+        (width, height): (u32, u32),
+        triangle: &PerspectiveTriangle,
+    ) -> Vec<Option<[f64; 2]>> {
+        // The largest scale that fits: positions come out exactly, unless w differs a lot.
+        let clip = |k: usize, axis: usize, size: u32| {
+            let half = 128 * i64::from(size);
+            (i64::from(triangle.v[k][axis]) - half) as f64 / half as f64 * f64::from(triangle.w[k])
+        };
+        let vertices = [0, 1, 2].map(|k| [clip(k, 0, width), clip(k, 1, height), 0.0, f64::from(triangle.w[k])]);
+        let largest = vertices.iter().flatten().fold(0.0, |largest: f64, c| largest.max(c.abs()));
+        let scale = 2_f64.powi((2_f64.powi(30) / largest).log2().floor() as i32);
+        let vertices = vertices.map(|v| v.map(|c| Scalar::from_bits((c * scale).round() as i32)));
+        let mut values = vec![None; (width * height) as usize];
+        let mut report = |(x, y): (i32, i32), uv: [i32; 2]| {
+            values[y as usize * width as usize + x as usize] = Some(uv.map(|c| f64::from(c) / 1_048_576.0));
+        };
+        let shader = Coordinates::<STEP> { triangle, report: RefCell::new(&mut report) };
+        self.draw((width, height), &vertices, DepthState::OFF, &shader);
+        values
+    }
+
     fn reach(&self, size: (u32, u32), vertices: &[[Scalar; 4]], hit: &mut dyn FnMut(usize, u32, u32)) {
         self.draw(size, vertices, DepthState::OFF, &Reached(RefCell::new(hit)));
     }
@@ -133,6 +184,10 @@ impl Rasterizer for Subject {
             tris.iter().flat_map(|(v, z)| [0, 1, 2].map(|k| on_screen(v[k], z[k], width, height))).collect();
         let (winners, depth) = self.draw((width, height), &vertices, DepthState::LESS, &Numbered);
         (winners.into_iter().map(u32::from).collect(), depth)
+    }
+
+    fn perspective(&mut self, width: u32, height: u32, triangle: &PerspectiveTriangle) -> Vec<Option<[f64; 2]>> {
+        self.coordinates::<1>((width, height), triangle)
     }
 
     fn clip_triangles(&mut self, width: u32, height: u32, tris: &[ClipTriangle], hit: &mut dyn FnMut(usize, u32, u32)) {

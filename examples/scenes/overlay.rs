@@ -1,0 +1,67 @@
+//! 2-D drawing among meshes with what the crate itself brings: areas and pixels, at depths and on top, without fonts or shapes.
+
+use super::{light, standard_camera, torus, torus_model};
+use zstrip::embedded_graphics_core::draw_target::DrawTarget;
+use zstrip::embedded_graphics_core::geometry::{Dimensions, Point, Size};
+use zstrip::embedded_graphics_core::pixelcolor::{PixelColor, Rgb565, Rgb888};
+use zstrip::embedded_graphics_core::primitives::{PointsIter, Rectangle};
+use zstrip::embedded_graphics_core::{Drawable, Pixel};
+use zstrip::fragment::{Compare, DepthState, Gouraud};
+use zstrip::math::{Angle, Vec3};
+use zstrip::{Framebuffer, Scene};
+
+/// A square of 16 × 16 pixels around a point.
+struct Marker<C> {
+    center: Point,
+    color: C,
+    /// Every other pixel, or a frame with a filled middle.
+    stippled: bool,
+}
+
+impl<C> Dimensions for Marker<C> {
+    fn bounding_box(&self) -> Rectangle {
+        Rectangle::new(self.center - Point::new(8, 8), Size::new(16, 16))
+    }
+}
+
+impl<C: PixelColor> Drawable for Marker<C> {
+    type Color = C;
+    type Output = ();
+
+    fn draw<D: DrawTarget<Color = C>>(&self, target: &mut D) -> Result<(), D::Error> {
+        let area = self.bounding_box();
+        if self.stippled {
+            let stipple = area.points().filter(|at| (at.x ^ at.y) & 1 == 0);
+            return target.draw_iter(stipple.map(|at| Pixel(at, self.color)));
+        }
+        target.fill_solid(&Rectangle::new(area.top_left, Size::new(16, 3)), self.color)?;
+        target.fill_solid(&Rectangle::new(area.top_left + Point::new(4, 6), Size::new(8, 10)), self.color)
+    }
+}
+
+/// Draws a turning torus with markers around it, some of them behind it, and a ramp of colours below.
+pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let model = torus_model(turn);
+    let mvp = standard_camera(scene) * model;
+    for k in 0..24_u16 {
+        let angle = Angle(k * 2731);
+        let [x, y] = [angle.sin(), angle.cos()].map(|v| v.to_bits() / 64 * 104);
+        let Some(place) = scene.project(Vec3::from_bits([x, 0, y]), &mvp) else { continue };
+        let color = Rgb565::new(8 + k as u8, 60 - 2 * k as u8, 28);
+        let marker = Marker { center: place.pixel(), color, stippled: k % 3 == 0 };
+        match k % 4 {
+            0 => scene.overlay().draw(&marker),
+            1 => {
+                let state = DepthState { compare: Compare::GreaterEqual, write: false };
+                scene.at_depth_with(place.z, state).draw(&marker);
+            }
+            _ => scene.at_depth(place.z).draw(&marker),
+        }
+        if k == 12 {
+            scene.draw(&torus::MESH, &mvp, &Gouraud::new(light().to_object(&model), Rgb888::new(200, 90, 160)));
+        }
+    }
+    let ramp = Rectangle::new(Point::new(-20, 226), Size::new(360, 24));
+    let colors = (0..360 * 24).map(|k: u32| Rgb565::new((k % 360 / 12) as u8, (k / 360 * 2) as u8, 9));
+    let Ok(()) = scene.at_depth(0x8000).fill_contiguous(&ramp, colors);
+}

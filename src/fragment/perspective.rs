@@ -1,0 +1,148 @@
+//! Perspective-correct varyings, along a span: one reciprocal for each pixel, or for each few of them.
+//!
+//! ```text
+//! span    ├───────────────┼───────────────┼───────────────┼─────┤
+//! divided ●               ●               ●               ●     ●      linear in between
+//!         first pixel     + STEP          + 2 STEP        ..    last pixel
+//! ```
+//! Both ends of a span are pixels of the triangle, so nothing is ever divided by what q = 1 / w is outside of it. At the ends
+//! varyings are exact, and so they are on both sides of an edge that two triangles share: no seam, whatever the step.
+
+use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader, Steps};
+use crate::geometry::{Correction, Lane, PerspectiveClass, Varyings};
+use crate::math::{Divisor, mul_high_signed};
+
+/// Perspective-correct varyings at a pixel, and a way to the next ones.
+#[derive(Clone, Copy, Debug)]
+pub struct Corrected<'a, V: Varyings> {
+    steps: &'a Steps<V>,
+    /// d q, linear ones, q.
+    at: V,
+    /// The same in 64 bits, for triangles that take them: the values are the `base` of planes.
+    wide: V::Correction,
+}
+
+impl<'a, V: Varyings> Corrected<'a, V> {
+    /// At the first pixel of a span.
+    #[inline]
+    pub fn new(varyings: V, steps: &'a Steps<V>, position: (i32, i32)) -> Self {
+        let mut wide = steps.correction;
+        if let Some((PerspectiveClass::Wide, w, lanes)) = wide.lanes() {
+            for plane in lanes.iter_mut().map(|lane| &mut lane.plane).chain([w]) {
+                let (x, y) = (i64::from(position.0), i64::from(position.1));
+                plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(x)).wrapping_add(plane.dy.wrapping_mul(y));
+            }
+        }
+        Self { steps, at: varyings, wide }
+    }
+
+    /// Goes on by as many pixels.
+    #[inline]
+    pub fn advance(&mut self, pixels: i32) {
+        for (value, step) in self.at.as_mut().iter_mut().zip(self.steps.d_dx.as_ref()) {
+            *value = value.wrapping_add(step.wrapping_mul(pixels));
+        }
+        if let Some((PerspectiveClass::Wide, w, lanes)) = self.wide.lanes() {
+            for plane in lanes.iter_mut().map(|lane| &mut lane.plane).chain([w]) {
+                plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(i64::from(pixels)));
+            }
+        }
+    }
+
+    /// The varyings here.
+    #[inline]
+    pub fn varyings(&self) -> V {
+        let mut varyings = self.at;
+        let lanes = self.wide.varyings();
+        match self.steps.correction.class() {
+            PerspectiveClass::Affine => correct(varyings.as_mut(), lanes, |h, _| h),
+            PerspectiveClass::Narrow => {
+                let [.., q] = varyings.as_ref() else { return varyings };
+                let q = Divisor::new(*q as u32);
+                correct(varyings.as_mut(), lanes, |dq, _| q.divide(dq));
+            }
+            PerspectiveClass::Wide => {
+                let q = self.wide.wide_w().base as u64;
+                let shift = q.leading_zeros() & 63;
+                let q = Divisor::new(((q << shift) >> 32) as u32);
+                correct(varyings.as_mut(), lanes, |_, lane| {
+                    q.divide_shifted(((lane.plane.base << shift) >> 32) as i32)
+                });
+            }
+        }
+        varyings
+    }
+}
+
+/// Replaces each value by what it says of the varying: h, from `quotient`, scaled back.
+#[inline]
+fn correct(values: &mut [i32], lanes: &[Lane], quotient: impl Fn(i32, &Lane) -> i32) {
+    for (value, lane) in values.iter_mut().zip(lanes) {
+        let h = quotient(*value, lane);
+        // To nearest; the shift is at most 30.
+        *value = lane.base.wrapping_add(h.wrapping_add((1 << lane.shift) >> 1) >> lane.shift);
+    }
+}
+
+/// 2³² / n, for steps of n pixels.
+static PARTS: [u32; 33] = {
+    let mut parts = [u32::MAX; 33];
+    let mut n = 2;
+    while n < 33 {
+        parts[n] = ((1_u64 << 32) / n as u64) as u32;
+        n += 1;
+    }
+    parts
+};
+
+/// `difference` / `n`, within a unit, for n in 1..=32.
+#[inline]
+pub(super) fn nth(difference: i32, n: usize) -> i32 {
+    let part = PARTS.get(n).copied().unwrap_or(0);
+    if n == 1 { difference } else { mul_high_signed(difference, part) }
+}
+
+/// Draws a span fragment by fragment.
+#[inline]
+pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
+    shader: &S,
+    face: u32,
+    span: Fragments<'_, P, S::Varyings, D::Stored>,
+    test: D,
+) {
+    const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };
+    let Fragments { mut color, mut depth, mut z, varyings, steps, mut position } = span;
+    let (side, level) = (steps.side, steps.level);
+    let mut ahead = Corrected::new(varyings, steps, position);
+    let mut varyings = ahead.varyings();
+    while !color.is_empty() {
+        // Where the step ends: at the next pixel that is divided, or the last one.
+        let pixels = color.len().min(S::STEP);
+        let way = if color.len() > S::STEP { S::STEP } else { pixels - 1 };
+        ahead.advance(way as i32);
+        let next = ahead.varyings();
+        let mut change = next;
+        for (change, from) in change.as_mut().iter_mut().zip(varyings.as_ref()) {
+            *change = if way == 0 { 0 } else { nth(change.wrapping_sub(*from), way) };
+        }
+        let Some((colors, color_rest)) = core::mem::take(&mut color).split_at_mut_checked(pixels) else { return };
+        let Some((depths, depth_rest)) = core::mem::take(&mut depth).split_at_mut_checked(pixels) else { return };
+        (color, depth) = (color_rest, depth_rest);
+        for (color, stored) in colors.iter_mut().zip(depths) {
+            let depth = (z >> 16) as u16;
+            if !D::ENABLED || test.passes(depth, *stored) {
+                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+                if let Some(value) = shader.fragment(&fragment) {
+                    test.write(depth, stored);
+                    *color = value;
+                }
+            }
+            position.0 = position.0.wrapping_add(1);
+            z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in varyings.as_mut().iter_mut().zip(change.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+        varyings = next;
+    }
+}

@@ -1,0 +1,99 @@
+//! Perspective-correct varyings, at the vertices: what is linear on the screen, and how much perspective there is.
+//!
+//! A varying that is linear in space is no plane on the screen, but v / w and 1 / w are. With d = v - v₀, scaled to 30 bits,
+//! and q = 1 / w, scaled so that the largest of a triangle has 31 bits,
+//!
+//! ```text
+//! v = v₀ + Σ bᵢ (dᵢ qᵢ) / Σ bᵢ qᵢ            bᵢ: a pixel's barycentric coordinates on the screen
+//! ```
+//! so a pixel takes the planes of d q and of q, and one reciprocal. Since |d| q is at most half of q at the vertices, it is
+//! at every pixel.
+
+use super::Gradients;
+use crate::geometry::{Correction, Lane, PerspectiveClass, ScreenVertex, Varyings, WidePlane};
+use crate::math::mul_high_signed;
+
+/// Puts d q (or d, where perspective is too weak to be seen) and q in the place of perspective-correct varyings and 1 / w;
+/// `screen` is the screen's size.
+#[inline]
+pub fn homogenize<V: Varyings>(
+    varyings: &[V; 3],
+    v: &[ScreenVertex; 3],
+    screen: (u16, u16),
+) -> ([V; 3], V::Correction) {
+    let mut varyings = *varyings;
+    let mut correction = V::Correction::NONE;
+    if let Some((class, _, lanes)) = correction.lanes() {
+        let [a, b, c] = &mut varyings;
+        *class = convert([a.as_mut(), b.as_mut(), c.as_mut()], lanes, reach(v, screen));
+    }
+    (varyings, correction)
+}
+
+/// The planes of d q and q in 64 bits, where 32 are too few.
+#[inline]
+pub fn widen<C: Correction>(gradients: &Gradients, values: &[&[i32]; 3], correction: &mut C) {
+    if let Some((PerspectiveClass::Wide, wide_w, lanes)) = correction.lanes() {
+        planes(gradients, values, wide_w, lanes);
+    }
+}
+
+#[inline(never)]
+fn planes(gradients: &Gradients, values: &[&[i32]; 3], wide_w: &mut WidePlane, lanes: &mut [Lane]) {
+    let [a, b, c] = *values;
+    for (((lane, a), b), c) in lanes.iter_mut().zip(a).zip(b).zip(c) {
+        lane.plane = gradients.plane_wide([*a, *b, *c]);
+    }
+    if let ([.., a], [.., b], [.., c]) = (a, b, c) {
+        *wide_w = gradients.plane_wide([*a, *b, *c]);
+    }
+}
+
+/// Columns and rows that a plane's value may have to be carried over.
+fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
+    let [a, b, c] = v;
+    let columns = a.x.max(b.x).max(c.x) - a.x.min(b.x).min(c.x);
+    let rows = a.y.max(b.y).max(c.y) - a.y.min(b.y).min(c.y);
+    (columns as u32 >> 8).min(width.into()) + (rows as u32 >> 8).min(height.into())
+}
+
+/// # Format
+/// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](super::Gradients)); so are q and d q, which
+/// makes h, of 30 bits, wrong by some 2³¹ (reach + 64) / q. [`Narrow`](PerspectiveClass::Narrow) keeps that below 2¹⁵
+/// units, 2⁻¹⁵ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter of that, 2⁻¹⁶.
+#[inline(never)]
+fn convert(values: [&mut [i32]; 3], lanes: &mut [Lane], reach: u32) -> PerspectiveClass {
+    let [a, b, c] = values;
+    let ([.., wa], [.., wb], [.., wc]) = (&mut *a, &mut *b, &mut *c) else {
+        return PerspectiveClass::Affine;
+    };
+    let q = weights([*wa as u32, *wb as u32, *wc as u32]);
+    let [qa, qb, qc] = q;
+    (*wa, *wb, *wc) = (qa as i32, qb as i32, qc as i32);
+    let (least, most) = (qa.min(qb).min(qc), qa.max(qb).max(qc));
+    let class = match () {
+        () if most - least < most >> 14 => PerspectiveClass::Affine,
+        () if (reach + 64).saturating_mul(most >> 14) <= least => PerspectiveClass::Narrow,
+        () => PerspectiveClass::Wide,
+    };
+    for (((lane, a), b), c) in lanes.iter_mut().zip(a).zip(b).zip(c) {
+        lane.base = *a;
+        let (db, dc) = (b.wrapping_sub(*a), c.wrapping_sub(*a));
+        let zeros = db.unsigned_abs().max(dc.unsigned_abs()).leading_zeros();
+        lane.shift = zeros.saturating_sub(2);
+        (*a, *b, *c) = (0, db << lane.shift, dc << lane.shift);
+        if class != PerspectiveClass::Affine {
+            (*b, *c) = (mul_high_signed(*b, qb << 1), mul_high_signed(*c, qc << 1));
+        }
+    }
+    class
+}
+
+/// Numbers in the ratio of 1 / w, from the words of [`inverse_w`](crate::geometry::inverse_w): the largest in 2³⁰..2³¹, none
+/// below 1.
+fn weights(words: [u32; 3]) -> [u32; 3] {
+    let [a, b, c] = words;
+    let most = (a & 63).max(b & 63).max(c & 63);
+    let weight = |word: u32| ((word & !63) >> 1 >> (most - (word & 63)).min(31)).max(1);
+    [weight(a), weight(b), weight(c)]
+}
