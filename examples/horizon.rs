@@ -3,13 +3,13 @@
 //! ```text
 //! cargo run --release --example horizon -- --help
 //! ```
+#[path = "host/demo.rs"]
+mod demo;
 mod host;
 mod scenes;
-#[path = "host/show.rs"]
-mod show;
 
+use demo::Demo;
 use minifb::Key;
-use show::Demo;
 use std::process::ExitCode;
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
@@ -60,5 +60,5 @@ impl Demo for Horizon {
 }
 
 fn main() -> ExitCode {
-    show::main(Horizon::default())
+    demo::main(Horizon::default())
 }

@@ -3,12 +3,12 @@
 //! ```text
 //! cargo run --release --example scatter -- --help
 //! ```
+#[path = "host/demo.rs"]
+mod demo;
 mod host;
 mod scenes;
-#[path = "host/show.rs"]
-mod show;
 
-use show::Demo;
+use demo::Demo;
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Compare, DepthState, Flat, Gouraud};
@@ -132,5 +132,5 @@ impl Demo for Scatter {
 }
 
 fn main() -> ExitCode {
-    show::main(Scatter::new())
+    demo::main(Scatter::new())
 }

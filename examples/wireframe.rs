@@ -3,13 +3,13 @@
 //! ```text
 //! cargo run --release --example wireframe -- --help
 //! ```
+#[path = "host/demo.rs"]
+mod demo;
 mod host;
 mod scenes;
-#[path = "host/show.rs"]
-mod show;
 
+use demo::Demo;
 use scenes::wires::BEHIND_LINES;
-use show::Demo;
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Compare, DepthOnly, DepthState, Flat};
@@ -175,5 +175,5 @@ impl Demo for Wireframe {
 }
 
 fn main() -> ExitCode {
-    show::main(Wireframe::new())
+    demo::main(Wireframe::new())
 }

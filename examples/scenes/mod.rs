@@ -2,14 +2,19 @@
 //!
 //! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
 #![allow(dead_code)] // each program uses its part
+#![allow(long_running_const_eval)] // a landscape is computed
 
 pub mod dashboard;
 pub mod formats;
 pub mod horizon;
 pub mod labels;
+pub mod landscape;
+pub mod light;
 pub mod overlay;
 pub mod polygons;
+pub mod pot;
 pub mod soup;
+pub mod tiles;
 pub mod torus;
 pub mod wires;
 
@@ -49,6 +54,9 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "dashboard", draw: |scene, turn| dashboard::draw(scene, turn) },
     #[cfg(not(proof = "all"))]
     SceneInfo { name: "labels", draw: |scene, turn| labels::draw(scene, turn) },
+    SceneInfo { name: "phong", draw: |scene, turn| light::phong(scene, turn, light::Shading::PerFragmentNear) },
+    SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
+    SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
 ];
 
 /// Dark blue-grey.
