@@ -1,7 +1,7 @@
 //! A program around something to draw: options, a window with keys, or a picture where there is no display.
 
-use super::host::Picture;
-use minifb::{Key, KeyRepeat, Scale, Window, WindowOptions};
+use super::host::{Picture, viewer};
+use minifb::{Key, KeyRepeat, Window};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -79,12 +79,7 @@ fn arguments<D: Demo>() -> Result<Option<Settings>, Box<dyn Error>> {
             Long("strip-rows") => settings.strip_rows = parser.value()?.parse()?,
             Long("records") => settings.records = parser.value()?.parse()?,
             Long("frame") => settings.frame = parser.value()?.parse()?,
-            Long("size") => {
-                settings.size = parser.value()?.parse_with(|text| {
-                    let parsed = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
-                    parsed.ok_or("a size is like 320x240")
-                })?;
-            }
+            Long("size") => settings.size = parser.value()?.parse_with(viewer::size)?,
             Long("help") | Short('h') => return Ok(None),
             _ => return Err(argument.unexpected().into()),
         }
@@ -133,17 +128,6 @@ fn picture<D: Demo>(demo: &mut D, settings: &Settings, path: &Path) -> Result<()
     Ok(())
 }
 
-/// The window, or why there is none.
-fn open(name: &str, size: (u16, u16)) -> Result<Window, String> {
-    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
-    if cfg!(target_os = "linux") && !is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") {
-        return Err("neither DISPLAY nor WAYLAND_DISPLAY is set".into());
-    }
-    let scale = if size.0 <= 640 { Scale::X2 } else { Scale::X1 };
-    let options = WindowOptions { scale, ..WindowOptions::default() };
-    Window::new(name, size.0.into(), size.1.into(), options).map_err(|error| error.to_string())
-}
-
 /// Runs until the window is closed.
 fn play<D: Demo>(demo: &mut D, window: &mut Window, mut settings: Settings) -> Result<(), Box<dyn Error>> {
     window.set_target_fps(60);
@@ -177,7 +161,7 @@ fn run<D: Demo>(mut demo: D) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &settings.png {
         return picture(&mut demo, &settings, path);
     }
-    match open(D::NAME, settings.size) {
+    match viewer::open(settings.size) {
         Ok(mut window) => play(&mut demo, &mut window, settings),
         Err(reason) => {
             println!("no window ({reason}): writing a picture instead");

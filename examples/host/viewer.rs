@@ -97,7 +97,8 @@ fn scene_named(name: &str) -> Result<usize, String> {
     found.ok_or_else(|| format!("the scenes are {}", names()))
 }
 
-fn size(text: &str) -> Result<(u16, u16), String> {
+/// A size like `320x240`.
+pub fn size(text: &str) -> Result<(u16, u16), String> {
     let parsed = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
     parsed.ok_or_else(|| "a size is like 320x240".into())
 }
@@ -152,13 +153,13 @@ fn picture(settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The window, or why there is none.
-fn open(settings: &Settings) -> Result<Window, String> {
+/// A window for a picture of some size, or why there is none.
+pub fn open(size: (u16, u16)) -> Result<Window, String> {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     if cfg!(target_os = "linux") && !is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") {
         return Err("neither DISPLAY nor WAYLAND_DISPLAY is set".into());
     }
-    let (width, height) = (settings.size.0.into(), settings.size.1.into());
+    let (width, height) = (size.0.into(), size.1.into());
     let options = WindowOptions { scale: if width <= 640 { Scale::X2 } else { Scale::X1 }, ..WindowOptions::default() };
     Window::new("zstrip", width, height, options).map_err(|error| error.to_string())
 }
@@ -226,7 +227,7 @@ fn run(program: &'static Program) -> Result<(), Box<dyn Error>> {
     if let Some(path) = &settings.png {
         return picture(&settings, path);
     }
-    match open(&settings) {
+    match open(settings.size) {
         Ok(mut window) => turn(&mut window, settings),
         Err(reason) => {
             println!("no window ({reason}): writing a picture instead");
