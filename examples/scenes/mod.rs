@@ -46,9 +46,6 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "cycle", draw: |scene, turn| cycle(scene, turn) },
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
-    SceneInfo { name: "phong", draw: |scene, turn| light::phong(scene, turn, light::Shading::PerFragmentNear) },
-    SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
-    SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
     SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
     SceneInfo { name: "overlay", draw: |scene, turn| overlay::draw(scene, turn) },
@@ -57,6 +54,9 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "dashboard", draw: |scene, turn| dashboard::draw(scene, turn) },
     #[cfg(not(proof = "all"))]
     SceneInfo { name: "labels", draw: |scene, turn| labels::draw(scene, turn) },
+    SceneInfo { name: "phong", draw: |scene, turn| light::phong(scene, turn, light::Shading::PerFragmentNear) },
+    SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
+    SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
 ];
 
 /// Dark blue-grey.

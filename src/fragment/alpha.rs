@@ -4,11 +4,11 @@ use super::PixelFormat;
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 /// Red, green, blue and alpha (255 = opaque), 8 bits each: the format in which a shader is asked for colours that are then
-/// blended. Every shader for all formats is one for this one, and opaque; implement `Shader<Rgba8888>` to give alpha.
+/// blended. Every shader for all formats is one for this one, and opaque; implement `Shader<Rgba>` to give alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rgba8888;
+pub struct Rgba;
 
-impl PixelFormat for Rgba8888 {
+impl PixelFormat for Rgba {
     type Raw = [u8; 4];
     type Color = Rgb888;
 
@@ -20,6 +20,13 @@ impl PixelFormat for Rgba8888 {
     #[inline(always)]
     fn unpack([r, g, b, _]: [u8; 4]) -> [u8; 3] {
         [r, g, b]
+    }
+
+    const ALPHA: bool = true;
+
+    #[inline(always)]
+    fn pack_rgba(rgba: [u8; 4], _: (i32, i32)) -> [u8; 4] {
+        rgba
     }
 
     /// Alpha is that of `a`.

@@ -97,10 +97,14 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
-        if P::PACKED {
-            packed_span(span, test);
-        } else {
-            fragments(self, face, span, test);
+        match span {
+            // A line's pixel, or a tip of a triangle.
+            Fragments { color: [color], depth: [depth], z, varyings, position, .. } if P::PACKED => {
+                let mut pen = Pen { z, dz_dx: 0, word: word(spread::<P>(varyings)), step: 0, mask: P::packed_mask() };
+                pen.draw::<P, D>(test, P::dither(position)[0], color, depth);
+            }
+            span if P::PACKED => packed_span(span, test),
+            span => fragments(self, face, span, test),
         }
     }
 }

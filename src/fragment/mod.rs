@@ -59,7 +59,7 @@ mod texture;
 mod texture_span;
 mod textured;
 
-pub use alpha::Rgba8888;
+pub use alpha::Rgba;
 pub use bias::DepthBias;
 pub use blend::{Add, AddAlpha, Alpha, Blend, BlendMode, Multiply, Opacity, Replace};
 pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, MAX_SPAN, NoDepth};
@@ -76,8 +76,6 @@ pub use pixel::PixelFormat;
 pub use sample::{Bilinear, Clamp, Filter, Mirror, Nearest, Repeat, Wrap};
 pub use shaded::{PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
 pub use shader::{Fragment, Fragments, Shader, Steps};
-pub use texel::{
-    Gray8Texel, Keyed, MaskTexel, PaletteTexel, Rgb565LeTexel, Rgb565Texel, Rgb888Texel, Rgba, TexelFormat,
-};
+pub use texel::{Gray8Texel, Keyed, MaskTexel, PaletteTexel, Rgb565LeTexel, Rgb565Texel, Rgb888Texel, TexelFormat};
 pub use texture::{Image, Texture, TextureError, Tile, WithAlpha};
 pub use textured::{LitTexture, Textured};

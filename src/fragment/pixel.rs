@@ -18,6 +18,13 @@ pub trait PixelFormat {
     /// ones. [`pack`](Self::pack) leads back to the same pixel.
     fn unpack(raw: Self::Raw) -> [u8; 3];
 
+    /// From RGB565.
+    #[inline(always)]
+    fn from_rgb565(raw: u16) -> Self::Raw {
+        let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
+        Self::pack([(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8])
+    }
+
     /// `a` · `weight` + `b` · (256 - `weight`), over 256 and rounded, in 8 bits a channel; for formats of 5 or 6 bits a
     /// channel by channels of as many, with `weight` rounded to 32nds: within 1.5 of their steps.
     #[inline(always)]
@@ -32,11 +39,13 @@ pub trait PixelFormat {
         Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
     }
 
-    /// From RGB565.
+    /// Whether there is an alpha channel: only in [`Rgba`](super::Rgba), for colours that are about to be blended.
+    const ALPHA: bool = false;
+
+    /// [`pack_at`](Self::pack_at) of red, green, blue and alpha, which is kept if there is a channel for it.
     #[inline(always)]
-    fn from_rgb565(raw: u16) -> Self::Raw {
-        let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
-        Self::pack([(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8])
+    fn pack_rgba([r, g, b, _]: [u8; 4], position: (i32, i32)) -> Self::Raw {
+        Self::pack_at([r, g, b], position)
     }
 
     /// Packs a colour for a pixel of the screen: dithered, if the format dithers.

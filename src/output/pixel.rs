@@ -107,6 +107,11 @@ macro_rules! sixteen_bits {
             }
 
             #[inline(always)]
+            fn from_rgb565(raw: u16) -> u16 {
+                $store(raw)
+            }
+
+            #[inline(always)]
             fn mix(a: u16, b: u16, weight: u32) -> u16 {
                 $store(mix_rgb565($load(a), $load(b), weight))
             }
@@ -114,11 +119,6 @@ macro_rules! sixteen_bits {
             #[inline(always)]
             fn add(a: u16, b: u16) -> u16 {
                 $store(add_rgb565($load(a), $load(b)))
-            }
-
-            #[inline(always)]
-            fn from_rgb565(raw: u16) -> u16 {
-                $store(raw)
             }
 
             const PACKED: bool = true;
