@@ -7,7 +7,7 @@ use support::{difference, strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::fragment::{
     Add, AddAlpha, Alpha, AlphaTest, Blend, BlendMode, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud,
-    Multiply, Opacity, PixelFormat, Replace, Rgba, ScreenDoor, Shader,
+    Multiply, Opacity, PixelFormat, Replace, Rgba8888, ScreenDoor, Shader,
 };
 use zstrip::geometry::{Corner, Mesh, MeshData, Positions, Topology, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
@@ -83,7 +83,7 @@ fn pixels_of_eight_bits_mix_to_nearest_for_all_values() {
             for weight in 0..=256_u32 {
                 let exact = ((u32::from(a) * weight + u32::from(b) * (256 - weight) + 128) / 256) as u8;
                 assert_eq!(Rgb888::mix([a; 3], [b; 3], weight), [exact; 3]);
-                assert_eq!(Rgba::mix([a, a, a, 9], [b, b, b, 200], weight), [exact, exact, exact, 9]);
+                assert_eq!(Rgba8888::mix([a, a, a, 9], [b, b, b, 200], weight), [exact, exact, exact, 9]);
             }
             assert_eq!(Rgb888::add([a; 3], [b; 3]), [a.saturating_add(b); 3]);
             assert_eq!(Gray8::add(a, b), a.saturating_add(b));
@@ -127,7 +127,7 @@ impl VertexShader for Ramp {
     }
 }
 
-impl Shader<Rgba> for Ramp {
+impl Shader<Rgba8888> for Ramp {
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<[u8; 4]> {
         let [r, g, b] = self.0;
         Some([r, g, b, (fragment.position.0 * 6) as u8])

@@ -4,7 +4,7 @@ use super::{landscape, pot, tiles};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::fragment::{
     AddAlpha, Blend, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud, Matcap, Multiply, Opacity,
-    PerFace, PerFragment, PerFragmentNear, PerVertex, PixelFormat, Rgba, Shaded, Shader,
+    PerFace, PerFragment, PerFragmentNear, PerVertex, PixelFormat, Rgba8888, Shaded, Shader,
 };
 use zstrip::geometry::{
     Corner, DirectionalLight, Light, Lighting, Material, Mesh, MeshData, PointLight, Positions, Topology, VertexShader,
@@ -339,8 +339,8 @@ impl VertexShader for Ember {
     }
 }
 
-impl Shader<Rgba> for Ember {
-    fn fragment(&self, fragment: &Fragment<'_, [i32; 2]>) -> Option<<Rgba as PixelFormat>::Raw> {
+impl Shader<Rgba8888> for Ember {
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 2]>) -> Option<<Rgba8888 as PixelFormat>::Raw> {
         let [u, v] = fragment.varyings.map(|c| c >> 8);
         // 1 - r², squared: 0.16, 0.8 and 0.8 again.
         let core = (0x1_0000 - u * u - v * v) >> 8;

@@ -4,11 +4,11 @@ use super::PixelFormat;
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 /// Red, green, blue and alpha (255 = opaque), 8 bits each: the format in which a shader is asked for colours that are then
-/// blended. Every shader for all formats is one for this one, and opaque; implement `Shader<Rgba>` to give alpha.
+/// blended. Every shader for all formats is one for this one, and opaque; implement `Shader<Rgba8888>` to give alpha.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rgba;
+pub struct Rgba8888;
 
-impl PixelFormat for Rgba {
+impl PixelFormat for Rgba8888 {
     type Raw = [u8; 4];
     type Color = Rgb888;
 

@@ -1,6 +1,6 @@
 //! Blending: what becomes of a shader's colour and the one that is there.
 
-use super::{Fragment, PixelFormat, Rgba, Shader};
+use super::{Fragment, PixelFormat, Rgba8888, Shader};
 use crate::geometry::{Corner, Face, VertexShader};
 use crate::math::Vec3;
 
@@ -10,10 +10,10 @@ use crate::math::Vec3;
 /// |---|---|---|
 /// | [`Replace`] | source | `P` |
 /// | [`Opacity`] | source · opacity + there · (1 - opacity) | `P` |
-/// | [`Alpha`] | source · alpha + there · (1 - alpha) | [`Rgba`] |
+/// | [`Alpha`] | source · alpha + there · (1 - alpha) | [`Rgba8888`] |
 /// | [`Add`] | source + there, at most 1 | `P` |
-/// | [`AddAlpha`] | source · alpha + there, at most 1 | [`Rgba`] |
-/// | [`Multiply`] | source · there | [`Rgba`] |
+/// | [`AddAlpha`] | source · alpha + there, at most 1 | [`Rgba8888`] |
+/// | [`Multiply`] | source · there | [`Rgba8888`] |
 ///
 /// Modes whose source is `P` work in the format itself, in one word for RGB565; the others in 8 bits a channel, exactly
 /// rounded, before surplus bits are cut (and not dithered again: a pixel that nothing is added to stays as it is).
@@ -70,13 +70,13 @@ fn channels([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], f: impl Fn(u32, u32) -> u32)
 }
 
 impl<P: PixelFormat> BlendMode<P> for Alpha {
-    type Source = Rgba;
+    type Source = Rgba8888;
 
     #[inline(always)]
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
         let [.., alpha] = source;
         let alpha = u32::from(alpha);
-        P::pack(channels(Rgba::unpack(source), P::unpack(there), |s, t| by_255(s * alpha + t * (255 - alpha))))
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * alpha + t * (255 - alpha))))
     }
 }
 
@@ -98,13 +98,13 @@ impl<P: PixelFormat> BlendMode<P> for Add {
 pub struct AddAlpha;
 
 impl<P: PixelFormat> BlendMode<P> for AddAlpha {
-    type Source = Rgba;
+    type Source = Rgba8888;
 
     #[inline(always)]
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
         let [.., alpha] = source;
         let alpha = u32::from(alpha);
-        P::pack(channels(Rgba::unpack(source), P::unpack(there), |s, t| (by_255(s * alpha) + t).min(255)))
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| (by_255(s * alpha) + t).min(255)))
     }
 }
 
@@ -113,17 +113,17 @@ impl<P: PixelFormat> BlendMode<P> for AddAlpha {
 pub struct Multiply;
 
 impl<P: PixelFormat> BlendMode<P> for Multiply {
-    type Source = Rgba;
+    type Source = Rgba8888;
 
     #[inline(always)]
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
-        P::pack(channels(Rgba::unpack(source), P::unpack(there), |s, t| by_255(s * t)))
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * t)))
     }
 }
 
 /// A shader whose colours are blended with what is there.
 ///
-/// It has to be the outermost of nested shaders, `Blend<Fogged<..>>`: only a whole span knows the pixels that are there.
+/// It has to be the outermost of nested shaders, `Blend<Fogged<..>>`: inner ones do not see the pixel that is there.
 /// What is transparent is drawn after all else, from back to front: see
 /// [`sort_back_to_front`](crate::geometry::sort_back_to_front); and without leaving its depth:
 /// [`DepthState::TEST`](super::DepthState::TEST).
@@ -186,25 +186,12 @@ macro_rules! inner_vertex_stage {
 }
 pub(super) use inner_vertex_stage;
 
-/// Hands on how the `shader` in a wrapper, one for a certain format, wants its varyings.
-macro_rules! inner_steps {
-    ($format:ty) => {
-        const STEP: usize = <S as Shader<$format>>::STEP;
-
-        #[inline(always)]
-        fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
-            Shader::<$format>::level(&self.shader, corners, area)
-        }
-    };
-}
-pub(super) use inner_steps;
-
 impl<S: VertexShader, M> VertexShader for Blend<S, M> {
     inner_vertex_stage!();
 }
 
 impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<S, M> {
-    inner_steps!(M::Source);
+    const STEP: usize = S::STEP;
 
     /// Blended with black.
     #[inline]
@@ -213,7 +200,18 @@ impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<
     }
 
     #[inline(always)]
-    fn over(&self, fragment: &Fragment<'_, S::Varyings>, there: P::Raw) -> Option<P::Raw> {
-        Some(self.mode.blend(self.shader.fragment(fragment)?, there))
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
+    }
+
+    #[inline(always)]
+    fn paint(&self, fragment: &Fragment<'_, S::Varyings>, pixel: &mut P::Raw) -> bool {
+        match self.shader.fragment(fragment) {
+            Some(source) => {
+                *pixel = self.mode.blend(source, *pixel);
+                true
+            }
+            None => false,
+        }
     }
 }

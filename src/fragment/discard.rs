@@ -1,7 +1,7 @@
 //! Shaders that leave fragments out: the alpha test, and the screen door.
 
-use super::blend::{inner_steps, inner_vertex_stage};
-use super::{Fragment, PixelFormat, Rgba, Shader};
+use super::blend::inner_vertex_stage;
+use super::{Fragment, PixelFormat, Rgba8888, Shader};
 use crate::geometry::{Corner, Face, VertexShader};
 use crate::math::Vec3;
 
@@ -23,8 +23,13 @@ impl<S: VertexShader> VertexShader for AlphaTest<S> {
     inner_vertex_stage!();
 }
 
-impl<P: PixelFormat, S: Shader<Rgba>> Shader<P> for AlphaTest<S> {
-    inner_steps!(Rgba);
+impl<P: PixelFormat, S: Shader<Rgba8888>> Shader<P> for AlphaTest<S> {
+    const STEP: usize = S::STEP;
+
+    #[inline(always)]
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
+    }
 
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
@@ -56,7 +61,12 @@ impl<S: VertexShader> VertexShader for ScreenDoor<S> {
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for ScreenDoor<S> {
-    inner_steps!(P);
+    const STEP: usize = S::STEP;
+
+    #[inline(always)]
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
+    }
 
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {

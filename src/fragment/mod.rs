@@ -60,7 +60,7 @@ mod texture;
 mod texture_span;
 mod textured;
 
-pub use alpha::Rgba;
+pub use alpha::Rgba8888;
 pub use bias::DepthBias;
 pub use blend::{Add, AddAlpha, Alpha, Blend, BlendMode, Multiply, Opacity, Replace};
 pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, MAX_SPAN, NoDepth};

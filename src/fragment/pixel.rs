@@ -39,7 +39,7 @@ pub trait PixelFormat {
         Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
     }
 
-    /// Whether there is an alpha channel: only in [`Rgba`](super::Rgba), for colours that are about to be blended.
+    /// Whether there is an alpha channel: only in [`Rgba8888`](super::Rgba8888), for colours that are about to be blended.
     const ALPHA: bool = false;
 
     /// [`pack_at`](Self::pack_at) of red, green, blue and alpha, which is kept if there is a channel for it.

@@ -75,13 +75,6 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
 
-    /// The colour of a pixel whose colour is `there` now: by default the fragment's; blending mixes the two.
-    #[inline(always)]
-    fn over(&self, fragment: &Fragment<'_, Self::Varyings>, there: P::Raw) -> Option<P::Raw> {
-        let _ = there;
-        self.fragment(fragment)
-    }
-
     /// A word for the fragments of a triangle, from the varyings at its vertices and twice its area in 2⁻¹⁶ px²: a level of
     /// detail.
     #[inline(always)]
@@ -97,6 +90,19 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     fn prepare(&self, varyings: &mut Self::Varyings, d_dx: &Self::Varyings) -> [u32; 2] {
         let _ = (varyings, d_dx);
         [0; 2]
+    }
+
+    /// Colours a pixel, or discards the fragment and says `false`. Only what blends with the pixel that is there has to
+    /// override it.
+    #[inline(always)]
+    fn paint(&self, fragment: &Fragment<'_, Self::Varyings>, pixel: &mut P::Raw) -> bool {
+        match self.fragment(fragment) {
+            Some(value) => {
+                *pixel = value;
+                true
+            }
+            None => false,
+        }
     }
 
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
@@ -155,9 +161,8 @@ fn linear_fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
         let depth = (z >> 16) as u16;
         if test.passes(depth, *stored) {
             let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
-            if let Some(value) = shader.over(&fragment, *color) {
+            if shader.paint(&fragment, color) {
                 test.write(depth, stored);
-                *color = value;
             }
         }
         position.0 = position.0.wrapping_add(1);
