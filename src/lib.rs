@@ -33,6 +33,7 @@
 //! # assert_eq!(sent, 320 * 240 * 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
+//! Text, images and shapes of embedded-graphics are drawn in the same closure: [`Scene::overlay`], [`Scene::at_depth`].
 //! [`Renderer::frame`] does the loop, for an embedded-graphics display; [`Renderer::frame_to`] for a
 //! [sink](output::StripSink) or a closure; [`FramebufferRenderer`](output::FramebufferRenderer) draws without strips.
 //!

@@ -13,8 +13,10 @@ use embedded_graphics::text::{Baseline, Text};
 use reference::rng::Rng;
 use support::{Soup, angle, apply, difference, matrix, on_screen, rigid, scalar, strips, vector, whole};
 use zstrip::fragment::{Compare, DepthState, Flat, Gouraud, PixelFormat};
-use zstrip::geometry::{Mesh, MeshData, Placed, Positions, ScreenVertex, Topology, Transform, Viewport, place};
-use zstrip::math::{Affine, Projective, Scalar, Vec3};
+use zstrip::geometry::{
+    DepthScale, Mesh, MeshData, Placed, Positions, ScreenVertex, Topology, Transform, Viewport, place,
+};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::output::{Buffers, FramebufferRenderer, Renderer};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
@@ -352,7 +354,7 @@ fn points_are_projected_to_where_vertices_would_be() {
     for seed in 0..600 {
         let mut rng = Rng::new(seed);
         let camera = Projective::perspective(
-            zstrip::math::Angle::from_degrees(rng.between(20, 120)),
+            Angle::from_degrees(rng.between(20, 120)),
             (rng.between(10, 300) as u16, rng.between(10, 300) as u16),
             Scalar::ONE,
             Scalar::ONE * 50,
@@ -400,11 +402,36 @@ fn points_are_projected_to_where_vertices_would_be() {
 }
 
 #[test]
+fn points_have_the_depth_of_vertices_on_either_scale() {
+    let camera =
+        Projective::perspective(Angle::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
+    let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -4));
+    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    for depth_scale in [DepthScale::Perspective, DepthScale::Uniform { far: Scalar::ONE * 9 }] {
+        let state = State { depth_scale, ..State::DEFAULT };
+        let mut depths = Vec::new();
+        for z in [-2000, -900, 0, 1100, 2500] {
+            let corners = [Vec3::from_milli(300, -200, z); 3];
+            let positions = Positions::Exact(&corners);
+            let mesh = Mesh::new(MeshData::new(positions)).expect("a mesh");
+            let mut transform = Transform::new(&mvp, &viewport, &mesh, false);
+            transform.set_depth_scale(depth_scale);
+            let Placed::Screen(expected) = transform.place(&positions, 0) else { panic!("{z} is out of view") };
+            strips::<Rgb565>(SCREEN, 48, 0, Rgb565::BLACK, |scene| {
+                assert_eq!(scene.project_with(state, corners[0], &mvp), Some(expected), "{depth_scale:?}, z {z}");
+            });
+            depths.push(expected.z);
+        }
+        assert!(depths.is_sorted_by(|a, b| a > b), "nearer is less: {depths:?}, {depth_scale:?}");
+    }
+}
+
+#[test]
 fn label_at_a_projected_point_is_hidden_by_what_is_in_front_of_the_point() {
     let square =
         Mesh::new(MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&SQUARE)) }).expect("a mesh");
-    let camera = Projective::perspective(zstrip::math::Angle::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9)
-        .expect("a camera");
+    let camera =
+        Projective::perspective(Angle::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -2));
     for (z, visible) in [(300, true), (-300, false)] {
         let point = Vec3::from_milli(-250, 0, z);

@@ -1,13 +1,14 @@
 //! What the examples on a desktop share: a picture made of strips, as a PNG file and as a window wants it.
 #![allow(dead_code)] // each program uses its part
 
+pub mod show;
 pub mod viewer;
 
 use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
-use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::fragment::PixelFormat;
 use zstrip::output::StripPixels;
 
 /// A whole frame, as a display would keep it.
@@ -29,8 +30,8 @@ impl Picture {
         Self { width, height, pixels }
     }
 
-    /// Takes a strip of a frame.
-    pub fn put(&mut self, strip: &StripPixels<'_, Rgb565>) {
+    /// Takes a strip of a frame, of RGB565 or a dithered format of it.
+    pub fn put<P: PixelFormat<Raw = u16>>(&mut self, strip: &StripPixels<'_, P>) {
         let start = strip.area().top_left.y as usize * usize::from(self.width);
         self.pixels[start..start + strip.pixels().len()].copy_from_slice(strip.pixels());
     }

@@ -2,15 +2,20 @@
 //!
 //! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
 #![allow(dead_code)] // each program uses its part
+#![allow(long_running_const_eval)] // a landscape is computed
 
 pub mod dashboard;
 pub mod formats;
 pub mod horizon;
 pub mod labels;
+pub mod landscape;
+pub mod light;
 pub mod overlay;
 pub mod polygons;
+pub mod pot;
 pub mod soup;
 pub mod textured;
+pub mod tiles;
 pub mod torus;
 pub mod water;
 pub mod wires;
@@ -44,7 +49,10 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
-    SceneInfo { name: "crates", draw: |scene, turn| crates(scene, turn) },
+    SceneInfo {
+        name: "crates",
+        draw: |scene, turn| textured::crates(scene, turn, textured::Look { bilinear: true, mips: true }),
+    },
     SceneInfo { name: "close", draw: |scene, turn| textured::close(scene, turn) },
     SceneInfo { name: "water", draw: |scene, turn| water::water(scene, turn, 1) },
     SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
@@ -54,13 +62,10 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "dashboard", draw: |scene, turn| dashboard::draw(scene, turn) },
     #[cfg(not(proof = "all"))]
     SceneInfo { name: "labels", draw: |scene, turn| labels::draw(scene, turn) },
+    SceneInfo { name: "phong", draw: |scene, turn| light::phong(scene, turn, light::Shading::PerFragmentNear) },
+    SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
+    SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
 ];
-
-/// Crates, mip chains, filters, and a fence with holes.
-fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    textured::crates(scene, turn, textured::Look { bilinear: true, mips: true });
-    textured::fence(scene, turn);
-}
 
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);

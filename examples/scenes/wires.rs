@@ -51,6 +51,9 @@ const fn spiral() -> [Vec3; POINTS] {
 pub static SPIRAL: Points<'static> = Points::constant(MeshData::new(Positions::Exact(&SPIRAL_POINTS)));
 static SPIRAL_POINTS: [Vec3; POINTS] = spiral();
 
+/// A line through them.
+static THREAD: Lines<'static> = Lines::constant(Joined::Loop, MeshData::new(Positions::Exact(&SPIRAL_POINTS)));
+
 /// Surfaces are pushed back, by a step and by what their depth changes over a pixel, so that lines on them are seen.
 pub const BEHIND_LINES: State = State { bias: DepthBias { constant: 1, slope: Scalar::ONE }, ..State::DEFAULT };
 
@@ -63,11 +66,8 @@ pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     scene.draw_with(BEHIND_LINES, &torus::MESH, &mvp, &DepthOnly);
     scene.draw_lines(&TORUS, &mvp, &Flat::unlit(Rgb888::new(150, 220, 255)));
     scene.draw_lines_with(State::DEFAULT, &AXES, &mvp, &Gouraud::colors_unlit(), &Thick::px(2));
-    scene.draw_lines_with(HIDDEN, &AXES, &mvp, &Gouraud::colors_unlit(), &Dashed::EVEN);
+    scene.draw_lines_with(HIDDEN, &AXES, &mvp, &Flat::colors_unlit(), &Dashed::EVEN);
     let blended = State { depth: DepthState { compare: Compare::Less, write: false }, ..State::DEFAULT };
     scene.draw_points(State::DEFAULT, &SPIRAL, &mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), 3 << 8);
-    let loop_through = Lines::new(Joined::Loop, MeshData::new(Positions::Exact(&SPIRAL_POINTS)));
-    if let Ok(spiral) = loop_through {
-        scene.draw_lines_with(blended, &spiral, &mvp, &Flat::unlit(Rgb888::new(255, 120, 60)), &Smooth::px(1));
-    }
+    scene.draw_lines_with(blended, &THREAD, &mvp, &Flat::unlit(Rgb888::new(255, 120, 60)), &Smooth::px(1));
 }

@@ -36,6 +36,8 @@ pub struct DepthState {
 impl DepthState {
     /// Nearer fragments pass and leave their depth.
     pub const LESS: Self = Self { compare: Compare::Less, write: true };
+    /// Nearer fragments pass and leave depth as it is: for transparent things.
+    pub const TEST: Self = Self { compare: Compare::Less, write: false };
     /// Depth is neither tested nor written: the painter's way.
     pub const OFF: Self = Self { compare: Compare::Always, write: false };
 }

@@ -66,13 +66,13 @@ impl VertexShader for Flat {
 }
 
 /// 8.8 to 8 bits, to nearest; 255.0 is the largest value there is.
-const fn round(channel: i32) -> u8 {
+pub(super) const fn round(channel: i32) -> u8 {
     ((channel + 128) >> 8) as u8
 }
 
 /// The colour of a face, from its word.
 #[inline(always)]
-const fn unpacked(face: u32) -> [u8; 3] {
+pub(super) const fn unpacked(face: u32) -> [u8; 3] {
     let [_, r, g, b] = face.to_be_bytes();
     [r, g, b]
 }
@@ -85,22 +85,28 @@ impl<P: PixelFormat> Shader<P> for Flat {
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
-        if P::DITHER.is_some() {
-            return dithered_span(unpacked(face), span, test);
+        flat_span(face, span, test);
+    }
+}
+
+/// Draws a span in the colour of a face's word.
+#[inline]
+pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
+    if P::DITHER.is_some() {
+        return dithered_span(unpacked(face), span, test);
+    }
+    let Fragments { color, depth, mut z, steps, .. } = span;
+    let dz_dx = steps.dz_dx;
+    let value = P::pack(unpacked(face));
+    if !D::ENABLED {
+        return fill(color, value);
+    }
+    for (color, depth) in color.iter_mut().zip(depth) {
+        let near = (z >> 16) as u16;
+        if test.passes(near, *depth) {
+            test.write(near, depth);
+            *color = value;
         }
-        let Fragments { color, depth, mut z, steps, .. } = span;
-        let dz_dx = steps.dz_dx;
-        let value = P::pack(unpacked(face));
-        if !D::ENABLED {
-            return fill(color, value);
-        }
-        for (color, depth) in color.iter_mut().zip(depth) {
-            let near = (z >> 16) as u16;
-            if test.passes(near, *depth) {
-                test.write(near, depth);
-                *color = value;
-            }
-            z = z.wrapping_add_signed(dz_dx);
-        }
+        z = z.wrapping_add_signed(dz_dx);
     }
 }

@@ -48,7 +48,7 @@ pub(super) const fn squeeze(c: i32) -> i32 {
 }
 
 /// The integer nearest to the channel that was squeezed.
-const fn unsqueeze(c: i32) -> u8 {
+pub(super) const fn unsqueeze(c: i32) -> u8 {
     ((c + (c >> 8)) >> 16) as u8
 }
 
@@ -73,18 +73,12 @@ impl VertexShader for Gouraud {
 
     #[inline]
     fn store(rgb: &[i32; 3], words: &mut [u32]) {
-        let [r, g, b] = *rgb;
-        let packed = ((r + (1 << 13)) >> 14) << 22 | ((g + (1 << 12)) >> 13) << 11 | (b + (1 << 12)) >> 13;
-        if let [word] = words {
-            *word = packed as u32;
-        }
+        store(rgb, words);
     }
 
     #[inline]
     fn load(words: &[u32]) -> [i32; 3] {
-        let word = words.first().copied().unwrap_or(0);
-        let channel = |bits: u32| (bits << 13) as i32;
-        [channel(word >> 22 << 1), channel((word >> 11) & 0x7FF), channel(word & 0x7FF)]
+        load(words)
     }
 }
 
@@ -101,12 +95,34 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
-        if P::PACKED {
-            packed_span(span, test);
-        } else {
-            fragments(self, face, span, test);
+        match span {
+            // A line's pixel, or a tip of a triangle.
+            Fragments { color: [color], depth: [depth], z, varyings, position, .. } if P::PACKED => {
+                let mut pen = Pen { z, dz_dx: 0, word: word(spread::<P>(varyings)), step: 0, mask: P::packed_mask() };
+                pen.draw::<P, D>(test, P::dither(position)[0], color, depth);
+            }
+            span if P::PACKED => packed_span(span, test),
+            span => fragments(self, face, span, test),
         }
     }
+}
+
+/// Channels in one word of the records.
+#[inline]
+pub(super) fn store(rgb: &[i32; 3], words: &mut [u32]) {
+    let [r, g, b] = *rgb;
+    let packed = ((r + (1 << 13)) >> 14) << 22 | ((g + (1 << 12)) >> 13) << 11 | (b + (1 << 12)) >> 13;
+    if let [word] = words {
+        *word = packed as u32;
+    }
+}
+
+/// What [`store`] packed.
+#[inline]
+pub(super) fn load(words: &[u32]) -> [i32; 3] {
+    let word = words.first().copied().unwrap_or(0);
+    let channel = |bits: u32| (bits << 13) as i32;
+    [channel(word >> 22 << 1), channel((word >> 11) & 0x7FF), channel(word & 0x7FF)]
 }
 
 /// A word of three channels: red 8.3 in the upper 11 bits, blue 8.3 in the next 11, green 8.2 in the lower 10.
@@ -131,7 +147,7 @@ pub(super) const fn word([r, g, b]: [i32; 3]) -> u32 {
 /// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
 /// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next.
 #[inline(never)]
-fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
+pub(super) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
     let mut one = [0; 3];
     let mut group = [0; 3];
     for (k, (value, &step)) in rgb.iter_mut().zip(d_dx).enumerate() {

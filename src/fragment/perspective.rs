@@ -133,7 +133,7 @@ pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: Dept
             let depth = (z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
                 let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
-                if let Some(value) = shader.fragment(&fragment) {
+                if let Some(value) = shader.over(&fragment, *color) {
                     test.write(depth, stored);
                     *color = value;
                 }

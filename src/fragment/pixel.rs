@@ -25,6 +25,29 @@ pub trait PixelFormat {
         Self::pack([(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8])
     }
 
+    /// `a` · `weight` + `b` · (256 - `weight`), over 256 and rounded, in 8 bits a channel; for formats of 5 or 6 bits a
+    /// channel by channels of as many, with `weight` rounded to 32nds: within 1.5 of their steps.
+    #[inline(always)]
+    fn mix(a: Self::Raw, b: Self::Raw, weight: u32) -> Self::Raw {
+        Self::pack(mix(Self::unpack(a), Self::unpack(b), weight))
+    }
+
+    /// The sum of two colours, each channel at most full.
+    #[inline(always)]
+    fn add(a: Self::Raw, b: Self::Raw) -> Self::Raw {
+        let ([ar, ag, ab], [br, bg, bb]) = (Self::unpack(a), Self::unpack(b));
+        Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
+    }
+
+    /// Whether there is an alpha channel: only in [`Rgba`](super::Rgba), for colours that are about to be blended.
+    const ALPHA: bool = false;
+
+    /// [`pack_at`](Self::pack_at) of red, green, blue and alpha, which is kept if there is a channel for it.
+    #[inline(always)]
+    fn pack_rgba([r, g, b, _]: [u8; 4], position: (i32, i32)) -> Self::Raw {
+        Self::pack_at([r, g, b], position)
+    }
+
     /// Packs a colour for a pixel of the screen: dithered, if the format dithers.
     #[inline(always)]
     fn pack_at(rgb: [u8; 3], position: (i32, i32)) -> Self::Raw {
@@ -66,4 +89,11 @@ pub trait PixelFormat {
 
     /// To embedded-graphics' colour.
     fn to_color(raw: Self::Raw) -> Self::Color;
+}
+
+/// A mixture of two colours, `weight` 256ths of the first.
+#[inline(always)]
+pub(super) fn mix([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], weight: u32) -> [u8; 3] {
+    let channel = |a: u8, b: u8| ((u32::from(a) * weight + u32::from(b) * (256 - weight) + 128) >> 8) as u8;
+    [channel(r, s), channel(g, t), channel(b, u)]
 }

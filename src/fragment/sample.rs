@@ -3,7 +3,7 @@
 //! Coordinates are 16.16, the texture being 0..1 in both directions; what is beyond is up to a [`Wrap`].
 
 use super::PixelFormat;
-use super::texel::{OPAQUE, Rgba};
+use super::texel::OPAQUE;
 use super::texture::Texture;
 
 /// What is outside of the texture.
@@ -80,7 +80,7 @@ pub trait Filter: Copy {
     const NEAREST: bool = false;
 
     /// The colour at coordinates of 16.16.
-    fn rgba<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Rgba;
+    fn rgba<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> [u8; 4];
 
     /// A pixel of it, unless it is transparent.
     fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Option<P::Raw>;
@@ -102,7 +102,7 @@ impl Filter for Nearest {
     const NEAREST: bool = true;
 
     #[inline]
-    fn rgba<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Rgba {
+    fn rgba<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> [u8; 4] {
         let (x, y) = Self::texel::<T, W>(texture, uv);
         texture.rgba(x, y)
     }
@@ -164,7 +164,7 @@ static UNMIX: [u16; 128] = {
 impl Bilinear {
     /// Mixed colours of transparent texels are black, so what is left is brought up to what it is where all are opaque.
     #[inline(never)]
-    fn unmix([r, g, b, a]: Rgba) -> Rgba {
+    fn unmix([r, g, b, a]: [u8; 4]) -> [u8; 4] {
         let Some(factor) = UNMIX.get(usize::from(a).wrapping_sub(128)) else {
             return [r, g, b, a];
         };
@@ -175,7 +175,7 @@ impl Bilinear {
 
 impl Filter for Bilinear {
     #[inline]
-    fn rgba<T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> Rgba {
+    fn rgba<T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> [u8; 4] {
         let (width, height) = texture.size();
         let (x0, x1, tx) = pair::<W>(u, width);
         let (y0, y1, ty) = pair::<W>(v, height);
@@ -215,7 +215,7 @@ impl Filter for Bilinear {
 
 /// Channels times alpha.
 #[inline(never)]
-fn premultiplied([r, g, b, a]: Rgba) -> u32 {
+fn premultiplied([r, g, b, a]: [u8; 4]) -> u32 {
     let scaled = |c: u8| ((u32::from(c) * u32::from(a) * 257 + (1 << 15)) >> 16) as u8;
     u32::from_le_bytes([scaled(r), scaled(g), scaled(b), a])
 }

@@ -75,6 +75,13 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
 
+    /// The colour of a pixel whose colour is `there` now: by default the fragment's; blending mixes the two.
+    #[inline(always)]
+    fn over(&self, fragment: &Fragment<'_, Self::Varyings>, there: P::Raw) -> Option<P::Raw> {
+        let _ = there;
+        self.fragment(fragment)
+    }
+
     /// A word for the fragments of a triangle, from the varyings at its vertices and twice its area in 2⁻¹⁶ px²: a level of
     /// detail.
     #[inline(always)]
@@ -115,8 +122,8 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     for (color, stored) in color.iter_mut().zip(depth) {
         let depth = (z >> 16) as u16;
         if !D::ENABLED || test.passes(depth, *stored) {
-            if let Some(value) = shader.fragment(&Fragment { face, varyings: &varyings, position, depth, side, level })
-            {
+            let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+            if let Some(value) = shader.over(&fragment, *color) {
                 test.write(depth, stored);
                 *color = value;
             }

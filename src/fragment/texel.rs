@@ -2,9 +2,6 @@
 
 use super::PixelFormat;
 
-/// Red, green, blue, alpha.
-pub type Rgba = [u8; 4];
-
 /// Alpha from which on a texel is drawn at all.
 pub(super) const OPAQUE: u8 = 128;
 
@@ -19,7 +16,7 @@ pub trait TexelFormat: Copy {
     const IS_RGB565: bool = false;
 
     /// What a texel's bits mean, 8 bits a channel.
-    fn rgba(&self, texel: u32) -> Rgba;
+    fn rgba(&self, texel: u32) -> [u8; 4];
 
     /// The same as RGB565.
     #[inline(always)]
@@ -48,7 +45,7 @@ impl TexelFormat for Rgb565Texel {
     const IS_RGB565: bool = true;
 
     #[inline(always)]
-    fn rgba(&self, texel: u32) -> Rgba {
+    fn rgba(&self, texel: u32) -> [u8; 4] {
         expand(texel as u16)
     }
 
@@ -67,7 +64,7 @@ impl TexelFormat for Rgb565LeTexel {
     const IS_RGB565: bool = true;
 
     #[inline(always)]
-    fn rgba(&self, texel: u32) -> Rgba {
+    fn rgba(&self, texel: u32) -> [u8; 4] {
         expand(self.rgb565(texel))
     }
 
@@ -79,7 +76,7 @@ impl TexelFormat for Rgb565LeTexel {
 
 /// RGB565 to 8 bits a channel, the upper bits repeated below.
 #[inline(always)]
-pub(super) const fn expand(raw: u16) -> Rgba {
+pub(super) const fn expand(raw: u16) -> [u8; 4] {
     let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
     [(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8, 255]
 }
@@ -92,7 +89,7 @@ impl TexelFormat for Rgb888Texel {
     const BITS: usize = 24;
 
     #[inline(always)]
-    fn rgba(&self, texel: u32) -> Rgba {
+    fn rgba(&self, texel: u32) -> [u8; 4] {
         let [_, r, g, b] = texel.to_be_bytes();
         [r, g, b, 255]
     }
@@ -106,7 +103,7 @@ impl TexelFormat for Gray8Texel {
     const BITS: usize = 8;
 
     #[inline(always)]
-    fn rgba(&self, texel: u32) -> Rgba {
+    fn rgba(&self, texel: u32) -> [u8; 4] {
         let grey = texel as u8;
         [grey, grey, grey, 255]
     }
@@ -120,7 +117,7 @@ impl<const BITS: usize> TexelFormat for PaletteTexel<'_, BITS> {
     const BITS: usize = BITS;
 
     #[inline(always)]
-    fn rgba(&self, texel: u32) -> Rgba {
+    fn rgba(&self, texel: u32) -> [u8; 4] {
         match self.0.get(texel as usize) {
             Some([r, g, b]) => [*r, *g, *b, 255],
             None => [0; 4],
@@ -136,7 +133,7 @@ impl TexelFormat for MaskTexel {
     const BITS: usize = 1;
 
     #[inline(always)]
-    fn rgba(&self, texel: u32) -> Rgba {
+    fn rgba(&self, texel: u32) -> [u8; 4] {
         let [r, g, b] = self.0;
         if texel == 0 { [0; 4] } else { [r, g, b, 255] }
     }
@@ -155,7 +152,7 @@ impl<F: TexelFormat> TexelFormat for Keyed<F> {
     const BITS: usize = F::BITS;
 
     #[inline(always)]
-    fn rgba(&self, texel: u32) -> Rgba {
+    fn rgba(&self, texel: u32) -> [u8; 4] {
         if texel == self.key { [0; 4] } else { self.format.rgba(texel) }
     }
 

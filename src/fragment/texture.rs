@@ -1,7 +1,7 @@
 //! Textures: images in flash, in the formats of [`TexelFormat`], and small tiles for the fastest loop.
 
 use super::PixelFormat;
-use super::texel::{OPAQUE, Rgba, TexelFormat, expand};
+use super::texel::{OPAQUE, TexelFormat, expand};
 use crate::math::SMALL_CORE;
 
 /// A rectangle of texels.
@@ -12,7 +12,7 @@ pub trait Texture {
     fn size(&self) -> (u16, u16);
 
     /// The texel at a column and a row.
-    fn rgba(&self, x: u32, y: u32) -> Rgba;
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4];
 
     /// A pixel from it, unless it is transparent.
     fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw>;
@@ -142,7 +142,7 @@ impl<F: TexelFormat> Texture for Image<'_, F> {
     }
 
     #[inline(always)]
-    fn rgba(&self, x: u32, y: u32) -> Rgba {
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
         self.format.rgba(self.texel(x, y))
     }
 
@@ -189,7 +189,7 @@ impl<const W: usize, const H: usize> Texture for Tile<'_, W, H> {
     }
 
     #[inline(always)]
-    fn rgba(&self, x: u32, y: u32) -> Rgba {
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
         expand(self.rgb565(x, y))
     }
 
@@ -247,7 +247,7 @@ impl<T: Texture> Texture for WithAlpha<'_, T> {
     }
 
     #[inline(always)]
-    fn rgba(&self, x: u32, y: u32) -> Rgba {
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
         let [r, g, b, _] = self.texture.rgba(x, y);
         [r, g, b, (self.alpha.texel(x, y) * 17) as u8]
     }

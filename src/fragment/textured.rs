@@ -116,12 +116,17 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
 
     #[inline(always)]
     fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<P::Raw> {
-        F::pixel::<P, T, W>(self.level(fragment.level)?, fragment.varyings.corrected())
+        let (texture, uv) = (self.level(fragment.level)?, fragment.varyings.corrected());
+        if P::ALPHA || P::DITHER.is_some() {
+            return visible::<P>(F::rgba::<T, W>(texture, uv), fragment.position);
+        }
+        F::pixel::<P, T, W>(texture, uv)
     }
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>, D::Stored>, test: D) {
         match self.level(span.steps.level) {
+            _ if P::ALPHA || P::DITHER.is_some() => fragments(self, face, span, test),
             Some(texture) if W::REPEATS && F::NEAREST && span.steps.correction.class() != PerspectiveClass::Wide => {
                 texture_span(texture, span, test);
             }
@@ -171,6 +176,12 @@ impl<T, W, F> VertexShader for LitTexture<'_, T, W, F> {
     }
 }
 
+/// The pixel of a texel, unless that is transparent and the format cannot say so.
+#[inline(always)]
+fn visible<P: PixelFormat>(rgba: [u8; 4], position: (i32, i32)) -> Option<P::Raw> {
+    if P::ALPHA || rgba[3] >= OPAQUE { Some(P::pack_rgba(rgba, position)) } else { None }
+}
+
 /// A channel under light of 8.16, 255.0 leaving it as it is.
 #[inline(always)]
 fn under(channel: u8, light: i32) -> u8 {
@@ -195,6 +206,6 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for LitTexture<'_
     fn fragment(&self, fragment: &Fragment<'_, LitVaryings>) -> Option<P::Raw> {
         let [r, g, b, a] = F::rgba::<T, W>(self.texture.level(fragment.level)?, fragment.varyings.corrected());
         let [lr, lg, lb] = fragment.varyings.linear() else { return None };
-        if a < OPAQUE { None } else { Some(P::pack([under(r, *lr), under(g, *lg), under(b, *lb)])) }
+        visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
     }
 }

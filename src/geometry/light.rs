@@ -40,6 +40,25 @@ const fn unit(direction: Vec3) -> [i16; 3] {
     }
 }
 
+/// The matrix of a model, shifted until its largest entry is at least 1/2, as in any rotation: models that are scaled far
+/// down would leave few bits of a direction.
+const fn enlarged(model: &Affine) -> Affine {
+    let rows = model.to_rows();
+    let mut widest = 1;
+    let mut k = 0;
+    while k < 3 {
+        widest |= rows[k][0].unsigned_abs() | rows[k][1].unsigned_abs() | rows[k][2].unsigned_abs();
+        k += 1;
+    }
+    // The top bit of 1/2 is bit 15.
+    let shift = widest.leading_zeros().saturating_sub(16);
+    Affine::from_rows(shifted(rows[0], shift), shifted(rows[1], shift), shifted(rows[2], shift), Vec3::ZERO)
+}
+
+const fn shifted(row: [i32; 4], shift: u32) -> Vec3 {
+    Vec3::from_bits([row[0] << shift, row[1] << shift, row[2] << shift])
+}
+
 impl Light {
     /// A light that comes from `direction`, a vector of any length that points *towards* it, beside an ambient one.
     ///
@@ -59,7 +78,7 @@ impl Light {
     pub const fn to_object(&self, model: &Affine) -> Self {
         let [x, y, z] = self.direction;
         let direction = Vec3::from_bits([(x as i32) << 2, (y as i32) << 2, (z as i32) << 2]);
-        Self { direction: unit(model.inverse_rigid().transform_vector(direction)), ..*self }
+        Self { direction: unit(enlarged(model).inverse_rigid().transform_vector(direction)), ..*self }
     }
 
     /// Red, green, blue in 8.8 of a surface of a colour with a unit normal: `self.on(color).shade(normal)`, in one.

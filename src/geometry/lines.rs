@@ -32,8 +32,10 @@ pub enum Joined {
 #[derive(Clone, Copy, Debug)]
 pub struct Lines<'a> {
     vertices: Mesh<'a>,
-    joined: Joined,
     indices: Option<&'a [u16]>,
+    /// Indices, or vertices without them; from one line to the next, 1 or 2 of them.
+    ends: usize,
+    step: usize,
     count: usize,
 }
 
@@ -80,7 +82,8 @@ impl<'a> Lines<'a> {
         if !whole {
             return Err(MeshError::Incomplete(ends));
         }
-        Ok(Self { vertices, joined, indices: data.indices, count })
+        let step = if matches!(joined, Joined::Pairs) { 2 } else { 1 };
+        Ok(Self { vertices, indices: data.indices, ends, step, count })
     }
 
     /// [`new`](Self::new) for `const` and `static` lines: those that are wrong do not compile.
@@ -117,14 +120,14 @@ impl<'a> Lines<'a> {
         if n >= self.count {
             return None;
         }
-        let at = match self.joined {
-            Joined::Pairs => [2 * n, 2 * n + 1],
-            Joined::Loop if n + 1 == self.count => [n, 0],
-            Joined::Strip | Joined::Loop => [n, n + 1],
-        };
+        let (from, mut to) = (n * self.step, n * self.step + 1);
+        // Only a loop has a line that begins at the last end.
+        if to == self.ends {
+            to = 0;
+        }
         match self.indices {
-            Some(indices) => Some([*indices.get(at[0])?, *indices.get(at[1])?]),
-            None => Some(at.map(|k| k as u16)),
+            Some(indices) => Some([*indices.get(from)?, *indices.get(to)?]),
+            None => Some([from as u16, to as u16]),
         }
     }
 

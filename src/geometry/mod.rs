@@ -1,4 +1,5 @@
-//! Object → screen primitive: meshes, lines and points, bounds, the viewport, culling, vertex transform, lighting, clipping, projection.
+//! Object → screen primitive: meshes, lines and points, bounds, the viewport, culling, vertex transform, lights and
+//! materials, clipping, projection.
 
 mod bounds;
 mod clip;
@@ -7,8 +8,13 @@ mod clip_line;
 mod edges;
 mod frustum;
 mod light;
+mod lighting;
 mod lines;
+mod lit_material;
+mod local_space;
+mod material;
 mod mesh;
+mod order;
 mod project;
 mod transform;
 mod varyings;
@@ -22,8 +28,13 @@ pub use clip_line::clip_line;
 pub use edges::{EdgesError, edges};
 pub use frustum::{Containment, Frustum, Plane};
 pub use light::{Light, Lit, NORMAL_ONE};
+pub use lighting::{DirectionalLight, Lighting, PointLight, Viewer};
 pub use lines::{Joined, Lines, Points};
+pub use lit_material::LitMaterial;
+pub use local_space::LocalSpace;
+pub use material::Material;
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
+pub use order::{sort_back_to_front, view_depth};
 pub(crate) use project::small;
 pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
 pub use transform::{Placed, Transform, View, place};

@@ -85,6 +85,13 @@ impl<'a> Face<'a> {
         Corner::new(self.mesh, usize::from(self.corners[0]))
     }
 
+    /// The three vertices, the provoking one first.
+    pub fn corners(&self) -> [Corner<'a>; 3] {
+        let [a, b, c] = self.corners;
+        let corner = |k: u16| Corner::new(self.mesh, usize::from(k));
+        [corner(a), corner(b), corner(c)]
+    }
+
     /// Normal of the face in object space, 2.14: the mesh's own where it has face normals, computed otherwise. Zero for
     /// a triangle without area.
     #[inline]

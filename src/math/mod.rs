@@ -1,10 +1,12 @@
-//! The numbers: fixed-point formats, binary angles, vectors, matrices, reciprocals.
+//! The numbers: fixed-point formats, binary angles, vectors, matrices, reciprocals, inverse roots and powers.
 //!
 //! Everything here is exact integer arithmetic with a stated rounding; most of it is `const`.
 
 mod affine;
 mod angle;
+mod exponential;
 mod format;
+mod inverse_sqrt;
 #[cfg(feature = "micromath")]
 mod micromath;
 mod precision;
@@ -15,7 +17,9 @@ mod vector;
 
 pub use affine::Affine;
 pub use angle::Angle;
+pub use exponential::exp_negative;
 pub use format::{Scalar, Wide};
+pub use inverse_sqrt::{inverse_sqrt, unit_vector};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
 pub use precision::{DepthPrecision, PrecisionError};

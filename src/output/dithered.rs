@@ -57,6 +57,16 @@ impl<P: Ditherable> PixelFormat for Dithered<P> {
         P::unpack(raw)
     }
 
+    #[inline(always)]
+    fn mix(a: P::Raw, b: P::Raw, weight: u32) -> P::Raw {
+        P::mix(a, b, weight)
+    }
+
+    #[inline(always)]
+    fn add(a: P::Raw, b: P::Raw) -> P::Raw {
+        P::add(a, b)
+    }
+
     const DITHER: Option<[u32; 3]> = Some(P::BITS);
 
     #[inline(always)]

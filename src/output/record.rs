@@ -79,6 +79,9 @@ impl Slot {
         if self.is_on_screen() { 0 } else { self.0[0] as u8 }
     }
 
+    /// First words below it, taken as signed, are not those of vertices on the screen; y of others begins their second.
+    pub(crate) const LEAST_X: i32 = (OFF_SCREEN as i32) + 0x100;
+
     /// Where a vertex on the screen is.
     #[inline]
     pub(crate) const fn screen(self) -> ScreenVertex {
@@ -225,6 +228,12 @@ impl<'a> Records<'a> {
     #[inline]
     pub(crate) fn slot(&self, index: usize) -> Slot {
         Slot::read(self.words.get(self.layout.vertices + index * self.layout.stride..).unwrap_or_default())
+    }
+
+    /// The words of the current draw's vertices, and how many each has.
+    #[inline]
+    pub(crate) fn vertices(&self) -> (&[u32], usize) {
+        (self.words.get(self.layout.vertices..).unwrap_or_default(), self.layout.stride)
     }
 
     /// The words of a vertex of the current draw.

@@ -156,12 +156,13 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         // What a line has to touch, in 24.8.
         let (left, right) = (256 * (self.clip.x.start - reach), 256 * (self.clip.x.end + reach));
         let (top, bottom) = (256 * (self.clip.y.start - reach), 256 * (self.clip.y.end + reach));
-        for number in 0..lines.count() {
-            let Some([i, j]) = lines.line(number) else { return };
-            self.scene.stats.lines = self.scene.stats.lines.wrapping_add(1);
+        self.scene.stats.lines = self.scene.stats.lines.wrapping_add(lines.count() as u32);
+        let mut number = 0;
+        while let Some((candidate, [i, j])) = self.next_near(lines, number, top, bottom) {
+            number = candidate + 1;
             let (a, b) = (self.slot(usize::from(i)), self.slot(usize::from(j)));
             if !(a.is_on_screen() & b.is_on_screen()) {
-                self.clip([a.outcode(), b.outcode()], [i, j], number, stroke);
+                self.clip([a.outcode(), b.outcode()], [i, j], candidate, stroke);
                 continue;
             }
             let (a, b) = (a.screen(), b.screen());
@@ -172,7 +173,30 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
                 continue;
             }
             let ends = [(a, self.varyings(i)), (b, self.varyings(j))];
-            self.draw(&ends, [i, j], number, stroke);
+            self.draw(&ends, [i, j], candidate, stroke);
+        }
+    }
+
+    /// The next line from `number` on that may have pixels in these rows: all others have both of their ends above, or both
+    /// below them. Many lines are passed over in each strip, so this is a loop of its own.
+    #[inline(never)]
+    fn next_near(&self, lines: &Lines<'_>, mut number: usize, top: i32, bottom: i32) -> Option<(usize, [u16; 2])> {
+        let (words, stride) = self.scene.records.vertices();
+        // Coordinates have 24 bits; those of vertices that are not on the screen are the least there are.
+        let (top, bottom) = (top.max(-(1 << 23)) << 8, (bottom.min((1 << 23) - 1) << 8) | 0xFF);
+        loop {
+            let [i, j] = lines.line(number)?;
+            let (at, to) = (usize::from(i) * stride, usize::from(j) * stride);
+            let (Some(x), Some(to_x)) = (words.get(at), words.get(to)) else { return Some((number, [i, j])) };
+            let (Some(y), Some(to_y)) = (words.get(at + 1), words.get(to + 1)) else { return Some((number, [i, j])) };
+            let (y, to_y) = (*y as i32, *to_y as i32);
+            if !((y < top && to_y < top) || (y > bottom && to_y > bottom)) {
+                return Some((number, [i, j]));
+            }
+            if (*x as i32).min(*to_x as i32) < Slot::LEAST_X {
+                return Some((number, [i, j]));
+            }
+            number += 1;
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::{Phase, Scene, State};
 use crate::fragment::{AnyDepth, DepthState, DepthTest, LessWrite, NoDepth};
-use crate::geometry::{Mesh, MeshData, Placed, Positions, ScreenVertex, Transform, place};
+use crate::geometry::{Mesh, MeshData, Placed, Positions, ScreenVertex, Transform};
 use crate::math::{Projective, Vec3};
 use crate::output::{Framebuffer, Overlay};
 
@@ -51,7 +51,7 @@ impl<F: Framebuffer> Scene<'_, F> {
     pub fn project_with(&self, state: State, point: Vec3, mvp: &Projective) -> Option<ScreenVertex> {
         let mut transform = Transform::new(mvp, &self.viewport, &POINTS, false);
         transform.set_depth_scale(state.depth_scale);
-        match place(&transform.point(point)) {
+        match transform.place(&Positions::Exact(&[point]), 0) {
             Placed::Screen(vertex) => Some(vertex),
             Placed::Outside(_) => None,
         }

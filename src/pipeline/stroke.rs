@@ -143,40 +143,33 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     let mut moved = values;
     let words = painter.shader.prepare(&mut moved, &d_dx);
     let steps = Steps::linear(dz, d_dx, words, Side::Front);
-    // Values at the first pixel of the window; if it lies before the one that values are given for, those of the end.
-    let before = skipped < along.origin();
-    let on = skipped.wrapping_sub(along.origin()) as i32;
     // With the half that rounds, and the bias.
     let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
-    let z = z.wrapping_add(bias);
-    let mut run = Run { pixels, z, values: moved, pattern: pattern.rotate_right(skipped & 31), face, steps: &steps };
-    let mut rest = 0;
-    if before {
-        rest = run.pixels.shorten(1);
-        run.z = (u32::from(a.z) << 16).wrapping_add(bias);
-        // Moved as the others.
+    let mut run = Run { pixels, z: z.wrapping_add(bias), values: moved, pattern, face, steps: &steps };
+    if DASHED {
+        run.pattern = pattern.rotate_right(skipped & 31);
+    }
+    // A first pixel that lies before the one that values are given for has those of the end; moved as the others.
+    if skipped < along.origin() {
+        let mut first =
+            Run { pixels: LinePixels { left: 1, ..pixels }, z: (u32::from(a.z) << 16).wrapping_add(bias), ..run };
         for (((value, from), moved), start) in
-            run.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
+            first.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
         {
             *value = from.wrapping_add(moved.wrapping_sub(*start));
         }
+        draw_run::<F, S, DASHED>(painter, &first);
+        run.pattern = run.pattern.rotate_right(1);
+        // The pixel is drawn.
+        let _ = run.pixels.next();
     } else {
-        run.z = z.wrapping_add_signed(dz.wrapping_mul(on));
+        let on = skipped.wrapping_sub(along.origin()) as i32;
+        run.z = run.z.wrapping_add_signed(dz.wrapping_mul(on));
         for (value, step) in run.values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
             *value = value.wrapping_add(step.wrapping_mul(on));
         }
     }
-    loop {
-        match painter.test() {
-            DepthState { compare: Compare::Less, write: true } => run.draw::<F, S, _, DASHED>(painter, LessWrite),
-            other => run.draw::<F, S, _, DASHED>(painter, AnyDepth::new(other)),
-        }
-        if rest == 0 {
-            return;
-        }
-        run.pixels.lengthen(rest);
-        (run.z, run.values, rest) = (z, moved, 0);
-    }
+    draw_run::<F, S, DASHED>(painter, &run);
 }
 
 impl<F, S> Painter<'_, '_, F, S> {
@@ -191,6 +184,7 @@ impl<F, S> Painter<'_, '_, F, S> {
 }
 
 /// Pixels of a line, and what is interpolated over them.
+#[derive(Clone, Copy)]
 struct Run<'r, V: Varyings> {
     pixels: LinePixels,
     z: u32,
@@ -200,18 +194,85 @@ struct Run<'r, V: Varyings> {
     steps: &'r Steps<V>,
 }
 
+/// Draws pixels, with a loop for each kind of test.
+#[inline(never)]
+fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
+    painter: &mut Painter<'_, '_, F, S>,
+    run: &Run<'_, S::Varyings>,
+) {
+    let test = painter.test();
+    let Painter { target, screen, shader, .. } = painter;
+    let (width, first_row) = (usize::from(screen.0), target.rows.start);
+    let Some(colors) = target.framebuffer.rows(first_row as u32, width) else {
+        return run.draw_spans::<F, S, DASHED>(painter);
+    };
+    let depths = &mut *target.depth;
+    match test {
+        DepthState { compare: Compare::Less, write: true } => {
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, LessWrite);
+        }
+        DepthState::OFF => {
+            run.draw::<F::Format, S, _, DASHED>(colors, &mut [(); usize::MAX], width, first_row, shader, NoDepth);
+        }
+        other => {
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, AnyDepth::new(other));
+        }
+    }
+}
+
 impl<V: Varyings> Run<'_, V> {
-    /// Draws all of its pixels, each as a span of its own.
+    /// Draws all of its pixels, each as a span of its own, into rows that lie one after the other.
     #[inline(always)]
-    fn draw<F: Framebuffer, S: Shader<F::Format, Varyings = V>, D: DepthTest<Stored = u16>, const DASHED: bool>(
-        &mut self,
-        painter: &mut Painter<'_, '_, F, S>,
+    fn draw<P: PixelFormat, S: Shader<P, Varyings = V>, D: DepthTest, const DASHED: bool>(
+        &self,
+        colors: &mut [P::Raw],
+        depths: &mut [D::Stored],
+        width: usize,
+        first_row: i32,
+        shader: &S,
         test: D,
     ) {
-        let Self { pixels, z, values, pattern, face, steps } = self;
+        let index = |(x, y): (i32, i32)| (y.wrapping_mul(width as i32)).wrapping_add(x) as usize;
+        let LinePixels { mut position, straight, diagonal, mut error, height, length, left } = self.pixels;
+        // The same place in colours and depths; in range, as the pixels are in the strip.
+        let mut at = index((position.0, position.1 - first_row));
+        let (straight_at, diagonal_at) = (index(straight), index(diagonal));
+        let Self { mut z, mut values, mut pattern, face, steps, .. } = *self;
+        for _ in 0..left {
+            if !DASHED || pattern & 1 != 0 {
+                if let (Some(color), Some(depth)) = (colors.get_mut(at), depths.get_mut(at)) {
+                    let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
+                    shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
+                }
+            }
+            let (mut step, mut step_at) = (straight, straight_at);
+            error = error.wrapping_add(height);
+            if error >= 0 {
+                error = error.wrapping_sub(length);
+                (step, step_at) = (diagonal, diagonal_at);
+            }
+            at = at.wrapping_add(step_at);
+            position = (position.0.wrapping_add(step.0), position.1.wrapping_add(step.1));
+            if DASHED {
+                pattern = pattern.rotate_right(1);
+            }
+            z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+
+    /// The same into any framebuffer.
+    fn draw_spans<F: Framebuffer, S: Shader<F::Format, Varyings = V>, const DASHED: bool>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+    ) {
         let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
-        for (x, y) in pixels.by_ref() {
-            if !DASHED || *pattern & 1 != 0 {
+        let Self { pixels, mut z, mut values, mut pattern, face, steps } = *self;
+        let test = AnyDepth::new(painter.test());
+        for (x, y) in pixels {
+            if !DASHED || pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
                 let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
                 // Without a depth buffer, the test is one that passes.
@@ -219,14 +280,12 @@ impl<V: Varyings> Run<'_, V> {
                 let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
                 if let [color] = color {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
-                    let span = Fragments { color, depth, z: *z, varyings: *values, steps, position: (x, y) };
-                    painter.shader.span(*face, span, test);
+                    let position = (x, y);
+                    painter.shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
                 }
             }
-            if DASHED {
-                *pattern = pattern.rotate_right(1);
-            }
-            *z = z.wrapping_add_signed(steps.dz_dx);
+            pattern = pattern.rotate_right(1);
+            z = z.wrapping_add_signed(steps.dz_dx);
             for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
                 *value = value.wrapping_add(*step);
             }
@@ -244,15 +303,24 @@ fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, 
     // 2.30 times 24.8, rounded.
     let times = |c: i32, length: u32| (crate::math::mul_high_signed(c, length << 3) + 1) >> 1;
     let (along, aside) = ((times(u, more), times(v, more)), (times(-v, half), times(u, half)));
-    let corner = |p: &ScreenVertex, x: i32, y: i32| {
-        const LIMIT: i32 = (1 << 23) - 1;
-        ScreenVertex::new((p.x + x).clamp(-LIMIT, LIMIT), (p.y + y).clamp(-LIMIT, LIMIT), p.z)
+    // An end so far out that its corners would be out of range is moved in by four times as much: a line that comes from
+    // there to the screen does so at an angle for which that is enough, and it is far longer.
+    const LIMIT: i32 = (1 << 23) - 1;
+    let room = LIMIT - (half + more) as i32;
+    let inward = (times(u, 4 * (half + more)), times(v, 4 * (half + more)));
+    let moved = |p: &ScreenVertex, sign: i32| {
+        let sign = if p.x.abs().max(p.y.abs()) > room { sign } else { 0 };
+        (p.x + sign * inward.0, p.y + sign * inward.1)
+    };
+    let (from, to) = (moved(a, 1), moved(b, -1));
+    let corner = |p: (i32, i32), z: u16, x: i32, y: i32| {
+        ScreenVertex::new((p.0 + x).clamp(-LIMIT, LIMIT), (p.1 + y).clamp(-LIMIT, LIMIT), z)
     };
     [
-        corner(a, -along.0 + aside.0, -along.1 + aside.1),
-        corner(b, along.0 + aside.0, along.1 + aside.1),
-        corner(b, along.0 - aside.0, along.1 - aside.1),
-        corner(a, -along.0 - aside.0, -along.1 - aside.1),
+        corner(from, a.z, -along.0 + aside.0, -along.1 + aside.1),
+        corner(to, b.z, along.0 + aside.0, along.1 + aside.1),
+        corner(to, b.z, along.0 - aside.0, along.1 - aside.1),
+        corner(from, a.z, -along.0 - aside.0, -along.1 - aside.1),
     ]
 }
 
@@ -320,7 +388,7 @@ struct Coverage {
     /// Half the width and half a pixel, and the most that can be covered, 12.20.
     outer: i32,
     most: i32,
-    /// The length and half a pixel, and the most, 16.16.
+    /// Where along it the line ends, and half a pixel, and the most that can be covered, 16.16.
     end: i32,
     longest: i32,
 }
@@ -336,17 +404,19 @@ impl Coverage {
         let (u, v) = (i64::from(u), i64::from(v));
         let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
         // 24.8 times 2.30: 38 fractional bits. Distances grow to the right of the line, as y points down.
-        let length = ((u * dx + v * dy) >> 22) as i32;
+        let (length, way) = ((u * dx + v * dy) >> 22, (u * x + v * y) >> 22);
+        // Over the screen both change by less than 6000 px: an end that is farther away than that does not matter.
+        let stop = |way: i64| way.clamp(-16_000 << 16, 16_000 << 16) as i32;
         let step = |c: i64, down: u32| ((c >> (down - 1)) + 1) as i32 >> 1;
         Self {
             distance: ((u * y - v * x) >> 18) as i32,
-            way: ((u * x + v * y) >> 22) as i32,
+            way: stop(way),
             origin,
             step: [(step(-v, 10), step(u, 10)), (step(u, 14), step(v, 14))],
             outer: (width << 11) as i32 + (1 << 19),
             most: (width << 12).min(1 << 20) as i32,
-            end: length + (1 << 15),
-            longest: length.min(1 << 16),
+            end: stop(length - way) + stop(way) + (1 << 15),
+            longest: length.min(1 << 16) as i32,
         }
     }
 }

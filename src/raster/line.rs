@@ -170,12 +170,18 @@ impl Line {
         let diagonal = (diagonal, if self.steep { self.direction.0 } else { self.direction.1 });
         let position = if self.steep { (minor, major) } else { (major, minor) };
         let left = end - skipped;
-        let pixels = LinePixels { position, straight, diagonal, error, height: self.height, length: self.length, left };
+        let (height, length) = (self.height as i32, self.length as i32);
+        let error = error as i32 - length;
+        let pixels = LinePixels { position, straight, diagonal, error, height, length, left };
         (skipped, pixels)
     }
 
     /// Steps until the line has moved so many pixels aside, or all of its steps.
     fn until(&self, pixels: u32) -> u32 {
+        // It moves aside by its height, and by less than a pixel more.
+        if pixels > (self.height >> 8) + 1 {
+            return self.count;
+        }
         let way = u64::from(pixels) * u64::from(self.length);
         match NonZeroU32::new(self.height) {
             _ if pixels == 0 => 0,
@@ -208,31 +214,17 @@ fn advance(first: i32, direction: i32, range: &Range<i32>) -> Range<u32> {
 /// A walk over pixels of a line: one addition and one comparison for each.
 #[derive(Clone, Copy, Debug)]
 pub struct LinePixels {
-    position: (i32, i32),
+    /// The next pixel.
+    pub(crate) position: (i32, i32),
     /// Step along the major axis, and along both.
-    straight: (i32, i32),
-    diagonal: (i32, i32),
-    /// 0..`length`; grows by `height`.
-    error: u32,
-    height: u32,
-    length: u32,
-    left: u32,
-}
-
-impl LinePixels {
-    /// Leaves only the first `count` pixels: how many it took off.
-    #[inline]
-    pub(crate) fn shorten(&mut self, count: u32) -> u32 {
-        let rest = self.left.saturating_sub(count);
-        self.left -= rest;
-        rest
-    }
-
-    /// Puts back pixels that were taken off.
-    #[inline]
-    pub(crate) const fn lengthen(&mut self, count: u32) {
-        self.left += count;
-    }
+    pub(crate) straight: (i32, i32),
+    pub(crate) diagonal: (i32, i32),
+    /// The error less `length`, below 0: it grows by `height`, and where it would not be negative, the step is diagonal.
+    pub(crate) error: i32,
+    pub(crate) height: i32,
+    pub(crate) length: i32,
+    /// How many pixels are left.
+    pub(crate) left: u32,
 }
 
 impl Iterator for LinePixels {
@@ -247,7 +239,7 @@ impl Iterator for LinePixels {
         let (x, y) = self.position;
         self.error = self.error.wrapping_add(self.height);
         let mut step = self.straight;
-        if self.error >= self.length {
+        if self.error >= 0 {
             self.error = self.error.wrapping_sub(self.length);
             step = self.diagonal;
         }

@@ -1,0 +1,194 @@
+//! What a pixel costs: firmware that draws a screen-filling square with each material, blend mode and kind of fog, and
+//! counts. `ci/costs` runs it and prints the table.
+//!
+//! It prints, for each row, `name,ticks`: SysTick's ticks over a frame, between two instructions that mark it for a counting
+//! plugin. The first row draws nothing: what it costs to clear colours and depths.
+//!
+//! A new row is a line in [`rows::ROWS`].
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod firmware;
+
+#[cfg(target_os = "none")]
+mod rows {
+    use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+    use zstrip::fragment::{
+        Add, AddAlpha, Alpha, AlphaTest, Blend, DepthState, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap,
+        Multiply, Opacity, PerFragment, PerFragmentNear, ScreenDoor, Shaded, Shader,
+    };
+    use zstrip::geometry::{
+        DirectionalLight, Lighting, LitMaterial, Material, Mesh, MeshData, PointLight, Positions, Topology, Viewer,
+    };
+    use zstrip::math::{Affine, Projective, Scalar, Vec3};
+    use zstrip::output::Strip;
+    use zstrip::{Scene, State};
+
+    type S<'s, 'a, 'p> = &'s mut Scene<'a, Strip<'p, Rgb565>>;
+
+    /// Name of a row, and what is drawn for it.
+    pub type Row = (&'static str, fn(S<'_, '_, '_>));
+
+    pub const ROWS: &[Row] = &[
+        ("nothing", |_| {}),
+        ("`Flat`; `Shaded` per face", |s| square(s, &flat())),
+        ("`Gouraud`; `Shaded` per vertex", |s| square(s, &GOURAUD)),
+        ("`Matcap`", |s| square(s, &Matcap::<Rgb565, 64>::new(&BALL, &Affine::IDENTITY))),
+        ("`Shaded` per fragment, 1 directional light, matte", |s| square(s, &far::<1>(0))),
+        ("the same, 2 directional lights", |s| square(s, &far::<2>(0))),
+        ("1 directional light, glossy, shininess 32", |s| square(s, &far::<1>(32))),
+        ("the same, shininess 255", |s| square(s, &far::<1>(255))),
+        ("`Shaded` per fragment, near, 1 point light, matte", |s| square(s, &near(0, Viewer::Toward(Vec3::Z)))),
+        ("the same, glossy, shininess 32", |s| square(s, &near(32, Viewer::Toward(Vec3::Z)))),
+        ("the same, viewer near", |s| square(s, &near(32, Viewer::At(Vec3::from_ints(0, 0, 3))))),
+        ("`Blend` of `Flat`, `Opacity`", |s| glass(s, &Blend::new(flat(), Opacity(100)))),
+        ("`Blend` of `Gouraud`, `Opacity`", |s| glass(s, &Blend::new(GOURAUD, Opacity(100)))),
+        ("the same, `Alpha`", |s| glass(s, &Blend::new(GOURAUD, Alpha))),
+        ("the same, `Add`", |s| glass(s, &Blend::new(GOURAUD, Add))),
+        ("the same, `AddAlpha`", |s| glass(s, &Blend::new(GOURAUD, AddAlpha))),
+        ("the same, `Multiply`", |s| glass(s, &Blend::new(GOURAUD, Multiply))),
+        ("`AlphaTest` of `Gouraud`", |s| square(s, &AlphaTest::new(GOURAUD, 128))),
+        ("`ScreenDoor` of `Gouraud`, half of the pixels", |s| square(s, &ScreenDoor::new(GOURAUD, 8))),
+        ("`Fogged` `Flat`", |s| square(s, &Fogged::new(flat(), &MIST, Rgb888::new(200, 200, 200)))),
+        ("`Fogged` `Gouraud`", |s| square(s, &Fogged::new(GOURAUD, &MIST, Rgb888::new(200, 200, 200)))),
+    ];
+
+    const GOURAUD: Gouraud = Gouraud::colors_unlit();
+
+    fn flat() -> Flat {
+        Flat::unlit(Rgb888::new(200, 100, 50))
+    }
+
+    static CORNERS: [Vec3; 4] = [
+        Vec3::from_milli(-1000, -1000, 250),
+        Vec3::from_milli(1000, -1000, 250),
+        Vec3::from_milli(1000, 1000, 750),
+        Vec3::from_milli(-1000, 1000, 750),
+    ];
+    static SQUARE: Mesh<'static> = Mesh::constant(MeshData {
+        topology: Topology::Quads,
+        normals: Some(&[[-6553, -6553, 13_503], [6553, -6553, 13_503], [6553, 6553, 13_503], [-6553, 6553, 13_503]]),
+        colors: Some(&[[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]),
+        ..MeshData::new(Positions::Exact(&CORNERS))
+    });
+
+    static BALL: [[u16; 64]; 64] = [[0x1234; 64]; 64];
+
+    static MIST: FogTable = match FogTable::perspective(
+        Scalar::ONE,
+        Scalar::from_bits(20 << 16),
+        FogCurve::Exponential { density: Scalar::from_bits(1 << 13) },
+    ) {
+        Ok(table) => table,
+        Err(_) => panic!("near and far"),
+    };
+
+    fn square(scene: S<'_, '_, '_>, shader: &impl Shader<Rgb565>) {
+        scene.draw(&SQUARE, &Projective::IDENTITY, shader);
+    }
+
+    /// Tested against depth, without leaving it.
+    fn glass(scene: S<'_, '_, '_>, shader: &impl Shader<Rgb565>) {
+        let state = State { depth: DepthState::TEST, ..State::DEFAULT };
+        scene.draw_with(state, &SQUARE, &Projective::IDENTITY, shader);
+    }
+
+    fn material(shininess: u8) -> Material {
+        Material::glossy(Rgb888::new(200, 100, 50), Rgb888::new(250, 250, 250), shininess)
+    }
+
+    const SUN: DirectionalLight = DirectionalLight { direction: Vec3::from_ints(1, 2, 4), color: [220, 220, 200] };
+
+    fn on<const D: usize, const P: usize>(lighting: Lighting<D, P>, shininess: u8) -> LitMaterial<D, P> {
+        lighting.on(&material(shininess), &Affine::IDENTITY, SQUARE.bounds())
+    }
+
+    fn far<const D: usize>(shininess: u8) -> Shaded<PerFragment, D, 0> {
+        let lighting =
+            Lighting { ambient: [30; 3], directional: [SUN; D], points: [], viewer: Viewer::Toward(Vec3::Z) };
+        Shaded::new(PerFragment, on(lighting, shininess))
+    }
+
+    fn near(shininess: u8, viewer: Viewer) -> Shaded<PerFragmentNear, 0, 1> {
+        let lamp = PointLight {
+            position: Vec3::from_ints(0, 0, 2),
+            color: [220, 220, 200],
+            range: Scalar::from_bits(5 << 16),
+        };
+        let lighting = Lighting { ambient: [30; 3], directional: [], points: [lamp], viewer };
+        Shaded::new(PerFragmentNear, on(lighting, shininess))
+    }
+}
+
+#[cfg(target_os = "none")]
+mod counting {
+    use super::rows::{ROWS, Row};
+    use core::arch::asm;
+    use core::hint::black_box;
+    use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
+    use semihosting::println;
+    use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+    use zstrip::output::StripPixels;
+    use zstrip::{Buffers, Renderer};
+
+    const WIDTH: usize = 320;
+    const HEIGHT: usize = 240;
+
+    struct Memory {
+        color: [u16; WIDTH * HEIGHT],
+        depth: [u16; WIDTH * HEIGHT],
+        records: [u32; 256],
+    }
+
+    static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _] };
+
+    pub fn run() {
+        let memory = &raw mut MEMORY;
+        // SAFETY: `run` is called once; this is the only reference.
+        let memory = unsafe { &mut *memory };
+        let Some(mut peripherals) = Peripherals::take() else {
+            return;
+        };
+        let timer = &mut peripherals.SYST;
+        timer.set_clock_source(SystClkSource::Core);
+        // Goes round once in 84 million instructions: more than a frame takes.
+        timer.set_reload(0x00FF_FFFF);
+        timer.enable_counter();
+        for row in ROWS {
+            timer.clear_current();
+            let ticks = count(memory, row);
+            println!("{},{ticks}", row.0);
+        }
+    }
+
+    /// Ticks of a frame.
+    #[inline(never)]
+    fn count(memory: &mut Memory, row: &Row) -> u32 {
+        let Memory { color, depth, records } = memory;
+        let screen = (WIDTH as u16, HEIGHT as u16);
+        let Ok(mut renderer) = Renderer::<Rgb565>::new(screen, Buffers { color, depth, records }) else {
+            return 0;
+        };
+        let sink = |strip: &StripPixels<'_, Rgb565>| {
+            black_box(strip.pixels());
+            Ok::<(), core::convert::Infallible>(())
+        };
+        let start = SYST::get_current();
+        // SAFETY: copies a register to itself.
+        unsafe { asm!("mov r10, r10") };
+        let stats = renderer.frame_to(sink, Rgb565::BLACK, |scene| row.1(scene)).unwrap_or_default();
+        // SAFETY: as above.
+        unsafe { asm!("mov r11, r11") };
+        let ticks = start.wrapping_sub(SYST::get_current()) & 0x00FF_FFFF;
+        black_box(stats);
+        ticks
+    }
+}
+
+#[cfg(target_os = "none")]
+use counting::run;
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("this example is firmware: ci/costs builds it");
+}

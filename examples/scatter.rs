@@ -1,0 +1,136 @@
+//! A scatter plot in space: three clouds of points in a box of grids, with axes, and the points' shadows on the floor.
+//!
+//! ```text
+//! cargo run --release --example scatter -- --help
+//! ```
+#[path = "host/demo.rs"]
+mod demo;
+mod host;
+mod scenes;
+
+use demo::Demo;
+use std::process::ExitCode;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::fragment::{Compare, DepthState, Flat, Gouraud};
+use zstrip::geometry::{Joined, Lines, MeshData, Points, Positions};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::output::Strip;
+use zstrip::{Scene, Smooth, State, Thick, Thin};
+
+/// Points of a cloud.
+const CLOUD: usize = 160;
+const CLOUDS: [([i32; 3], [i32; 3], [u8; 3]); 3] = [
+    ([-400, -200, 300], [260, 200, 220], [255, 120, 90]),
+    ([350, 300, -250], [200, 260, 240], [90, 200, 255]),
+    ([200, -450, 400], [320, 120, 160], [250, 220, 90]),
+];
+/// Lines of a grid in each direction.
+const GRID: i32 = 8;
+
+struct Scatter {
+    points: Vec<Vec3>,
+    shadows: Vec<Vec3>,
+    colors: Vec<[u8; 3]>,
+    mvp: Projective,
+    /// The planes at the back, as seen now.
+    grid: Vec<Vec3>,
+    axes: Vec<Vec3>,
+}
+
+/// About a normal distribution, 1000 being its deviation: the sum of four numbers.
+fn bell(state: &mut u32) -> i32 {
+    (0..4).fold(0, |sum, _| {
+        *state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        sum + (*state >> 16) as i32 % 1732 - 866
+    })
+}
+
+impl Scatter {
+    fn new() -> Self {
+        let mut state = 7;
+        let (mut points, mut colors) = (Vec::new(), Vec::new());
+        for (center, spread, color) in CLOUDS {
+            for _ in 0..CLOUD {
+                let place = [0, 1, 2].map(|k| (center[k] + bell(&mut state) * spread[k] / 1000).clamp(-970, 970));
+                points.push(Vec3::from_milli(place[0], place[1], place[2]));
+                colors.push(color);
+            }
+        }
+        let shadows = points.iter().map(|p| Vec3::new(p.x, -Scalar::ONE, p.z)).collect();
+        Self { points, shadows, colors, mvp: Projective::IDENTITY, grid: Vec::new(), axes: Vec::new() }
+    }
+}
+
+impl Demo for Scatter {
+    const NAME: &'static str = "scatter";
+    const ABOUT: &'static str = "A scatter plot in space";
+    const MODES: &'static [&'static str] = &["squares", "squares on stems", "larger squares"];
+    const KEYS: &'static str = "";
+    const BACKGROUND: Rgb565 = Rgb565::new(2, 5, 4);
+
+    fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
+        let turn = Angle(frame.wrapping_mul(64) as u16) + Angle::from_degrees(32);
+        let camera = Projective::perspective(Angle::from_degrees(40), screen, Scalar::ONE, Scalar::from_num(10));
+        let view = Affine::translation(Vec3::from_milli(0, 130, -5000))
+            * Affine::rotation_x(Angle::from_degrees(24))
+            * Affine::rotation_y(turn);
+        self.mvp = camera.unwrap_or(Projective::IDENTITY) * view;
+        // The eye is at +z before the turn: the walls at the back are those on its other side.
+        let away = |c: Scalar| if c > Scalar::ZERO { -1000 } else { 1000 };
+        let (x, z) = (away(-turn.sin()), away(turn.cos()));
+        let (grid, axes) = (&mut self.grid, &mut self.axes);
+        grid.clear();
+        axes.clear();
+        for k in 0..=GRID {
+            let c = 2000 * k / GRID - 1000;
+            let at = Vec3::from_milli;
+            // The floor, the wall of constant x, the wall of constant z.
+            grid.extend([at(c, -1000, -1000), at(c, -1000, 1000), at(-1000, -1000, c), at(1000, -1000, c)]);
+            grid.extend([at(x, c, -1000), at(x, c, 1000), at(x, -1000, c), at(x, 1000, c)]);
+            grid.extend([at(-1000, c, z), at(1000, c, z), at(c, -1000, z), at(c, 1000, z)]);
+            // Ticks, where labels may stand.
+            axes.extend([at(c, -1000, -z), at(c, -1000, -z - z / 20), at(-x, -1000, c), at(-x - x / 20, -1000, c)]);
+            axes.extend([at(-x, c, z), at(-x - x / 20, c, z)]);
+        }
+        let at = Vec3::from_milli;
+        axes.extend([at(-1000, -1000, -z), at(1000, -1000, -z), at(-x, -1000, -1000), at(-x, -1000, 1000)]);
+        axes.extend([at(-x, -1000, z), at(-x, 1000, z)]);
+    }
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, mode: usize) {
+        let pairs = |ends| Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(ends)));
+        let (Ok(grid), Ok(axes)) = (pairs(&self.grid), pairs(&self.axes)) else { return };
+        let behind = State { depth: DepthState { compare: Compare::Always, write: false }, ..State::DEFAULT };
+        let thin = Flat::unlit(Rgb888::new(52, 64, 76));
+        scene.draw_lines_with(behind, &grid, &self.mvp, &thin, &Smooth::new(230));
+        scene.draw_lines_with(behind, &axes, &self.mvp, &Flat::unlit(Rgb888::new(190, 200, 210)), &Smooth::new(340));
+        let colors = Some(&self.colors[..]);
+        let points = |at| Points::new(MeshData { colors, ..MeshData::new(Positions::Exact(at)) });
+        let (Ok(points), Ok(shadows)) = (points(&self.points), points(&self.shadows)) else { return };
+        scene.draw_points(State::DEFAULT, &shadows, &self.mvp, &Flat::unlit(Rgb888::new(40, 40, 48)), 600);
+        if mode == 1 {
+            let (ends, colors): (Vec<_>, Vec<_>) = (self.points.iter().zip(&self.shadows).zip(&self.colors))
+                .flat_map(|((point, shadow), color)| [(*point, *color), (*shadow, color.map(|c| c / 4))])
+                .unzip();
+            let data = MeshData { colors: Some(&colors), ..MeshData::new(Positions::Exact(&ends)) };
+            if let Ok(stems) = Lines::new(Joined::Pairs, data) {
+                scene.draw_lines_with(State::DEFAULT, &stems, &self.mvp, &Gouraud::colors_unlit(), &Thin);
+            }
+        }
+        let size = if mode == 2 { 1800 } else { 900 };
+        // A rim first: the square itself is at the same depth.
+        scene.draw_points(State::DEFAULT, &points, &self.mvp, &Flat::unlit(Rgb888::new(8, 10, 12)), size + 400);
+        let inside = State { depth: DepthState { compare: Compare::LessEqual, write: true }, ..State::DEFAULT };
+        scene.draw_points(inside, &points, &self.mvp, &Flat::colors_unlit(), size);
+        // The plot's frame, over all.
+        let (width, height) = scene.screen();
+        let mut canvas = scene.canvas();
+        let corner = |x: u16, y: u16| zstrip::ScreenPoint::corner(x as i16, y as i16);
+        let frame = [corner(1, 1), corner(width - 1, 1), corner(width - 1, height - 1), corner(1, height - 1)];
+        canvas.outline(&frame, Rgb888::new(70, 84, 96), &Thick::px(2));
+    }
+}
+
+fn main() -> ExitCode {
+    demo::main(Scatter::new())
+}

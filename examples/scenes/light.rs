@@ -1,0 +1,359 @@
+//! Scenes of light: materials under several lights, a landscape in fog, glass and sparks.
+
+use super::{landscape, pot, tiles};
+use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
+use zstrip::fragment::{
+    AddAlpha, Blend, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud, Matcap, Multiply, Opacity,
+    PerFace, PerFragment, PerFragmentNear, PerVertex, PixelFormat, Rgba, Shaded, Shader,
+};
+use zstrip::geometry::{
+    Corner, DirectionalLight, Light, Lighting, Material, Mesh, MeshData, PointLight, Positions, Topology, VertexShader,
+    Viewer, sort_back_to_front, view_depth,
+};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::{Cull, Framebuffer, Scene, State};
+
+/// How the pot is shaded.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shading {
+    PerFace,
+    PerVertex,
+    PerFragment,
+    /// With point lights close by.
+    PerFragmentNear,
+    Matcap,
+}
+
+const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
+
+/// A camera at `eye` that looks at `target`, and its view transform.
+fn look(screen: (u16, u16), eye: Vec3, target: Vec3, near: Scalar, far: Scalar) -> (Projective, Affine) {
+    let camera = Projective::perspective(Angle::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
+    (camera, Affine::look_at(eye, target, Vec3::Y).unwrap_or(Affine::IDENTITY))
+}
+
+/// A point on a circle about the y axis, radius and height in thousandths.
+fn on_circle(angle: Angle, radius: i32, height: i32) -> Vec3 {
+    let along = |s: Scalar| (i64::from(s.to_bits()) * i64::from(radius) / 65_536) as i32;
+    Vec3::from_milli(along(angle.cos()), height, along(angle.sin()))
+}
+
+/// A glazed pot on a tiled table, under the moon and two lamps.
+pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Shading) {
+    let (near, far) = (Scalar::ONE, Scalar::from_bits(16 << 16));
+    let (camera, view) =
+        look(scene.screen(), Vec3::from_milli(0, 1750, 4300), Vec3::from_milli(120, 180, 0), near, far);
+    let lamp = |angle: Angle, radius: i32, height: i32, color: Rgb888, range: i32| {
+        PointLight::new(view * on_circle(angle, radius, height), color, Scalar::from_bits(range << 16))
+    };
+    let moon = view.transform_vector(Vec3::from_ints(-3, 5, 4));
+    let lighting = Lighting {
+        ambient: [34, 34, 52],
+        directional: [DirectionalLight::new(moon, Rgb888::new(120, 130, 165))],
+        points: [
+            lamp(turn + Angle::from_degrees(50), 1900, 900, Rgb888::new(255, 150, 50), 5),
+            lamp(-turn - turn + Angle::from_degrees(160), 1700, 150, Rgb888::new(40, 130, 255), 4),
+        ],
+        viewer: Viewer::At(Vec3::ZERO),
+    };
+
+    draw_backdrop(scene, &NIGHT);
+    let table = view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0));
+    let wood =
+        Material { vertex_colors: true, ..Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32) };
+    let mvp = camera * table;
+    scene.draw(&tiles::MESH, &mvp, &Shaded::new(PerFragmentNear, lighting.on(&wood, &table, tiles::MESH.bounds())));
+
+    let model = view * Affine::rotation_y(turn + Angle::from_degrees(-25));
+    let glaze =
+        Material { two_sided: true, ..Material::glossy(Rgb888::new(200, 60, 50), Rgb888::new(230, 220, 210), 64) };
+    let (mvp, bounds) = (camera * model, pot::MESH.bounds());
+    let lit = lighting.on(&glaze, &model, bounds);
+    match shading {
+        Shading::PerFace => scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerFace, lit)),
+        Shading::PerVertex => scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerVertex, lit)),
+        Shading::PerFragment => {
+            let Lighting { ambient, directional: [moon], .. } = lighting;
+            let sun = DirectionalLight { color: [235, 225, 210], ..moon };
+            let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
+            scene.draw_with(
+                BOTH_SIDES,
+                &pot::MESH,
+                &mvp,
+                &Shaded::new(PerFragment, lighting.on(&glaze, &model, bounds)),
+            );
+        }
+        Shading::PerFragmentNear => {
+            scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerFragmentNear, lit));
+        }
+        Shading::Matcap => {
+            scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Matcap::<Rgb888, 64>::new(&BALL, &model));
+        }
+    }
+}
+
+/// A picture of a ball of polished copper in front of a horizon.
+static BALL: [[[u8; 3]; 64]; 64] = ball();
+
+const fn ball() -> [[[u8; 3]; 64]; 64] {
+    let mut picture = [[[0; 3]; 64]; 64];
+    let mut k = 0;
+    while k < 4096 {
+        let (x, y) = ((k % 64) as i32 - 32, (k / 64) as i32 - 32);
+        let squared = x * x + y * y;
+        // The height of the ball over the picture, and how bright a light from the upper left is.
+        let z = if squared < 1024 { (1024 - squared).isqrt() } else { 0 };
+        let light = -14 * x - 20 * y + 18 * z;
+        let glow = if light > 0 { light / 5 } else { 0 };
+        let shine = if light > 820 { (light - 820) * 2 } else { 0 };
+        // The ground is reflected below, a bright line above it.
+        let horizon = if y > 2 && y < 12 { 60 - 6 * (y - 2) } else { 0 };
+        let rim = (32 - z) * 2;
+        picture[k / 64][k % 64] = [
+            capped(30 + glow + shine + horizon + rim),
+            capped(14 + glow * 6 / 10 + shine + horizon / 2 + rim),
+            capped(12 + glow * 4 / 10 + shine + horizon / 3 + rim * 3 / 2),
+        ];
+        k += 1;
+    }
+    picture
+}
+
+const fn capped(v: i32) -> u8 {
+    if v > 255 { 255 } else { v as u8 }
+}
+
+/// Planes of the landscape's camera.
+const MIST_NEAR: Scalar = Scalar::from_bits(1 << 14);
+const MIST_FAR: Scalar = Scalar::from_bits(28 << 16);
+
+static MIST: FogTable = mist(FogCurve::ExponentialSquared { density: Scalar::from_bits(5800) });
+static HAZE: FogTable = mist(FogCurve::Exponential { density: Scalar::from_bits(3600) });
+static BANK: FogTable = mist(FogCurve::Linear { start: Scalar::from_bits(4 << 16), end: Scalar::from_bits(19 << 16) });
+
+const fn mist(curve: FogCurve) -> FogTable {
+    match FogTable::perspective(MIST_NEAR, MIST_FAR, curve) {
+        Ok(table) => table,
+        Err(_) => panic!("near and far"),
+    }
+}
+
+/// How the fog thickens.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mist {
+    Squared,
+    Exponential,
+    Linear,
+}
+
+/// The colour of the fog.
+const MORNING: Rgb888 = Rgb888::new(214, 196, 188);
+
+/// A hilly landscape with a lake in the morning fog, seen from a bird's round flight.
+pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, mist: Mist) {
+    let fog = match mist {
+        Mist::Squared => &MIST,
+        Mist::Exponential => &HAZE,
+        Mist::Linear => &BANK,
+    };
+    let [x, _, z] = on_circle(turn + Angle::from_degrees(76), 8200, 0).to_bits().map(|c| c / 66);
+    // Above what is below, and above the hills on the way to the middle.
+    let ground = (4..=8).fold(900, |highest, k| landscape::height(x * k / 8, z * k / 8).max(highest));
+    let eye = Vec3::from_milli(x, ground + 1400, z);
+    let ahead = on_circle(turn + Angle::from_degrees(176), 3300, 700);
+    let (camera, view) = look(scene.screen(), eye, ahead, MIST_NEAR, MIST_FAR);
+    let mvp = camera * view;
+
+    draw_backdrop(scene, &SKY);
+    let sun = Light::new(Vec3::from_milli(-800, 420, 300), Rgb888::new(250, 205, 160), Rgb888::new(78, 84, 108));
+    scene.draw(&landscape::GROUND, &mvp, &Fogged::new(Gouraud::colors(sun), fog, MORNING));
+    for tree in &landscape::TREES {
+        let model = Affine::translation(*tree);
+        scene.draw(&landscape::PINE, &(mvp * model), &Fogged::new(Flat::colors(sun), fog, MORNING));
+    }
+    let water = Fogged::new(Flat::unlit(Rgb888::new(96, 130, 158)), fog, MORNING);
+    scene.draw_with(GLASS, &landscape::LAKE, &mvp, &Blend::new(water, Opacity(165)));
+}
+
+/// What covers the screen: a colour at its top, one from `horizon` (in thousandths from -1000 to 1000) down, and between
+/// them a gradient.
+macro_rules! backdrop {
+    ($top:expr, $below:expr, $horizon:expr) => {
+        Mesh::constant(MeshData {
+            topology: Topology::Strip,
+            colors: Some(&[$top, $top, $below, $below, $below, $below]),
+            ..MeshData::new(Positions::Exact(&[
+                Vec3::from_milli(-1000, 1000, 500),
+                Vec3::from_milli(1000, 1000, 500),
+                Vec3::from_milli(-1000, $horizon, 500),
+                Vec3::from_milli(1000, $horizon, 500),
+                Vec3::from_milli(-1000, -1000, 500),
+                Vec3::from_milli(1000, -1000, 500),
+            ]))
+        })
+    };
+}
+
+static SKY: Mesh<'static> = backdrop!([92, 122, 172], [214, 196, 188], 330);
+static NIGHT: Mesh<'static> = backdrop!([6, 8, 22], [44, 34, 66], 180);
+static STUDIO: Mesh<'static> = backdrop!([38, 40, 66], [150, 132, 140], 60);
+
+/// Behind all else.
+fn draw_backdrop<F: Framebuffer>(scene: &mut Scene<'_, F>, mesh: &Mesh<'_>) {
+    let state = State { depth: DepthState::OFF, cull: Cull::None, ..State::DEFAULT };
+    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+}
+
+/// Transparent things: tested against depth, seen from both sides, leaving no depth.
+const GLASS: State = State { cull: Cull::None, depth: DepthState::TEST, ..State::DEFAULT };
+
+/// A pane of 1.5 × 1.5 about the origin.
+static PANE: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    ..MeshData::new(Positions::Exact(&[
+        Vec3::from_milli(-750, -750, 0),
+        Vec3::from_milli(750, -750, 0),
+        Vec3::from_milli(750, 750, 0),
+        Vec3::from_milli(-750, 750, 0),
+    ]))
+});
+
+/// Coloured panes.
+const PANES: [Rgb888; 4] =
+    [Rgb888::new(255, 150, 60), Rgb888::new(90, 190, 255), Rgb888::new(120, 230, 110), Rgb888::new(240, 110, 210)];
+
+const SPARKS: usize = 48;
+
+/// A glass pot on a lit table, between coloured panes, and a fountain of sparks.
+pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let (near, far) = (Scalar::ONE, Scalar::from_bits(16 << 16));
+    let (camera, view) = look(scene.screen(), Vec3::from_milli(0, 1500, 4700), Vec3::from_milli(0, 330, 0), near, far);
+    let lamp =
+        PointLight::new(view * Vec3::from_milli(0, 1300, 0), Rgb888::new(255, 200, 120), Scalar::from_bits(5 << 16));
+    let lighting = Lighting {
+        ambient: [46, 46, 66],
+        directional: [DirectionalLight::new(
+            view.transform_vector(Vec3::from_ints(-3, 5, 4)),
+            Rgb888::new(90, 95, 115),
+        )],
+        points: [lamp],
+        viewer: Viewer::At(Vec3::ZERO),
+    };
+
+    // 1. What is opaque.
+    draw_backdrop(scene, &STUDIO);
+    let table = view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0));
+    let wood = Material { vertex_colors: true, ..Material::matte(Rgb888::new(215, 210, 200)) };
+    let mvp = camera * table;
+    scene.draw(&tiles::MESH, &mvp, &Shaded::new(PerFragmentNear, lighting.on(&wood, &table, tiles::MESH.bounds())));
+
+    // 2. What is transparent, from back to front: the panes around the pot, and the pot, the last number.
+    let pot_model = view * Affine::rotation_y(turn);
+    let models = core::array::from_fn::<_, 5, _>(|k| {
+        if k == PANES.len() {
+            return pot_model;
+        }
+        let angle = turn + Angle((k * 16_384) as u16);
+        view * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle(0x4000) - angle)
+    });
+    let mut order = [0, 1, 2, 3, 4];
+    let depth = |k: u16| {
+        let model = models.get(usize::from(k)).unwrap_or(&pot_model);
+        view_depth(&(camera * *model), PANE.bounds())
+    };
+    sort_back_to_front(&mut order, depth);
+    for k in order.map(usize::from) {
+        if let (Some(color), Some(model)) = (PANES.get(k), models.get(k)) {
+            scene.draw_with(GLASS, &PANE, &(camera * *model), &Blend::new(Flat::unlit(*color), Multiply));
+        } else {
+            glass_pot(scene, &(camera * pot_model), &pot_model, &lighting);
+        }
+    }
+
+    // 3. What is added.
+    for k in 0..SPARKS {
+        let age = (turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16)) >> 6;
+        let spark = view * spark(k, i32::from(age));
+        let [x, y, z] = spark.to_bits();
+        let ember = Ember { left: 1023 - i32::from(age) };
+        let billboard = Affine::translation(Vec3::from_bits([x, y, z]));
+        scene.draw_with(GLASS, &GLOW, &(camera * billboard), &Blend::new(ember, AddAlpha));
+    }
+}
+
+/// A pot of glass: its inner side, its outer side, and highlights that no transparency dims.
+fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, model: &Affine, lighting: &Lighting<1, 1>) {
+    let bounds = pot::MESH.bounds();
+    let body = Material { two_sided: true, ..Material::matte(Rgb888::new(150, 205, 200)) };
+    let shader = Blend::new(Shaded::new(PerVertex, lighting.on(&body, model, bounds)), Opacity(70));
+    for cull in [Cull::Front, Cull::Back] {
+        scene.draw_with(State { cull, ..GLASS }, &pot::MESH, mvp, &shader);
+    }
+    let gloss = Material {
+        ambient: [0; 3],
+        diffuse: [0; 3],
+        ..Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48)
+    };
+    let shine = Shaded::new(PerFragmentNear, lighting.on(&gloss, model, bounds));
+    scene.draw_with(State { cull: Cull::Back, ..GLASS }, &pot::MESH, mvp, &Blend::new(shine, zstrip::fragment::Add));
+}
+
+/// Where a spark is, `age` of 1024 steps after it left the lid: a throw in its own direction.
+fn spark(k: usize, age: i32) -> Vec3 {
+    let speed = 350 + (k * 37 % 29) as i32 * 55;
+    let rise = 1700 + (k * 53 % 31) as i32 * 45;
+    // Thousandths: up with `rise`, and down with the square of age.
+    let height = 950 + rise * age / 1024 - (2900 * (age * age / 1024)) / 1024;
+    on_circle(Angle((k * 25_033) as u16), speed * age / 1024, height)
+}
+
+/// A square of 0.24 about the origin, with its coordinates in it.
+static GLOW: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    uvs: Some(&[
+        [Scalar::NEG_ONE, Scalar::NEG_ONE],
+        [Scalar::ONE, Scalar::NEG_ONE],
+        [Scalar::ONE, Scalar::ONE],
+        [Scalar::NEG_ONE, Scalar::ONE],
+    ]),
+    ..MeshData::new(Positions::Exact(&[
+        Vec3::from_milli(-120, -120, 0),
+        Vec3::from_milli(120, -120, 0),
+        Vec3::from_milli(120, 120, 0),
+        Vec3::from_milli(-120, 120, 0),
+    ]))
+});
+
+/// A spark that fades with age and towards its rim: a shader as a user would write it, with an opacity.
+struct Ember {
+    /// What is left of 1024 steps.
+    left: i32,
+}
+
+impl VertexShader for Ember {
+    /// Place in the square, -1 to 1 in 16.16.
+    type Varyings = [i32; 2];
+
+    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 2] {
+        vertex.uv().map(Scalar::to_bits)
+    }
+}
+
+impl Shader<Rgba> for Ember {
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 2]>) -> Option<<Rgba as PixelFormat>::Raw> {
+        let [u, v] = fragment.varyings.map(|c| c >> 8);
+        // 1 - r², squared: 0.16, 0.8 and 0.8 again.
+        let core = (0x1_0000 - u * u - v * v) >> 8;
+        if core <= 0 {
+            return None;
+        }
+        let glow = (core * core) >> 8;
+        let alpha = (glow * self.left) >> 10;
+        Some([
+            255,
+            (100 + (alpha >> 1)).min(255) as u8,
+            (20 + ((alpha * alpha) >> 9)).min(255) as u8,
+            alpha.min(255) as u8,
+        ])
+    }
+}

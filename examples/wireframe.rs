@@ -1,0 +1,179 @@
+//! A machine part as a drawing: its edges and outlines, hidden lines removed or dashed, strip by strip.
+//!
+//! ```text
+//! cargo run --release --example wireframe -- --help
+//! ```
+#[path = "host/demo.rs"]
+mod demo;
+mod host;
+mod scenes;
+
+use demo::Demo;
+use scenes::wires::BEHIND_LINES;
+use std::process::ExitCode;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::fragment::{Compare, DepthOnly, DepthState, Flat};
+use zstrip::geometry::{Light, Lines, Mesh, MeshData, Positions, Topology, edges};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::output::Strip;
+use zstrip::{Dashed, Scene, Smooth, State, Thin};
+
+/// Corners of the polygons that stand for circles.
+const ROUND: usize = 48;
+
+/// The part: quads, some edges of which are not drawn, as the surface goes on smoothly there.
+#[derive(Default)]
+struct Part {
+    points: Vec<Vec3>,
+    quads: Vec<u16>,
+    /// Edges to be drawn.
+    sharp: Vec<[u16; 2]>,
+    /// Edges between two quads that are drawn only where they are an outline, with the quads' normals.
+    smooth: Vec<([u16; 2], [Vec3; 2])>,
+}
+
+impl Part {
+    fn point(&mut self, x: i32, y: i32, z: i32) -> u16 {
+        self.points.push(Vec3::from_milli(x, y, z));
+        self.points.len() as u16 - 1
+    }
+
+    /// A convex prism along z from its outline, counter-clockwise seen from +z.
+    fn prism(&mut self, outline: &[[i32; 2]], z: [i32; 2]) {
+        let rings = z.map(|z| outline.iter().map(|p| self.point(p[0], p[1], z)).collect::<Vec<_>>());
+        let n = outline.len();
+        for k in 0..n {
+            let [a, b, c, d] = [rings[0][k], rings[0][(k + 1) % n], rings[1][(k + 1) % n], rings[1][k]];
+            self.quads.extend([a, b, c, d]);
+            self.sharp.extend([[a, b], [d, c], [a, d]]);
+        }
+        for k in (1..n - 1).step_by(2) {
+            let next = (k + 2).min(n - 1);
+            self.quads.extend([rings[1][0], rings[1][k], rings[1][k + 1], rings[1][next]]);
+            self.quads.extend([rings[0][0], rings[0][next], rings[0][k + 1], rings[0][k]]);
+        }
+    }
+
+    /// A tube along y, with a ring on top of it: from `low` to `high`, of two radii.
+    fn tube(&mut self, (x, z): (i32, i32), (low, high): (i32, i32), (inner, outer): (i32, i32)) {
+        let angle = |k: usize| Angle((k % ROUND * 65_536 / ROUND) as u16);
+        let on = |c: Scalar, r: i32| ((i64::from(c.to_bits()) * i64::from(r)) >> 16) as i32;
+        let mut ring = |y: i32, r: i32| -> Vec<u16> {
+            (0..ROUND).map(|k| self.point(x + on(angle(k).cos(), r), y, z - on(angle(k).sin(), r))).collect()
+        };
+        let [low_in, low_out, high_in, high_out] =
+            [ring(low, inner), ring(low, outer), ring(high, inner), ring(high, outer)];
+        for k in 0..ROUND {
+            let next = (k + 1) % ROUND;
+            self.quads.extend([low_out[k], low_out[next], high_out[next], high_out[k]]);
+            self.quads.extend([low_in[next], low_in[k], high_in[k], high_in[next]]);
+            self.quads.extend([high_out[k], high_out[next], high_in[next], high_in[k]]);
+            self.sharp.extend([&high_out, &high_in, &low_out].map(|ring| [ring[k], ring[next]]));
+            // The middles of the quads to either side of edge k.
+            let normal = |quad: usize, sign: i32| {
+                let half = Angle((32_768 / ROUND) as u16);
+                let middle = angle(quad) + half;
+                Vec3::new(middle.cos(), Scalar::ZERO, -middle.sin()) * Scalar::from_num(sign)
+            };
+            let before = (k + ROUND - 1) % ROUND;
+            self.smooth.push(([low_out[k], high_out[k]], [normal(before, 1), normal(k, 1)]));
+            self.smooth.push(([low_in[k], high_in[k]], [normal(before, -1), normal(k, -1)]));
+        }
+    }
+
+    /// A bracket with a boss, two ribs and an eye.
+    fn bracket() -> Self {
+        let mut part = Self::default();
+        part.prism(&[[-1500, -900], [1500, -900], [1500, -600], [-1500, -600]], [-800, 800]);
+        part.tube((450, 0), (-600, 350), (330, 560));
+        part.prism(&[[-1500, -600], [-1200, -600], [-1200, 900], [-1500, 900]], [-800, 800]);
+        part.prism(&[[-1200, -600], [-350, -600], [-1200, 600]], [300, 440]);
+        part.prism(&[[-1200, -600], [-350, -600], [-1200, 600]], [-440, -300]);
+        part
+    }
+
+    fn mesh(&self) -> Mesh<'_> {
+        let data = MeshData::new(Positions::Exact(&self.points));
+        Mesh::new(MeshData { topology: Topology::Quads, indices: Some(&self.quads), ..data }).expect("a part")
+    }
+}
+
+struct Wireframe {
+    part: Part,
+    /// All edges of its quads.
+    all: Vec<[u16; 2]>,
+    /// Edges that are drawn in this frame: sharp ones, and outlines.
+    seen: Vec<[u16; 2]>,
+    mvp: Projective,
+    light: Light,
+}
+
+impl Wireframe {
+    fn new() -> Self {
+        let part = Part::bracket();
+        let mut room = vec![[0; 2]; part.quads.len()];
+        let all = edges(&part.mesh(), &mut room).expect("a place for each side").to_vec();
+        let light = Light::from_channels(Vec3::from_ints(0, 0, 1), [200; 3], [55; 3]);
+        Self { part, all, seen: Vec::new(), mvp: Projective::IDENTITY, light }
+    }
+}
+
+impl Demo for Wireframe {
+    const NAME: &'static str = "wireframe";
+    const ABOUT: &'static str = "A machine part as a drawing";
+    const MODES: &'static [&'static str] = &["hidden lines dashed", "hidden lines removed", "shaded", "all edges"];
+    const KEYS: &'static str = "";
+    const BACKGROUND: Rgb565 = Rgb565::new(2, 8, 8);
+
+    fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
+        let turn = Angle(frame.wrapping_mul(96) as u16) + Angle::from_degrees(-35);
+        let model = Affine::translation(Vec3::from_milli(0, 150, -6000))
+            * Affine::rotation_x(Angle::from_degrees(28))
+            * Affine::rotation_y(turn);
+        let camera = Projective::perspective(Angle::from_degrees(32), screen, Scalar::ONE, Scalar::from_num(12));
+        self.mvp = camera.expect("a camera") * model;
+        let light = Light::from_channels(Vec3::from_ints(2, 4, 3), [190, 200, 205], [50, 50, 55]);
+        self.light = light.to_object(&model);
+        // An edge is an outline if one of its quads faces the eye, and the other does not.
+        let eye = model.inverse_rigid().transform_point(Vec3::ZERO);
+        self.seen.clone_from(&self.part.sharp);
+        for (edge, normals) in &self.part.smooth {
+            let to_eye = eye - self.part.points[usize::from(edge[0])];
+            let [a, b] = normals.map(|normal| normal.dot(to_eye) > Scalar::ZERO);
+            if a != b {
+                self.seen.push(*edge);
+            }
+        }
+    }
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, mode: usize) {
+        let mesh = self.part.mesh();
+        let edges = if mode == 3 { &self.all } else { &self.seen };
+        let Ok(lines) = Lines::of_mesh(&mesh, edges) else { return };
+        let white = Flat::unlit(Rgb888::new(214, 236, 244));
+        match mode {
+            2 => {
+                scene.draw_with(BEHIND_LINES, &mesh, &self.mvp, &Flat::new(self.light, Rgb888::new(120, 150, 170)));
+                let ink = Flat::unlit(Rgb888::new(8, 16, 24));
+                let blended = DepthState { compare: Compare::Less, write: false };
+                let state = State { depth: blended, ..State::DEFAULT };
+                scene.draw_lines_with(state, &lines, &self.mvp, &ink, &Smooth::new(360));
+            }
+            3 => scene.draw_lines(&lines, &self.mvp, &white),
+            _ => {
+                scene.draw_with(BEHIND_LINES, &mesh, &self.mvp, &DepthOnly);
+                if mode == 0 {
+                    let hidden = DepthState { compare: Compare::GreaterEqual, write: false };
+                    let state = State { depth: hidden, ..State::DEFAULT };
+                    let dim = Flat::unlit(Rgb888::new(70, 100, 116));
+                    scene.draw_lines_with(state, &lines, &self.mvp, &dim, &Dashed::EVEN);
+                }
+                scene.draw_lines_with(State::DEFAULT, &lines, &self.mvp, &white, &Thin);
+            }
+        }
+    }
+}
+
+fn main() -> ExitCode {
+    demo::main(Wireframe::new())
+}

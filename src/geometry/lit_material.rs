@@ -1,0 +1,282 @@
+//! A material under lights, ready to be asked for the colour of any normal: Blinn and Phong's sum, in 32-bit integers.
+//!
+//! ```text
+//! colour = ambient + Σ fade (diffuse · max(0, n · l) + specular · max(0, n · h)^shininess, if n · l > 0)
+//!
+//!      h    n            n: normal                   h: halfway between l and v
+//!   l   \   |   v        l: towards the light        fade: 1 of directional lights, (1 - d² / range²)² of point lights
+//!     \  \  |  /         v: towards the viewer
+//!      \  \ | /
+//!   ----------------     each channel at most 255
+//! ```
+
+use super::{LocalSpace, NORMAL_ONE};
+use crate::math::{Vec3, unit_vector};
+
+/// A [`Material`](super::Material) under a [`Lighting`](super::Lighting), in a mesh's own space; made by
+/// [`Lighting::on`](super::Lighting::on).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LitMaterial<const D: usize, const P: usize> {
+    /// Light from everywhere on the material, 8.8 a channel.
+    pub(super) ambient: [i32; 3],
+    pub(super) directional: [LitDirection; D],
+    pub(super) points: [LitPoint; P],
+    pub(super) viewer: LitViewer,
+    /// 0 for no highlights.
+    pub(super) shininess: u8,
+    pub(super) two_sided: bool,
+    pub(super) vertex_colors: bool,
+    pub(super) space: LocalSpace,
+}
+
+/// A directional light on a material: unit vectors 2.14, colours 8.8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LitDirection {
+    pub(super) direction: [i32; 3],
+    /// Halfway to a far viewer.
+    pub(super) half: [i32; 3],
+    pub(super) diffuse: [i32; 3],
+    pub(super) specular: [i32; 3],
+}
+
+/// Where highlights are seen from: 2.14, or local units to be shifted so that the difference to any position has 15 bits.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum LitViewer {
+    Toward([i32; 3]),
+    At { position: [i32; 3], shift: u32 },
+}
+
+/// A point light on a material.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LitPoint {
+    /// Local units, below 2²⁹, and the range in them.
+    position: [i32; 3],
+    range: i32,
+    /// Shifts, one of them 0, that make 2¹⁴ to 2¹⁵ of the range.
+    left: u32,
+    right: u32,
+    /// The shifted range squared, and 2³⁰ / (that / 2¹⁴).
+    squared: u32,
+    inverse: u32,
+    diffuse: [i32; 3],
+    specular: [i32; 3],
+}
+
+/// The number 1 in 2.14.
+const ONE: i32 = NORMAL_ONE as i32;
+
+/// The brightest channel value, 255 in 8.8.
+const WHITE: i32 = 255 << 8;
+
+impl LitPoint {
+    pub(super) fn new(position: [i32; 3], range: i32, diffuse: [i32; 3], specular: [i32; 3]) -> Self {
+        let range = range.max(1);
+        let zeros = range.leading_zeros();
+        let (left, right) = (zeros.saturating_sub(17), 17_u32.saturating_sub(zeros));
+        let scaled = ((range << left.min(14)) >> right) as u32;
+        let squared = scaled.wrapping_mul(scaled);
+        let inverse = (1_u32 << 30).checked_div(squared >> 14).unwrap_or(0);
+        Self { position, range, left: left.min(14), right, squared, inverse, diffuse, specular }
+    }
+
+    /// Unit vector from `p` to the light, and how much of it is left there, both 2.14; `None` out of its range.
+    ///
+    /// # Format
+    /// `p` in local units, below 2¹⁶. What is left is within 2⁻¹² of the exact value for the rounded positions.
+    #[inline]
+    fn from(&self, p: [i32; 3]) -> Option<([i32; 3], i32)> {
+        let [x, y, z] = self.position;
+        let [x, y, z] = [x.wrapping_sub(p[0]), y.wrapping_sub(p[1]), z.wrapping_sub(p[2])];
+        let range = self.range;
+        if x.abs() >= range || y.abs() >= range || z.abs() >= range {
+            return None;
+        }
+        let near = |c: i32| (c << self.left) >> self.right;
+        let (x, y, z) = (near(x), near(y), near(z));
+        // Each at most 2¹⁵: below 3 · 2³⁰.
+        let squared = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).wrapping_add(z.wrapping_mul(z)) as u32;
+        if squared >= self.squared {
+            return None;
+        }
+        // The difference / 2¹⁴ is at most what `inverse` divides by: below 2³⁰.
+        let left = (((self.squared - squared) >> 14).wrapping_mul(self.inverse) >> 16) as i32;
+        Some((unit_vector([x, y, z]), left.wrapping_mul(left) >> 14))
+    }
+}
+
+/// `x` to the power of `n`, both numbers 2.14 in 0..=1.
+///
+/// # Format
+/// By squaring and multiplying 0.16, rounded: off by at most (n + 2) 2⁻¹⁶ beside what `x` itself is off, which counts n
+/// times.
+#[inline]
+pub(super) fn power(x: i32, n: u8) -> i32 {
+    let mut base = ((x as u32) << 2).min(0xFFFF);
+    let mut result = 0xFFFF_u32;
+    let mut n = n;
+    loop {
+        if n & 1 != 0 {
+            result = result.wrapping_mul(base).wrapping_add(1 << 15) >> 16;
+        }
+        n >>= 1;
+        if n == 0 {
+            return ((result + 2) >> 2) as i32;
+        }
+        base = base.wrapping_mul(base).wrapping_add(1 << 15) >> 16;
+    }
+}
+
+/// n · l of vectors in 2.14, cut to 2.14, between 0 and 1.
+#[inline(always)]
+fn cosine(n: [i32; 3], l: [i32; 3]) -> i32 {
+    let dot = n[0].wrapping_mul(l[0]).wrapping_add(n[1].wrapping_mul(l[1])).wrapping_add(n[2].wrapping_mul(l[2]));
+    (dot >> 14).clamp(0, ONE)
+}
+
+/// A sum of light: what the surface's colour takes part in, and highlights. 8.8.
+#[derive(Clone, Copy)]
+struct Sum {
+    body: [i32; 3],
+    shine: [i32; 3],
+}
+
+/// `sum += color · factor`, 2.14.
+#[inline(always)]
+fn add(sum: &mut [i32; 3], color: &[i32; 3], factor: i32) {
+    sum[0] += (color[0] * factor) >> 14;
+    sum[1] += (color[1] * factor) >> 14;
+    sum[2] += (color[2] * factor) >> 14;
+}
+
+impl<const D: usize, const P: usize> LitMaterial<D, P> {
+    /// Whether the mesh's colours take part.
+    #[inline]
+    pub const fn vertex_colors(&self) -> bool {
+        self.vertex_colors
+    }
+
+    /// Whether normals of faces that show their back are turned round.
+    #[inline]
+    pub const fn is_two_sided(&self) -> bool {
+        self.two_sided
+    }
+
+    /// The space of [`near`](Self::near)'s positions.
+    #[inline]
+    pub const fn space(&self) -> &LocalSpace {
+        &self.space
+    }
+
+    /// The normal that is turned towards the viewer, seen from the point `p` (local units) of the surface: where a vertex
+    /// belongs to faces on both sides.
+    pub fn towards_viewer(&self, normal: [i32; 3], p: [i32; 3]) -> [i32; 3] {
+        let [x, y, z] = self.viewer(p);
+        let dot =
+            normal[0].wrapping_mul(x).wrapping_add(normal[1].wrapping_mul(y)).wrapping_add(normal[2].wrapping_mul(z));
+        if dot < 0 { normal.map(i32::wrapping_neg) } else { normal }
+    }
+
+    #[inline]
+    fn viewer(&self, p: [i32; 3]) -> [i32; 3] {
+        match self.viewer {
+            LitViewer::Toward(direction) => direction,
+            LitViewer::At { position: e, shift } => {
+                unit_vector([(e[0] - p[0]) >> shift, (e[1] - p[1]) >> shift, (e[2] - p[2]) >> shift])
+            }
+        }
+    }
+
+    /// Red, green, blue under the ambient and the directional lights, seen from far away, whatever the viewer is.
+    ///
+    /// # Format
+    /// `normal` 2.14, of length 1; result 8.8, at most 255. `color` is that of the vertex, or white.
+    #[inline]
+    pub fn far(&self, normal: [i32; 3], color: [u8; 3]) -> [i32; 3] {
+        let mut sum = Sum { body: self.ambient, shine: [0; 3] };
+        for light in &self.directional {
+            self.add_far(&mut sum, light, normal);
+        }
+        self.total(sum, color)
+    }
+
+    #[inline(always)]
+    fn add_far(&self, sum: &mut Sum, light: &LitDirection, normal: [i32; 3]) {
+        let facing = cosine(normal, light.direction);
+        if facing > 0 {
+            add(&mut sum.body, &light.diffuse, facing);
+            if self.shininess != 0 {
+                add(&mut sum.shine, &light.specular, power(cosine(normal, light.half), self.shininess));
+            }
+        }
+    }
+
+    /// Red, green, blue under all lights at the point `p` of the mesh, in units of [`space`](Self::space).
+    ///
+    /// # Format
+    /// As [`far`](Self::far).
+    #[inline]
+    pub fn near(&self, normal: [i32; 3], p: [i32; 3], color: [u8; 3]) -> [i32; 3] {
+        let mut sum = Sum { body: self.ambient, shine: [0; 3] };
+        let seen_from_afar = matches!(self.viewer, LitViewer::Toward(_));
+        let viewer = if self.shininess != 0 { self.viewer(p) } else { [0; 3] };
+        for light in &self.directional {
+            if seen_from_afar {
+                self.add_far(&mut sum, light, normal);
+            } else {
+                self.add_near(&mut sum, normal, viewer, light.direction, ONE, (&light.diffuse, &light.specular));
+            }
+        }
+        for light in &self.points {
+            if let Some((direction, fade)) = light.from(p) {
+                self.add_near(&mut sum, normal, viewer, direction, fade, (&light.diffuse, &light.specular));
+            }
+        }
+        self.total(sum, color)
+    }
+
+    #[inline]
+    fn add_near(
+        &self,
+        sum: &mut Sum,
+        normal: [i32; 3],
+        viewer: [i32; 3],
+        direction: [i32; 3],
+        fade: i32,
+        (diffuse, specular): (&[i32; 3], &[i32; 3]),
+    ) {
+        let facing = cosine(normal, direction);
+        if facing > 0 {
+            add(&mut sum.body, diffuse, (facing * fade) >> 14);
+            if self.shininess != 0 {
+                let [l, v] = [direction, viewer];
+                // Below 2¹⁵ even where both are the same.
+                let half = unit_vector([l[0] + v[0], l[1] + v[1], l[2] + v[2]].map(|c| c - (c >> 6)));
+                let shine = power(cosine(normal, half), self.shininess);
+                add(&mut sum.shine, specular, (shine * fade) >> 14);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn total(&self, sum: Sum, color: [u8; 3]) -> [i32; 3] {
+        let Sum { body, shine } = sum;
+        let [r, g, b] = if self.vertex_colors {
+            let times = |light: i32, c: u8| {
+                // By 255: 1 / 256 + 1 / 256² of it.
+                let part = light.wrapping_mul(i32::from(c)) >> 8;
+                part + (part >> 8)
+            };
+            [times(body[0], color[0]), times(body[1], color[1]), times(body[2], color[2])]
+        } else {
+            body
+        };
+        [(r + shine[0]).min(WHITE), (g + shine[1]).min(WHITE), (b + shine[2]).min(WHITE)]
+    }
+
+    /// A position of the mesh in local units.
+    #[inline]
+    pub fn local(&self, position: Vec3) -> [i32; 3] {
+        let [x, y, z] = self.space.fine(position);
+        [x >> 14, y >> 14, z >> 14]
+    }
+}

@@ -1,0 +1,124 @@
+//! Inverse square roots without a divider: a table and its chords, for making vectors of length 1.
+
+/// Entry `n & 255` is 2¹⁹ / √n for n in 64..=256, lowered by half of what the chord to the next entry lies above the curve.
+/// (65,536 is kept as 65,535.)
+static ROOTS: [u16; 256] = roots();
+
+const fn roots() -> [u16; 256] {
+    let mut table = [u16::MAX; 256];
+    let mut n = 64_u64;
+    while n <= 256 {
+        // Eight times the root. A chord of f = n^(-1/2) over a unit of n is at most f'' / 8 = f · 3 / (32 n²) too high.
+        let root = ((1_u64 << 44) / n).isqrt();
+        let value = (root - root * 3 / (64 * n * n) + 4) >> 3;
+        table[(n & 255) as usize] = if value > u16::MAX as u64 { u16::MAX } else { value as u16 };
+        n += 1;
+    }
+    table
+}
+
+/// 2²³ / √`x`.
+///
+/// # Format
+/// `x` in 2¹⁴..=2¹⁶; the result is in 2¹⁵..2¹⁶, and off by less than 1.4, and so by a relative 2⁻¹⁵ (tested for all `x`). Any other
+/// `x` gives some number below 2¹⁶.
+#[inline]
+pub const fn inverse_sqrt(x: u32) -> u32 {
+    let n = x as usize >> 8;
+    let (here, next) = (ROOTS[n & 0xFF] as u32, ROOTS[(n + 1) & 0xFF] as u32);
+    here.wrapping_sub((here.wrapping_sub(next).wrapping_mul(x & 0xFF).wrapping_add(128)) >> 8) & 0xFFFF
+}
+
+/// The vector of length 1 in the direction of `v`, 2.14; zero for zero.
+///
+/// # Format
+/// Components below 2¹⁵ in magnitude, in any unit. Each component of the result is within 1.5 of the exact one if the length
+/// is at least 2¹¹; for shorter vectors it is as exact as their components are. Some 35 instructions and no loop where the
+/// length is in 2¹⁴..=2¹⁵; a few more for each factor of two from there.
+#[inline]
+pub fn unit_vector(v: [i32; 3]) -> [i32; 3] {
+    let [x, y, z] = v;
+    // Below 3 · 2³⁰.
+    let q = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).wrapping_add(z.wrapping_mul(z)) as u32;
+    if q.wrapping_sub(1 << 28) <= (1 << 30) - (1 << 28) { scaled(v, q) } else { unit_vector_of_any_length(v) }
+}
+
+/// `v` / √`q` in 2.14, for the sum `q` of its squares in 2²⁸..=2³⁰.
+#[inline(always)]
+fn scaled([x, y, z]: [i32; 3], q: u32) -> [i32; 3] {
+    // 2³⁰ / √q; components times that are at most 2³⁰ and a little.
+    let factor = inverse_sqrt((q + (1 << 13)) >> 14) as i32;
+    let component = |c: i32| c.wrapping_mul(factor).wrapping_add(1 << 15) >> 16;
+    [component(x), component(y), component(z)]
+}
+
+#[inline(never)]
+fn unit_vector_of_any_length(v: [i32; 3]) -> [i32; 3] {
+    let [mut x, mut y, mut z] = v;
+    let square = |x: i32, y: i32, z: i32| {
+        x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).wrapping_add(z.wrapping_mul(z)) as u32
+    };
+    let mut q = square(x, y, z);
+    if q == 0 {
+        return [0; 3];
+    }
+    while q > 1 << 30 {
+        (x, y, z) = (x >> 1, y >> 1, z >> 1);
+        q = square(x, y, z);
+    }
+    while q < 1 << 28 {
+        (x, y, z) = (x << 1, y << 1, z << 1);
+        q <<= 2;
+    }
+    scaled([x, y, z], q)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::println;
+
+    #[test]
+    fn inverse_roots_are_within_their_bound_for_all_inputs() {
+        let worst = ((1_u32 << 14)..=1 << 16).fold(0.0, |worst: f64, x| {
+            let exact = 2f64.powi(23) / f64::from(x).sqrt();
+            let off = (f64::from(inverse_sqrt(x)) - exact).abs();
+            assert!(off / exact < 2f64.powi(-15), "x = {x}: {} instead of {exact}", inverse_sqrt(x));
+            worst.max(off)
+        });
+        println!("worst error of inverse_sqrt: {worst:.3}");
+        assert!(worst < 1.4, "{worst}");
+    }
+
+    #[test]
+    fn vectors_become_unit_vectors() {
+        let seed = 0x5eed_0001_u32;
+        let mut state = seed;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 16) as i32 - (1 << 15)
+        };
+        let (mut worst, mut worst_length) = (0.0_f64, 0.0_f64);
+        for round in 0..200_000 {
+            let shift = round % 4;
+            let v = [next().max(-32_767) >> shift, next().max(-32_767) >> shift, next().max(-32_767) >> shift];
+            let length = v.iter().map(|&c| f64::from(c).powi(2)).sum::<f64>().sqrt();
+            if length < 2048.0 {
+                continue;
+            }
+            let unit = unit_vector(v);
+            for (u, c) in unit.into_iter().zip(v) {
+                let off = (f64::from(u) - 16_384.0 * f64::from(c) / length).abs();
+                worst = worst.max(off);
+                assert!(off < 1.5, "seed {seed:#x}, {v:?}: {unit:?}, off by {off}");
+            }
+            let exact = unit.iter().map(|&c| f64::from(c).powi(2)).sum::<f64>().sqrt();
+            worst_length = worst_length.max((exact - 16_384.0).abs());
+        }
+        println!("worst component off by {worst:.3} / 2^14, worst length by {worst_length:.3} / 2^14");
+        // The largest components there are, which are halved first, and zero.
+        assert_eq!(unit_vector([32_767; 3]), [9459; 3]);
+        assert_eq!(unit_vector([0; 3]), [0; 3]);
+        assert_eq!(unit_vector([0, -1, 0]), [0, -16_384, 0]);
+    }
+}

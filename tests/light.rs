@@ -1,0 +1,462 @@
+//! Materials under lights against the same equations in double precision.
+
+mod reference;
+mod support;
+
+use reference::rng::Rng;
+use support::{strips, whole};
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::fragment::{Matcap, PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded, Shader};
+use zstrip::geometry::{
+    DirectionalLight, Light, Lighting, Material, Mesh, MeshData, PointLight, Positions, Topology, Viewer,
+};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::{Cull, State};
+
+type V = [f64; 3];
+
+fn dot(a: V, b: V) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+fn minus(a: V, b: V) -> V {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+fn plus(a: V, b: V) -> V {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
+}
+
+fn times(a: V, s: f64) -> V {
+    a.map(|c| c * s)
+}
+
+fn unit(a: V) -> V {
+    let length = dot(a, a).sqrt();
+    if length == 0.0 { a } else { times(a, 1.0 / length) }
+}
+
+fn float(v: Vec3) -> V {
+    v.to_bits().map(|c| f64::from(c) / 65_536.0)
+}
+
+fn apply(m: &Affine, v: V, w: f64) -> V {
+    m.to_rows().map(|r| {
+        (f64::from(r[0]) * v[0] + f64::from(r[1]) * v[1] + f64::from(r[2]) * v[2] + f64::from(r[3]) * w) / 65_536.0
+    })
+}
+
+/// Colour of a point with a normal, both in the lights' space, and how far its light is from going on or off with n · l.
+fn reference<const D: usize, const P: usize>(
+    lighting: &Lighting<D, P>,
+    material: &Material,
+    normal: V,
+    position: V,
+    color: [u8; 3],
+) -> (V, f64) {
+    let level = |c: [u8; 3]| c.map(|c| f64::from(c) / 255.0);
+    let product = |a: V, b: V| [a[0] * b[0], a[1] * b[1], a[2] * b[2]];
+    let toward = match lighting.viewer {
+        Viewer::Toward(direction) => unit(float(direction)),
+        Viewer::At(eye) => unit(minus(float(eye), position)),
+    };
+    let mut body = product(level(material.ambient), level(lighting.ambient));
+    let mut shine = [0.0; 3];
+    let mut edge = 1.0_f64;
+    let mut light = |direction: V, fade: f64, light: V| {
+        let facing = dot(normal, direction);
+        if fade > 0.0 && material.shininess > 0 {
+            edge = edge.min(facing.abs());
+        }
+        if facing > 0.0 {
+            body = plus(body, times(product(level(material.diffuse), light), facing * fade));
+            if material.shininess > 0 {
+                let half = unit(plus(direction, toward));
+                let power = dot(normal, half).max(0.0).powi(i32::from(material.shininess));
+                shine = plus(shine, times(product(level(material.specular), light), power * fade));
+            }
+        }
+    };
+    for l in &lighting.directional {
+        light(unit(float(l.direction)), 1.0, level(l.color));
+    }
+    for l in &lighting.points {
+        let to = minus(float(l.position), position);
+        let left = (1.0 - dot(to, to) / f64::from(l.range).powi(2)).max(0.0);
+        light(unit(to), left * left, level(l.color));
+    }
+    if material.vertex_colors {
+        body = product(body, level(color));
+    }
+    (plus(body, shine).map(|c| (255.0 * c).min(255.0)), edge)
+}
+
+/// Worst and mean errors.
+#[derive(Default)]
+struct Errors {
+    worst: f64,
+    sum: f64,
+    count: u32,
+}
+
+impl Errors {
+    fn add(&mut self, found: V, exact: V) -> f64 {
+        let off = found.iter().zip(exact).fold(0.0, |worst: f64, (f, e)| worst.max((f - e).abs()));
+        for (f, e) in found.iter().zip(exact) {
+            self.sum += (f - e).abs();
+            self.count += 1;
+        }
+        self.worst = self.worst.max(off);
+        off
+    }
+
+    fn check(&self, what: &str, worst: f64, mean: f64) {
+        let found = self.sum / f64::from(self.count.max(1));
+        println!("{what}: worst {:.3}, mean {found:.4} of 255 over {} channels", self.worst, self.count);
+        assert!(self.count > 0 && self.worst <= worst && found <= mean, "{what}: more than {worst}, {mean}");
+    }
+}
+
+fn word(rng: &mut Rng) -> u32 {
+    (rng.next_u64() >> 32) as u32
+}
+
+fn random_vector(rng: &mut Rng, reach: f64) -> V {
+    let mut one = || (f64::from(word(rng)) / 2f64.powi(31) - 1.0) * reach;
+    [one(), one(), one()]
+}
+
+fn fixed(v: V) -> Vec3 {
+    Vec3::from_bits(v.map(|c| (c * 65_536.0).round() as i32))
+}
+
+fn random_color(rng: &mut Rng) -> [u8; 3] {
+    let [a, b, c, _] = word(rng).to_le_bytes();
+    [a, b, c]
+}
+
+fn quantized(v: V) -> [i16; 3] {
+    unit(v).map(|c| (c * 16_384.0).round() as i16)
+}
+
+/// A mesh in a cube of some half side about some centre.
+fn cube(center: V, half: f64) -> [Vec3; 3] {
+    [fixed(minus(center, [half; 3])), fixed(plus(center, [half; 3])), fixed(center)]
+}
+
+#[test]
+fn sampled_normals_are_lit_as_in_double_precision() {
+    let seed = 0x11c7;
+    let mut rng = Rng::new(seed);
+    for (scale, what) in [(1.0, "models of scale 1"), (0.125, "models of scale 1/8"), (30.0, "models of scale 30")] {
+        for shininess in [0, 1, 5, 32, 128] {
+            let (mut far, mut near) = (Errors::default(), Errors::default());
+            let mut skipped = 0;
+            for _ in 0..60 {
+                let model = Affine::translation(fixed(random_vector(&mut rng, 20.0)))
+                    * Affine::rotation(fixed(random_vector(&mut rng, 1.0)), Angle(word(&mut rng) as u16))
+                    * Affine::scale(Scalar::from_num(scale));
+                let corners = cube(random_vector(&mut rng, 5.0), 1.5);
+                let mesh = Mesh::new(MeshData::new(Positions::Exact(&corners))).expect("a mesh");
+                let middle = apply(&model, float(mesh.bounds().aabb.center), 1.0);
+                let mut directional = || DirectionalLight {
+                    direction: fixed(random_vector(&mut rng, 9.0)),
+                    color: random_color(&mut rng).map(|c| c / 2),
+                };
+                let directional = [directional(), directional()];
+                let mut point = || PointLight {
+                    position: fixed(plus(middle, random_vector(&mut rng, 4.0 * scale))),
+                    color: random_color(&mut rng).map(|c| c / 2),
+                    range: Scalar::from_num(3.0 * scale) + Scalar::from_bits((word(&mut rng) >> 14) as i32),
+                };
+                let points = [point(), point()];
+                let eye = plus(middle, times(unit(random_vector(&mut rng, 1.0)), 6.0 * scale));
+                let lighting = Lighting { ambient: [40, 30, 20], directional, points, viewer: Viewer::At(fixed(eye)) };
+                let distant = Lighting { points: [], viewer: Viewer::Toward(fixed(eye)), ..without_points(&lighting) };
+                let material = Material {
+                    ambient: random_color(&mut rng),
+                    diffuse: random_color(&mut rng),
+                    specular: random_color(&mut rng),
+                    shininess,
+                    two_sided: false,
+                    vertex_colors: word(&mut rng) & 1 != 0,
+                };
+                let (lit, lit_far) =
+                    (lighting.on(&material, &model, mesh.bounds()), distant.on(&material, &model, mesh.bounds()));
+                for _ in 0..200 {
+                    let p = fixed(plus(float(mesh.bounds().aabb.center), random_vector(&mut rng, 1.5)));
+                    let color = random_color(&mut rng);
+                    let n = quantized(random_vector(&mut rng, 1.0));
+                    let normal = unit(apply(&model, n.map(f64::from), 0.0));
+                    let position = apply(&model, float(p), 1.0);
+                    let n = n.map(i32::from);
+
+                    let float_of = |c: [i32; 3]| c.map(|c| f64::from(c) / 256.0);
+                    let (exact, edge) = reference(&distant, &material, normal, position, color);
+                    if edge > 1.0 / 2048.0 {
+                        far.add(float_of(lit_far.far(n, color)), exact);
+                    }
+                    let (exact, edge) = reference(&lighting, &material, normal, position, color);
+                    if edge > 1.0 / 512.0 {
+                        near.add(float_of(lit.near(n, lit.local(p), color)), exact);
+                    } else {
+                        skipped += 1;
+                    }
+                }
+            }
+            assert!(skipped < 1000, "{skipped}");
+            let s = f64::from(shininess);
+            // Matrices of 16.16 scale by an eighth not quite evenly: 1/8192 off.
+            let uneven = if scale < 1.0 { 0.5 } else { 0.0 };
+            far.check(
+                &format!("seed {seed:#x}, {what}, far, shininess {shininess}"),
+                0.2 + uneven + 0.02 * s,
+                0.1 + 0.003 * s,
+            );
+            near.check(
+                &format!("seed {seed:#x}, {what}, near, shininess {shininess}"),
+                0.5 + uneven + 0.02 * s,
+                0.15 + 0.003 * s,
+            );
+        }
+    }
+}
+
+fn without_points<const D: usize, const P: usize>(lighting: &Lighting<D, P>) -> Lighting<D, 0> {
+    let Lighting { ambient, directional, viewer, .. } = *lighting;
+    Lighting { ambient, directional, points: [], viewer }
+}
+
+const SCREEN: (u16, u16) = (96, 64);
+
+/// A curved square before an orthographic camera: corners in clip space, normals that lean outwards.
+static CORNERS: [Vec3; 4] = [
+    Vec3::from_milli(-1000, -1000, 100),
+    Vec3::from_milli(1000, -1000, 300),
+    Vec3::from_milli(1000, 1000, 600),
+    Vec3::from_milli(-1000, 1000, 400),
+];
+
+fn square<'a>(normals: &'a [[i16; 3]; 4], colors: &'a [[u8; 3]; 4]) -> Mesh<'a> {
+    Mesh::new(MeshData {
+        topology: Topology::Quads,
+        normals: Some(normals),
+        colors: Some(colors),
+        ..MeshData::new(Positions::Exact(&CORNERS))
+    })
+    .expect("a mesh")
+}
+
+const BOTH: State = State { cull: Cull::None, ..State::DEFAULT };
+
+fn normals() -> [[i16; 3]; 4] {
+    [[-0.7, -0.6, 1.0], [0.8, -0.5, 0.9], [0.6, 0.7, 1.2], [-0.5, 0.4, 0.8]].map(quantized)
+}
+
+const COLORS: [[u8; 3]; 4] = [[255, 255, 255], [200, 10, 100], [20, 240, 90], [130, 140, 250]];
+
+fn lighting() -> Lighting<1, 1> {
+    Lighting {
+        ambient: [30, 30, 40],
+        directional: [DirectionalLight::new(Vec3::from_milli(400, 700, 900), Rgb888::new(200, 190, 170))],
+        points: [PointLight::new(Vec3::from_milli(-300, 200, 1200), Rgb888::new(120, 160, 255), Scalar::from_num(2.5))],
+        viewer: Viewer::Toward(Vec3::Z),
+    }
+}
+
+/// Draws the square and compares each pixel with what `exact` says for the triangle's corners and its barycentric weights.
+fn compare(
+    what: &str,
+    shader: &impl Shader<Rgb888>,
+    mesh: &Mesh<'_>,
+    exact: impl Fn([usize; 3], V) -> V,
+    bounds: (f64, f64),
+) {
+    let (picture, _, _) =
+        whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| scene.draw_with(BOTH, mesh, &Projective::IDENTITY, shader));
+    let mut errors = Errors::default();
+    let (width, height) = (f64::from(SCREEN.0), f64::from(SCREEN.1));
+    for (k, pixel) in picture.iter().enumerate() {
+        let (column, row) = ((k % usize::from(SCREEN.0)) as f64 + 0.5, (k / usize::from(SCREEN.0)) as f64 + 0.5);
+        let (u, v) = (column / width, 1.0 - row / height);
+        // Triangles (0, 1, 2) and (0, 2, 3): below and above the diagonal.
+        let (corners, weights) =
+            if v < u { ([0, 1, 2], [1.0 - u, u - v, v]) } else { ([0, 2, 3], [1.0 - v, u, v - u]) };
+        if (u - v).abs() > 1e-9 {
+            errors.add(pixel.map(f64::from), exact(corners, weights));
+        }
+    }
+    errors.check(what, bounds.0, bounds.1);
+}
+
+fn interpolated(corners: [usize; 3], weights: V, of: impl Fn(usize) -> V) -> V {
+    plus(plus(times(of(corners[0]), weights[0]), times(of(corners[1]), weights[1])), times(of(corners[2]), weights[2]))
+}
+
+#[test]
+fn pictures_are_those_of_double_precision() {
+    let normals = normals();
+    let mesh = square(&normals, &COLORS);
+    let lighting = lighting();
+    for (vertex_colors, shininess) in [(false, 0), (true, 20), (false, 64)] {
+        let material = Material {
+            vertex_colors,
+            ..Material::glossy(Rgb888::new(200, 120, 60), Rgb888::new(90, 90, 90), shininess)
+        };
+        let lit = lighting.on(&material, &Affine::IDENTITY, mesh.bounds());
+        let normal = |k: usize| normals[k].map(|c| f64::from(c) / 16_384.0);
+        let position = |k: usize| float(CORNERS[k]);
+        let s = f64::from(shininess);
+
+        let per_face = |corners: [usize; 3], _: V| {
+            let [a, b, c] = corners.map(position);
+            let (p, q) = (minus(b, a), minus(c, a));
+            let n = unit([p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]);
+            reference(&lighting, &material, n, interpolated(corners, [1.0 / 3.0; 3], position), COLORS[corners[0]]).0
+        };
+        let name = |frequency: &str| format!("{frequency}, shininess {shininess}");
+        compare(&name("per face"), &Shaded::new(PerFace, lit), &mesh, per_face, (1.0 + 0.02 * s, 0.6));
+
+        let per_vertex = |corners: [usize; 3], weights: V| {
+            interpolated(corners, weights, |k| reference(&lighting, &material, normal(k), position(k), COLORS[k]).0)
+        };
+        compare(&name("per vertex"), &Shaded::new(PerVertex, lit), &mesh, per_vertex, (1.5 + 0.02 * s, 0.5));
+
+        let at = |lighting: &Lighting<1, 1>, corners: [usize; 3], weights: V| {
+            let n = unit(interpolated(corners, weights, normal));
+            reference(lighting, &material, n, interpolated(corners, weights, position), COLORS[corners[0]]).0
+        };
+        let near = |corners, weights| at(&lighting, corners, weights);
+        compare(&name("per fragment, near"), &Shaded::new(PerFragmentNear, lit), &mesh, near, (1.2 + 0.04 * s, 0.4));
+        let close = Lighting { viewer: Viewer::At(Vec3::from_milli(200, -300, 2000)), ..lighting };
+        let lit_close = close.on(&material, &Affine::IDENTITY, mesh.bounds());
+        let near = |corners, weights| at(&close, corners, weights);
+        let shader = Shaded::new(PerFragmentNear, lit_close);
+        compare(&name("per fragment, viewer near"), &shader, &mesh, near, (1.2 + 0.04 * s, 0.4));
+
+        let distant = without_points(&lighting);
+        let far = |corners, weights| {
+            let n = unit(interpolated(corners, weights, normal));
+            reference(&distant, &material, n, [0.0; 3], COLORS[corners[0]]).0
+        };
+        let lit = distant.on(&material, &Affine::IDENTITY, mesh.bounds());
+        compare(&name("per fragment"), &Shaded::new(PerFragment, lit), &mesh, far, (0.8 + 0.04 * s, 0.4));
+    }
+}
+
+#[test]
+fn matcaps_show_the_texel_of_the_normal() {
+    let normals = normals();
+    let mesh = square(&normals, &COLORS);
+    // A smooth picture, so that a place that is off shows as a small error.
+    let mut picture = [[[0_u8; 3]; 64]; 64];
+    for (y, row) in picture.iter_mut().enumerate() {
+        for (x, texel) in row.iter_mut().enumerate() {
+            *texel = [(4 * x) as u8, (4 * y) as u8, 77];
+        }
+    }
+    let turn = Affine::rotation_z(Angle::from_degrees(30)) * Affine::scale(Scalar::from_num(0.01));
+    let shader = Matcap::<Rgb888, 64>::new(&picture, &turn);
+    let exact = |corners: [usize; 3], weights: V| {
+        let n = interpolated(corners, weights, |k| apply(&turn, normals[k].map(|c| f64::from(c) / 163.84), 0.0));
+        // Halfway through the texel that is 4 wide.
+        [128.0 + 128.0 * n[0] - 2.0, 128.0 - 128.0 * n[1] - 2.0, 77.0]
+    };
+    compare("matcap", &shader, &mesh, exact, (2.7, 1.0));
+
+    // Normals that lie in the screen's plane reach the picture's edge and no farther.
+    let edge = [[16_384, 0, 0], [0, 16_384, 0], [-16_384, 0, 0], [0, -16_384, 0]];
+    let mesh = square(&edge, &COLORS);
+    let shader = Matcap::<Rgb888, 64>::new(&picture, &Affine::IDENTITY);
+    let exact = |corners: [usize; 3], weights: V| {
+        let n = interpolated(corners, weights, |k| edge[k].map(|c| f64::from(c) / 16_384.0));
+        [128.0 + 127.5 * n[0] - 2.0, 128.0 - 127.5 * n[1] - 2.0, 77.0]
+    };
+    compare("matcap at its edge", &shader, &mesh, exact, (3.0, 1.2));
+}
+
+#[test]
+fn two_sided_materials_light_their_backs() {
+    let colors = COLORS;
+    let front = normals();
+    let back = front.map(|n| n.map(|c| -c));
+    let one = Material::glossy(Rgb888::new(200, 120, 60), Rgb888::WHITE, 16);
+    let two = Material { two_sided: true, ..one };
+    let lighting = lighting();
+    let picture = |mesh: &Mesh<'_>, material: &Material, frequency: usize, flip: bool| {
+        let lit = lighting.on(material, &Affine::IDENTITY, mesh.bounds());
+        let far = without_points(&lighting).on(material, &Affine::IDENTITY, mesh.bounds());
+        let state =
+            State { front: if flip { zstrip::Winding::Clockwise } else { zstrip::Winding::CounterClockwise }, ..BOTH };
+        whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| match frequency {
+            0 => scene.draw_with(state, mesh, &Projective::IDENTITY, &Shaded::new(PerVertex, lit)),
+            1 => scene.draw_with(state, mesh, &Projective::IDENTITY, &Shaded::new(PerFragment, far)),
+            _ => scene.draw_with(state, mesh, &Projective::IDENTITY, &Shaded::new(PerFragmentNear, lit)),
+        })
+        .0
+    };
+    for frequency in 0..3 {
+        let lit = picture(&square(&front, &colors), &one, frequency, false);
+        // Normals that point away, on faces that show their back: turned round, all is as it was.
+        let turned = picture(&square(&back, &colors), &two, frequency, true);
+        let off = |other: &[[u8; 3]]| {
+            let channels = lit.iter().flatten().zip(other.iter().flatten());
+            channels.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(255)
+        };
+        // Normals are rounded upwards on either side.
+        assert!(off(&turned) <= 1, "frequency {frequency}: {}", off(&turned));
+        assert!(off(&picture(&square(&back, &colors), &one, frequency, true)) > 50, "frequency {frequency}");
+    }
+}
+
+#[test]
+fn lights_of_models_scaled_far_down_keep_their_direction() {
+    for scale in [1.0, 0.1, 0.01, 0.002] {
+        for degrees in (0..360).step_by(7) {
+            let turn = Affine::rotation_y(Angle::from_degrees(degrees)) * Affine::rotation_x(Angle::from_degrees(31));
+            let model = turn * Affine::scale(Scalar::from_num(scale));
+            let light = Light::new(Vec3::from_ints(4, 7, 6), Rgb888::WHITE, Rgb888::BLACK);
+            let (small, exact) = (light.to_object(&model).on([255; 3]), light.to_object(&turn).on([255; 3]));
+            for normal in [[16_384, 0, 0], [0, 16_384, 0], [0, 0, 16_384], [9459, 9459, 9459]] {
+                let off = small.shade(normal)[0].abs_diff(exact.shade(normal)[0]);
+                // Rows of a model scaled by 0.002 have 131 steps.
+                let allowed = if scale < 0.01 { 7 * 128 } else { 256 };
+                assert!(off <= allowed, "scale {scale}, {degrees} degrees: off by {off} / 256");
+            }
+        }
+    }
+}
+
+#[test]
+fn lit_pictures_do_not_depend_on_strips() {
+    let normals = normals();
+    let mesh = square(&normals, &COLORS);
+    let material = Material { vertex_colors: true, ..Material::glossy(Rgb888::WHITE, Rgb888::WHITE, 30) };
+    let lit = lighting().on(&material, &Affine::IDENTITY, mesh.bounds());
+    let far = without_points(&lighting()).on(&material, &Affine::IDENTITY, mesh.bounds());
+    // Cut by the side of a perspective camera's near plane too.
+    let camera = Projective::perspective(Angle::from_degrees(70), SCREEN, Scalar::from_num(0.6), Scalar::from_num(9));
+    let mvp = camera.expect("a camera")
+        * Affine::translation(Vec3::from_milli(0, 0, -900))
+        * Affine::rotation_y(Angle::from_degrees(50));
+    let texels: [[[u8; 3]; 2]; 2] = [[[10, 20, 30], [200, 20, 30]], [[10, 200, 30], [10, 20, 230]]];
+    let draw = |rows: usize, records: usize| {
+        strips::<Rgb565>(SCREEN, rows, records, Rgb565::BLACK, |scene| {
+            scene.draw_with(BOTH, &mesh, &mvp, &Shaded::new(PerFace, lit));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(3000))), &Shaded::new(PerVertex, lit));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(6000))), &Shaded::new(PerFragment, far));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(9000))), &Shaded::new(PerFragmentNear, lit));
+            let matcap = Matcap::<Rgb888, 2>::new(&texels, &Affine::IDENTITY);
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(12_000))), &matcap);
+        })
+        .0
+    };
+    let expected = draw(64, 1 << 14);
+    for (rows, records) in [(1, 1 << 14), (7, 1 << 14), (7, 0), (16, 90), (64, 0)] {
+        assert_eq!(
+            support::difference(&draw(rows, records), &expected, SCREEN.0),
+            None,
+            "{rows} rows, {records} records"
+        );
+    }
+}
