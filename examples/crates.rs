@@ -3,33 +3,25 @@
 //! ```text
 //! cargo run --release --example crates -- --help
 //! ```
-#[path = "host/mod.rs"]
 mod host;
-#[path = "host/modes.rs"]
-mod modes;
 mod scenes;
 
-use modes::Show;
-use scenes::textured::{Look, crates, fence};
-use std::process::ExitCode;
+use host::show::{Show, Variant};
+use scenes::textured::{Look, crates};
 
-const LOOKS: [Look; 4] = [
-    Look { bilinear: true, mips: true },
-    Look { bilinear: false, mips: true },
-    Look { bilinear: true, mips: false },
-    Look { bilinear: false, mips: false },
-];
-
-fn main() -> ExitCode {
+fn main() -> std::process::ExitCode {
     let show = Show {
         name: "crates",
-        about: "Crates on a floor, behind a fence.",
-        modes: &["bilinear, mip levels", "nearest, mip levels", "bilinear, one level", "nearest, one level"],
-        background: scenes::BACKGROUND,
-        draw: |scene, turn, mode| {
-            crates(scene, turn, LOOKS[mode]);
-            fence(scene, turn);
-        },
+        about: "Crates on a floor, behind a fence, with and without mip levels and bilinear filtering.",
+        variants: &[
+            Variant { name: "bilinear", draw: |scene, turn| crates(scene, turn, Look { bilinear: true, mips: true }) },
+            Variant { name: "nearest", draw: |scene, turn| crates(scene, turn, Look { bilinear: false, mips: true }) },
+            Variant {
+                name: "one-level",
+                draw: |scene, turn| crates(scene, turn, Look { bilinear: true, mips: false }),
+            },
+            Variant { name: "pixels", draw: |scene, turn| crates(scene, turn, Look { bilinear: false, mips: false }) },
+        ],
     };
-    show.run()
+    show.main()
 }

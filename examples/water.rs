@@ -3,23 +3,21 @@
 //! ```text
 //! cargo run --release --example water -- --help
 //! ```
-#[path = "host/mod.rs"]
 mod host;
-#[path = "host/modes.rs"]
-mod modes;
 mod scenes;
 
-use modes::Show;
+use host::show::{Show, Variant};
 use scenes::water::water;
-use std::process::ExitCode;
 
-fn main() -> ExitCode {
+fn main() -> std::process::ExitCode {
     let show = Show {
         name: "water",
         about: "Water, waved by a vertex shader, and a crate on it.",
-        modes: &["a breeze", "waves", "a gale"],
-        background: scenes::BACKGROUND,
-        draw: |scene, time, mode| water(scene, time, [1, 2, 3][mode]),
+        variants: &[
+            Variant { name: "breeze", draw: |scene, time| water(scene, time, 1) },
+            Variant { name: "waves", draw: |scene, time| water(scene, time, 2) },
+            Variant { name: "gale", draw: |scene, time| water(scene, time, 3) },
+        ],
     };
-    show.run()
+    show.main()
 }
