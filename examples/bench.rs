@@ -22,11 +22,14 @@ use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::output::Buffers;
 use zstrip::output::RamBudget;
 
-const NAMED: [(&str, Workload); 7] = [
+const NAMED: [(&str, Workload); 10] = [
     ("empty", Workload::Empty),
     ("w1", Workload::Quad),
     ("w2", Workload::GouraudQuad),
     ("w3", Workload::TexturedQuad),
+    ("flat", Workload::FlatQuad),
+    ("own_flat", Workload::OwnFlatQuad),
+    ("own_gouraud", Workload::OwnGouraudQuad),
     ("w4", Workload::FlatTorus),
     ("w5", Workload::GouraudTorus),
     ("w6", Workload::Tiny),
@@ -159,8 +162,9 @@ impl Tolerance {
     /// the reference's are perspective-correct.
     const fn of(workload: Workload) -> Self {
         let (coverage, surface, channel) = match workload {
-            Workload::Empty | Workload::Quad => (0, 0, 0.0),
+            Workload::Empty | Workload::Quad | Workload::FlatQuad | Workload::OwnFlatQuad => (0, 0, 0.0),
             Workload::GouraudQuad => (0, 0, 1.0),
+            Workload::OwnGouraudQuad => (0, 0, 2.0),
             // Texels' borders are within a fraction of a pixel of where they are, one division every 16 pixels.
             Workload::TexturedQuad => (20, 40, 0.0),
             Workload::FlatTorus | Workload::GouraudTorus => (20, 20, 1.5),

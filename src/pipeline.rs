@@ -13,7 +13,9 @@ mod stroke;
 mod triangle;
 
 use crate::fragment::{DepthBias, DepthState, Shader};
-use crate::geometry::{Bounds, DepthRange, DepthScale, Mesh, Positions, Transform, Varyings, View, Viewport};
+use crate::geometry::{
+    Bounds, DepthRange, DepthScale, MAX_DISTANCES, Mesh, Positions, Transform, Varyings, View, Viewport,
+};
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::raster::{PixelRect, first_centre};
@@ -125,6 +127,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
             assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
             assert!(S::ZERO_BITS == 0 || S::Varyings::PERSPECTIVE == 0, "perspective takes all bits of varyings");
+            assert!(S::CLIP_DISTANCES + S::CULL_DISTANCES <= MAX_DISTANCES, "at most 4 clip and cull distances");
             assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
         };
         let stride = S::WORDS + VERTEX_WORDS;

@@ -14,8 +14,10 @@ pub mod overlay;
 pub mod polygons;
 pub mod pot;
 pub mod soup;
+pub mod textured;
 pub mod tiles;
 pub mod torus;
+pub mod water;
 pub mod wires;
 
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
@@ -47,6 +49,9 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
+    SceneInfo { name: "crates", draw: |scene, turn| crates(scene, turn) },
+    SceneInfo { name: "close", draw: |scene, turn| textured::close(scene, turn) },
+    SceneInfo { name: "water", draw: |scene, turn| water::water(scene, turn, 1) },
     SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
     SceneInfo { name: "overlay", draw: |scene, turn| overlay::draw(scene, turn) },
     // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
@@ -58,6 +63,12 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
     SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
 ];
+
+/// Crates, mip chains, filters, and a fence with holes.
+fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    textured::crates(scene, turn, textured::Look { bilinear: true, mips: true });
+    textured::fence(scene, turn);
+}
 
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);

@@ -40,6 +40,12 @@ pub enum Workload {
     Quad,
     /// The same quad, depth test and write, Gouraud colours.
     GouraudQuad,
+    /// The same quad in one colour, depth test and write.
+    FlatQuad,
+    /// The same again, by a shader of one's own.
+    OwnFlatQuad,
+    /// The quad in Gouraud colours, by a shader of one's own.
+    OwnGouraudQuad,
     /// A quad tilted by 60°, with a texture of 64 x 64 texels, perspective-correct; depth test and write.
     TexturedQuad,
     /// A torus of 1,024 triangles, flat.
@@ -56,6 +62,9 @@ pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&
         Workload::Empty => frame(buffers, sink, |_| {}),
         Workload::Quad => quad(buffers, sink),
         Workload::GouraudQuad => gouraud_quad(buffers, sink),
+        Workload::FlatQuad => flat_quad(buffers, sink),
+        Workload::OwnFlatQuad => own_flat_quad(buffers, sink),
+        Workload::OwnGouraudQuad => own_gouraud_quad(buffers, sink),
         Workload::TexturedQuad => textured_quad(buffers, sink),
         Workload::FlatTorus => flat_torus(buffers, sink),
         Workload::GouraudTorus => gouraud_torus(buffers, sink),
@@ -92,6 +101,22 @@ pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
 #[inline(never)]
 pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
     frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::colors_unlit()))
+}
+
+#[inline(never)]
+pub fn flat_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    let [r, g, b] = QUAD_COLOR;
+    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Flat::unlit(Rgb888::new(r, g, b))))
+}
+
+#[inline(never)]
+pub fn own_flat_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &OwnFlat))
+}
+
+#[inline(never)]
+pub fn own_gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &OwnGouraud))
 }
 
 #[inline(never)]
@@ -167,6 +192,50 @@ impl<P: PixelFormat> Shader<P> for FaceColors {
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
         Shader::<P>::span(&self.0, face, span, test);
+    }
+}
+
+/// One colour, as a user would write it: fragment by fragment.
+struct OwnFlat;
+
+impl VertexShader for OwnFlat {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+        []
+    }
+
+    fn face(&self, _: &Face<'_>) -> u32 {
+        let [r, g, b] = QUAD_COLOR;
+        u32::from_be_bytes([0, r, g, b])
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for OwnFlat {
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
+        let [_, r, g, b] = fragment.face.to_be_bytes();
+        Some(P::pack([r, g, b]))
+    }
+}
+
+/// Interpolated colours, as a user would write them.
+struct OwnGouraud;
+
+impl VertexShader for OwnGouraud {
+    type Varyings = [i32; 3];
+
+    fn vertex(&self, corner: &Corner<'_>) -> [i32; 3] {
+        // 8.16, and a little away from both ends, for the gradients' errors.
+        corner.color().map(|c| i32::from(c) * 0xFF00 + 0x4000)
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for OwnGouraud {
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
+        let [r, g, b] = fragment.varyings;
+        Some(P::pack([(r >> 16) as u8, (g >> 16) as u8, (b >> 16) as u8]))
     }
 }
 

@@ -23,8 +23,8 @@ pub fn draw(workload: Workload) -> Picture {
     let mut picture = Picture { colors: vec![None; WIDTH * HEIGHT], inv_z: vec![0.0; WIDTH * HEIGHT] };
     match workload {
         Workload::Empty => {}
-        Workload::Quad => picture.quad(|_| super::QUAD_COLOR),
-        Workload::GouraudQuad => picture.quad(|k| super::QUAD_COLORS[k]),
+        Workload::Quad | Workload::FlatQuad | Workload::OwnFlatQuad => picture.quad(|_| super::QUAD_COLOR),
+        Workload::GouraudQuad | Workload::OwnGouraudQuad => picture.quad(|k| super::QUAD_COLORS[k]),
         Workload::TexturedQuad => picture.tilted(),
         Workload::FlatTorus => picture.torus(|triangle, _| super::TORUS_FACE_NORMALS[triangle]),
         Workload::GouraudTorus => picture.torus(|_, vertex| super::TORUS_NORMALS[vertex]),

@@ -252,6 +252,18 @@ pub(super) fn intersection(from: &ClipCorner, to: &ClipCorner, plane: usize) -> 
     if da < 0 {
         (a, b, da, db) = (b, a, db, da);
     }
+    let mut crossing = crossing(a, da, b, db);
+    match plane {
+        NEAR => crossing.vertex.z = 0,
+        FAR => crossing.vertex.z = crossing.vertex.w,
+        _ => {}
+    }
+    Some(crossing)
+}
+
+/// Where the edge from `a`, at the distance `da` inside of a plane, to `b`, outside, meets it.
+#[inline]
+pub(super) fn crossing(a: &ClipCorner, da: i64, b: &ClipCorner, db: i64) -> ClipCorner {
     let t = fraction(da as u64, da.abs_diff(db));
     let mut crossing = *a;
     let ClipVertex { x, y, z, w } = &mut crossing.vertex;
@@ -262,12 +274,7 @@ pub(super) fn intersection(from: &ClipCorner, to: &ClipCorner, plane: usize) -> 
     for (value, end) in crossing.weights.iter_mut().zip(b.weights) {
         *value = along(i64::from(*value), i64::from(end), t) as i32;
     }
-    match plane {
-        NEAR => crossing.vertex.z = 0,
-        FAR => crossing.vertex.z = crossing.vertex.w,
-        _ => {}
-    }
-    Some(crossing)
+    crossing
 }
 
 /// `a + (b - a) t` with t as 0.64, rounded towards `a`.

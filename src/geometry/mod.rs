@@ -3,6 +3,7 @@
 
 mod bounds;
 mod clip;
+mod clip_distance;
 mod clip_line;
 mod edges;
 mod frustum;
@@ -22,6 +23,7 @@ mod viewport;
 
 pub use bounds::{BoundingBox, BoundingSphere, Bounds, BoundsNode};
 pub use clip::{ClipCorner, ClipVertex, DepthRange, Outcode, Part, clip_triangle, weighted};
+pub use clip_distance::{DISTANCE_CORNERS, DistancePolygon, MAX_DISTANCES, cut_by_distance};
 pub use clip_line::clip_line;
 pub use edges::{EdgesError, edges};
 pub use frustum::{Containment, Frustum, Plane};

@@ -7,6 +7,7 @@
 //! Plain arrays are interpolated the first way. [`Perspective`] divides a part of itself; what it takes to do so is kept
 //! in its [`Correction`], which for arrays is nothing at all.
 
+use super::DISTANCE_CORNERS;
 use core::fmt::Debug;
 
 /// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes, or
@@ -81,7 +82,7 @@ fn step_one(values: &mut [i32], changes: &[i32], k: usize) {
 /// Varyings of which the first `P` are perspective-correct, and those after them linear on the screen; `N` is one more than
 /// all of them, as the pipeline keeps 1 / w in the last place.
 ///
-/// Perspective-correct values may differ by less than 2³⁰ over a triangle. They are within 2⁻¹³ of the largest difference
+/// Perspective-correct values may differ by less than 2²⁸ over a triangle. They are within 2⁻¹² of the largest difference
 /// (and half a unit) of the exact value; the sub-span mode adds what [`Shader::STEP`](crate::fragment::Shader::STEP) says.
 ///
 /// ```
@@ -172,7 +173,7 @@ pub trait Correction: Copy + Debug {
     fn wide_w(&self) -> WidePlane;
 }
 
-/// Words of 1 / w at the corners of a clipped polygon, of which there are at most ten.
+/// Words of 1 / w at the corners of a clipped polygon, of which there are not more than places.
 pub trait InverseW: Default {
     /// Adds a corner's.
     fn push(&mut self, inverse_w: impl FnOnce() -> u32);
@@ -192,7 +193,7 @@ impl InverseW for () {
     }
 }
 
-impl InverseW for heapless::Vec<u32, 10> {
+impl InverseW for heapless::Vec<u32, DISTANCE_CORNERS> {
     #[inline]
     fn push(&mut self, inverse_w: impl FnOnce() -> u32) {
         let _ = heapless::Vec::push(self, inverse_w());
@@ -263,7 +264,7 @@ impl WidePlane {
 pub struct Lane {
     /// The value at the first vertex.
     pub base: i32,
-    /// By how much differences from it are scaled up, so that the largest is in 2²⁹..2³⁰.
+    /// By how much differences from it are scaled up, so that the largest is in 2²⁷..2²⁸.
     pub shift: u32,
     /// h / w, where it is [`Wide`](PerspectiveClass::Wide).
     pub plane: WidePlane,
@@ -278,7 +279,7 @@ pub struct Lanes<const P: usize> {
 }
 
 impl<const P: usize> Correction for Lanes<P> {
-    type Corners = heapless::Vec<u32, 10>;
+    type Corners = heapless::Vec<u32, DISTANCE_CORNERS>;
 
     const NONE: Self = Self {
         class: PerspectiveClass::Affine,

@@ -1,6 +1,6 @@
 //! The vertex stage's seam: what a shader sees of a vertex or a face, and what it hands on.
 
-use super::{Mesh, Positions, Varyings};
+use super::{MAX_DISTANCES, Mesh, Positions, Varyings};
 use crate::math::{Vec3, isqrt, mul_high_signed, reciprocal};
 
 /// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
@@ -171,12 +171,25 @@ pub trait VertexShader {
     /// Whether [`displace`](Self::displace) moves vertices. Such draws are not culled by the mesh's bounds.
     const DISPLACES: bool = false;
 
+    /// How many clip distances a vertex has: up to 4, cull distances included. Triangles are cut where one is negative.
+    const CLIP_DISTANCES: usize = 0;
+
+    /// How many cull distances it has. A triangle is left out if one of them is negative at all of its corners.
+    const CULL_DISTANCES: usize = 0;
+
     /// The varyings at a vertex.
     fn vertex(&self, vertex: &Corner<'_>) -> Self::Varyings;
 
     /// Where the vertex is to be drawn, in object space; called only if [`DISPLACES`](Self::DISPLACES).
     fn displace(&self, vertex: &Corner<'_>) -> Vec3 {
         vertex.position()
+    }
+
+    /// Clip distances, then cull distances, on any scale: linear in space, not negative inside. Called only if there are any,
+    /// maybe more than once; they concern triangles, not lines and points.
+    fn distances(&self, vertex: &Corner<'_>) -> [i32; MAX_DISTANCES] {
+        let _ = vertex;
+        [0; MAX_DISTANCES]
     }
 
     /// One word that is constant on the triangle, handed to the fragment stage: a packed colour, an index, anything.

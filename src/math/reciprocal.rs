@@ -133,7 +133,7 @@ fn leading_zeros(q: u32) -> u32 {
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseDivisor {
     shift: u32,
-    /// 2⁴⁷ / x within 2⁻⁹.
+    /// 2⁴⁷ / x within 2⁻⁹: 16 bits.
     reciprocal: i32,
     /// 2²⁵ - x `reciprocal` / 2²²: below 2¹⁶·¹.
     defect: i32,
@@ -144,24 +144,36 @@ impl CoarseDivisor {
     #[inline(always)]
     pub fn near(q: u32, shift: &mut u32) -> Self {
         let mut x = q << (*shift & 31);
-        if x >> (*shift & 31) != q || x >> 31 == 0 {
+        if !SMALL_CORE {
+            *shift = q.leading_zeros();
+            x = q << (*shift & 31);
+        } else if x >> (*shift & 31) != q || x >> 31 == 0 {
             *shift = leading_zeros(q);
             x = q << (*shift & 31);
         }
         let r = SEED[(x >> 23) as usize & 0xFF] as u32;
-        let product = (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16);
+        let product = if SMALL_CORE {
+            (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16)
+        } else {
+            mul_high(x, r << 16)
+        };
         Self { shift: *shift & 31, reciprocal: r as i32, defect: (1_i32 << 31).wrapping_sub(product as i32) >> 6 }
     }
 
     /// `n` / q as 1.31.
     ///
     /// # Format
-    /// |n| ≤ q / 2. Off by less than 2⁻¹⁸ of the quotient, the square of the table's error, and 192 units for bits cut.
+    /// |n| < q / 4. Off by less than 2⁻¹⁸ of the quotient, the square of the table's error, and 192 units for bits cut.
     #[inline(always)]
     pub fn divide(&self, n: i32) -> i32 {
         let n = n << self.shift;
-        let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
-        let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+        let h = if SMALL_CORE {
+            let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
+            (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32)
+        } else {
+            // The same, of factors that fit 31 bits and a sign.
+            ((i64::from(n << 1) * i64::from(self.reciprocal << 15)) >> 32) as i32
+        };
         h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 9)
     }
 }
@@ -184,7 +196,8 @@ mod tests {
                 for n in [n as i32, -(n as i32)] {
                     let exact = f64::from(n) / f64::from(x) * 2f64.powi(31);
                     worst = worst.max((f64::from(Divisor::new(x).divide(n)) - exact).abs());
-                    let coarse = CoarseDivisor::near(x, &mut (random() % 32)).divide(n);
+                    let coarse = CoarseDivisor::near(x, &mut (random() % 32)).divide(n / 2);
+                    let exact = f64::from(n / 2) / f64::from(x) * 2f64.powi(31);
                     worst_coarse = worst_coarse.max((f64::from(coarse) - exact).abs() - exact.abs() / 262_144.0);
                 }
             }

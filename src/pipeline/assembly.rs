@@ -3,8 +3,9 @@
 use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
-    BoundsNode, ClipVertex, Corner, Correction, Face, InverseW, Mesh, Outcode, Part, Placed, ScreenVertex, Side,
-    Transform, Varyings, VertexShader, View, clip_triangle, inverse_w, signed_area, weighted,
+    BoundsNode, ClipCorner, ClipVertex, Corner, Correction, DISTANCE_CORNERS, DistancePolygon, Face, InverseW,
+    MAX_DISTANCES, Mesh, Outcode, Part, Placed, ScreenVertex, Side, Transform, Varyings, VertexShader, View,
+    clip_triangle, cut_by_distance, inverse_w, signed_area, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -13,7 +14,7 @@ use crate::{Cull, Winding};
 use core::ops::Range;
 
 /// The corners of a clipped polygon on the screen, with their weights.
-type Fan = heapless::Vec<(ScreenVertex, [i32; 3]), 10>;
+type Fan<const N: usize> = heapless::Vec<(ScreenVertex, [i32; 3]), N>;
 
 /// 1 / w at these corners, if varyings take it.
 type InverseWs<S> = <<<S as VertexShader>::Varyings as Varyings>::Correction as Correction>::Corners;
@@ -68,6 +69,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                 return;
             };
             self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
+            if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
+                self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+                continue;
+            }
             // 3. Vertex stage, once a vertex where there are records to keep the result.
             // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
             let [i, j, k] = corners;
@@ -95,7 +100,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         } else {
             self.transform.place(&self.mesh.data().positions, index)
         };
-        let slot = Slot::new(&placed);
+        let mut slot = Slot::new(&placed);
+        if S::CLIP_DISTANCES > 0 && self.distances(index).iter().any(|distance| *distance < 0) {
+            // Off the screen, but not by the planes that outcodes know.
+            slot = Slot::new(&Placed::Outside(Outcode(slot.outcode())));
+        }
         if self.scene.records.has_vertices() {
             let varyings = self.vertex(index);
             self.scene.records.keep::<S>(index, slot, &varyings);
@@ -123,29 +132,74 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1] | codes[2]);
         for part in self.state.range.parts(all) {
-            let (mut fan, mut inverse_ws) = (Fan::new(), InverseWs::<S>::default());
-            self.cut(corners, all, part, &mut fan, &mut inverse_ws);
-            self.fan(&fan, &inverse_ws, corners, number);
+            if S::CLIP_DISTANCES > 0 {
+                self.part::<DISTANCE_CORNERS>(corners, all, part, number);
+            } else {
+                self.part::<10>(corners, all, part, number);
+            }
         }
+    }
+
+    /// A part of a triangle, which has up to `N` corners when it has been clipped.
+    fn part<const N: usize>(&mut self, corners: [u16; 3], codes: Outcode, part: Part, number: usize) {
+        let (mut fan, mut inverse_ws) = (Fan::<N>::new(), InverseWs::<S>::default());
+        self.cut(corners, codes, part, &mut fan, &mut inverse_ws);
+        self.fan(&fan, &inverse_ws, corners, number);
+    }
+
+    /// The clip distances of a vertex; those that the shader does not have are 0.
+    #[inline]
+    fn distances(&self, index: usize) -> [i32; MAX_DISTANCES] {
+        let mut distances = self.shader.distances(&Corner::new(self.mesh, index));
+        distances.iter_mut().skip(S::CLIP_DISTANCES).for_each(|distance| *distance = 0);
+        distances
+    }
+
+    /// Whether one of the cull distances is negative at all corners.
+    #[inline]
+    fn is_culled_by_distance(&self, corners: [u16; 3]) -> bool {
+        let [a, b, c] = corners.map(|k| self.shader.distances(&Corner::new(self.mesh, usize::from(k))));
+        let all = a.iter().zip(b).zip(c).map(|((a, b), c)| a & b & c);
+        all.skip(S::CLIP_DISTANCES).take(S::CULL_DISTANCES).any(|sign| sign < 0)
     }
 
     /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
     /// has left the stack when it is drawn.
     #[inline(never)]
-    fn cut(&self, [i, j, k]: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan, inverse_ws: &mut InverseWs<S>) {
+    fn cut<const N: usize>(
+        &self,
+        [i, j, k]: [u16; 3],
+        codes: Outcode,
+        part: Part,
+        fan: &mut Fan<N>,
+        inverse_ws: &mut InverseWs<S>,
+    ) {
         let vertex = |index: u16| self.transformed(usize::from(index));
-        clip_triangle([vertex(i), vertex(j), vertex(k)], codes, part, |corner| {
+        let emit = |corner: &ClipCorner| {
             if let Some(placed) = self.transform.project(&corner.vertex) {
                 // There are no more corners than places.
                 let _ = fan.push((placed, corner.weights));
                 inverse_ws.push(|| inverse_w(&corner.vertex));
             }
+        };
+        let triangle = [vertex(i), vertex(j), vertex(k)];
+        if S::CLIP_DISTANCES == 0 {
+            return clip_triangle(triangle, codes, part, emit);
+        }
+        let mut polygon = DistancePolygon::new();
+        clip_triangle(triangle, codes, part, |corner| {
+            let _ = polygon.push_back(*corner);
         });
+        let [i, j, k] = [i, j, k].map(|index| self.distances(usize::from(index)));
+        for ((i, j), k) in i.into_iter().zip(j).zip(k).take(S::CLIP_DISTANCES) {
+            cut_by_distance(&mut polygon, [i, j, k]);
+        }
+        polygon.iter().for_each(emit);
     }
 
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
-    fn fan(&mut self, fan: &Fan, inverse_ws: &InverseWs<S>, corners: [u16; 3], number: usize) {
+    fn fan<const N: usize>(&mut self, fan: &Fan<N>, inverse_ws: &InverseWs<S>, corners: [u16; 3], number: usize) {
         let [i, j, k] = corners;
         let vertex = |index: u16| self.vertex(usize::from(index));
         let varyings = [vertex(i), vertex(j), vertex(k)];

@@ -1,12 +1,12 @@
 //! Perspective-correct varyings, at the vertices: what is linear on the screen, and how much perspective there is.
 //!
-//! A varying that is linear in space is no plane on the screen, but v / w and 1 / w are. With d = v - v₀, scaled to 30 bits,
+//! A varying that is linear in space is no plane on the screen, but v / w and 1 / w are. With d = v - v₀, scaled to 28 bits,
 //! and q = 1 / w, scaled so that the largest of a triangle has 31 bits,
 //!
 //! ```text
 //! v = v₀ + Σ bᵢ (dᵢ qᵢ) / Σ bᵢ qᵢ            bᵢ: a pixel's barycentric coordinates on the screen
 //! ```
-//! so a pixel takes the planes of d q and of q, and one reciprocal. Since |d| q is at most half of q at the vertices, it is
+//! so a pixel takes the planes of d q and of q, and one reciprocal. Since |d| q is at most an eighth of q at the vertices, it is
 //! at every pixel.
 
 use super::Gradients;
@@ -59,8 +59,8 @@ fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
 
 /// # Format
 /// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](super::Gradients)); so are q and d q, which
-/// makes h, of 30 bits, wrong by some 2³¹ (reach + 64) / q. [`Narrow`](PerspectiveClass::Narrow) keeps that below 2¹⁵
-/// units, 2⁻¹⁵ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter of that, 2⁻¹⁶.
+/// makes h, of 28 bits, wrong by some 2³¹ (reach + 64) / q. [`Narrow`](PerspectiveClass::Narrow) keeps that below 2¹⁵
+/// units, 2⁻¹³ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter of that, 2⁻¹⁶.
 #[inline(never)]
 fn convert(values: [&mut [i32]; 3], lanes: &mut [Lane], reach: u32) -> PerspectiveClass {
     let [a, b, c] = values;
@@ -80,7 +80,7 @@ fn convert(values: [&mut [i32]; 3], lanes: &mut [Lane], reach: u32) -> Perspecti
         lane.base = *a;
         let (db, dc) = (b.wrapping_sub(*a), c.wrapping_sub(*a));
         let zeros = db.unsigned_abs().max(dc.unsigned_abs()).leading_zeros();
-        lane.shift = zeros.saturating_sub(2);
+        lane.shift = zeros.saturating_sub(4);
         (*a, *b, *c) = (0, db << lane.shift, dc << lane.shift);
         if class != PerspectiveClass::Affine {
             (*b, *c) = (mul_high_signed(*b, qb << 1), mul_high_signed(*c, qc << 1));

@@ -1,0 +1,278 @@
+//! Textures in perspective: wooden crates on a tiled floor, behind a fence of holes.
+
+use super::{camera, light};
+use zstrip::fragment::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Textured, Tile};
+use zstrip::geometry::{Mesh, MeshData, NORMAL_ONE, Positions, Topology};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::{Cull, Framebuffer, Scene, State};
+
+/// Sides of the crate's texture.
+const WOOD: usize = 32;
+
+const fn rgb565(r: usize, g: usize, b: usize) -> u16 {
+    ((r >> 3) << 11 | (g >> 2) << 5 | b >> 3) as u16
+}
+
+/// Some number that looks random.
+const fn noise(x: usize, y: usize) -> usize {
+    let n = (x as u32).wrapping_mul(1_103_515_245).wrapping_add((y as u32).wrapping_mul(12_345_677));
+    ((n ^ n >> 13).wrapping_mul(1_274_126_177) >> 24) as usize
+}
+
+/// Planks in a frame, with nails.
+static WOOD_TEXELS: [[u16; WOOD]; WOOD] = {
+    let mut texels = [[0; WOOD]; WOOD];
+    let mut k = 0;
+    while k < WOOD * WOOD {
+        let (x, y) = (k % WOOD, k / WOOD);
+        let (across, down) = (if x < WOOD / 2 { x } else { WOOD - 1 - x }, if y < WOOD / 2 { y } else { WOOD - 1 - y });
+        let frame = across < 4 || down < 4;
+        // Along the grain it changes little: boards of the frame run along its sides.
+        let grain = if frame && across < down { noise(x, y / 7) } else { noise(x / 7 + 50, y) };
+        let gap = across == 4 || down == 4 || (!frame && y % 6 == 5);
+        let nail = (across == 2 || across == 1) && (down == 2 || down == 1);
+        let light = if gap { 50 } else { 150 + grain / 4 - if frame { 0 } else { 25 } };
+        texels[y][x] = if nail { rgb565(70, 70, 80) } else { rgb565(light, light * 11 / 16, light * 6 / 16) };
+        k += 1;
+    }
+    texels
+};
+
+pub static WOODEN: Tile<'static, WOOD, WOOD> = Tile::new(&WOOD_TEXELS);
+
+/// Corners of a crate's faces, as an axis along u, one along v and the way out.
+const SIDES: [[[i32; 3]; 3]; 6] = [
+    [[1, 0, 0], [0, -1, 0], [0, 0, 1]],
+    [[0, 0, -1], [0, -1, 0], [1, 0, 0]],
+    [[-1, 0, 0], [0, -1, 0], [0, 0, -1]],
+    [[0, 0, 1], [0, -1, 0], [-1, 0, 0]],
+    [[1, 0, 0], [0, 0, 1], [0, 1, 0]],
+    [[1, 0, 0], [0, 0, -1], [0, -1, 0]],
+];
+
+struct Box {
+    points: [Vec3; 24],
+    uvs: [[Scalar; 2]; 24],
+    normals: [[i16; 3]; 24],
+}
+
+static BOX: Box = {
+    let (mut points, mut uvs) = ([Vec3::ZERO; 24], [[Scalar::ZERO; 2]; 24]);
+    let mut normals = [[0; 3]; 24];
+    let mut k = 0;
+    while k < 24 {
+        let [u, v, out] = SIDES[k / 4];
+        // Lower left, lower right, upper right, upper left.
+        let [right, down] = [[0, 1], [1, 1], [1, 0], [0, 0]][k % 4];
+        let mut bits = [0; 3];
+        let mut axis = 0;
+        while axis < 3 {
+            bits[axis] = (out[axis] + (2 * right - 1) * u[axis] + (2 * down - 1) * v[axis]) << 15;
+            normals[k][axis] = out[axis] as i16 * NORMAL_ONE;
+            axis += 1;
+        }
+        points[k] = Vec3::from_bits(bits);
+        uvs[k] = [Scalar::from_bits(right << 16), Scalar::from_bits(down << 16)];
+        k += 1;
+    }
+    Box { points, uvs, normals }
+};
+
+/// A cube with sides of 1, and the whole texture on each of them.
+pub static CRATE: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    uvs: Some(&BOX.uvs),
+    normals: Some(&BOX.normals),
+    ..MeshData::new(Positions::Exact(&BOX.points))
+});
+
+/// Sides of the floor's texture, and of the smaller ones.
+const TILES: usize = 64;
+const LEVELS: usize = 5;
+
+/// Big-endian texels of all levels, one after the other: 64 x 64, 32 x 32, .., 4 x 4.
+const FLOOR_BYTES: usize = 2 * (64 * 64 + 32 * 32 + 16 * 16 + 8 * 8 + 4 * 4);
+
+/// Red, green and blue of the floor: four slabs with joints.
+const fn slab(x: usize, y: usize) -> [usize; 3] {
+    let half = TILES / 2;
+    let joint = x % half < 2 || y % half < 2;
+    let dark = (x / half + y / half).is_multiple_of(2);
+    let spots = noise(x / 2 + 9, y / 2) / 8;
+    match (joint, dark) {
+        (true, _) => [60, 60, 64],
+        (false, true) => [90 + spots, 100 + spots, 116 + spots],
+        (false, false) => [168 + spots, 170 + spots, 160 + spots],
+    }
+}
+
+static FLOOR: [u8; FLOOR_BYTES] = {
+    let mut bytes = [0; FLOOR_BYTES];
+    let mut at = 0;
+    let mut level = 0;
+    while level < LEVELS {
+        let (side, texels) = (TILES >> level, 1 << level);
+        let mut k = 0;
+        while k < side * side {
+            // The mean of the texels that it stands for.
+            let mut sum = [0; 3];
+            let mut n = 0;
+            while n < texels * texels {
+                let [r, g, b] = slab(k % side * texels + n % texels, k / side * texels + n / texels);
+                sum = [sum[0] + r, sum[1] + g, sum[2] + b];
+                n += 1;
+            }
+            let [high, low] = rgb565(sum[0] / n, sum[1] / n, sum[2] / n).to_be_bytes();
+            (bytes[at], bytes[at + 1]) = (high, low);
+            at += 2;
+            k += 1;
+        }
+        level += 1;
+    }
+    bytes
+};
+
+type Level = Image<'static, Rgb565Texel>;
+
+/// The floor's mip chain.
+pub static FLOOR_LEVELS: [Level; LEVELS] = {
+    let mut levels = [level(0, 64); LEVELS];
+    let (mut at, mut side, mut k) = (0, TILES, 0);
+    while k < LEVELS {
+        levels[k] = level(at, side);
+        at += 2 * side * side;
+        side /= 2;
+        k += 1;
+    }
+    levels
+};
+
+const fn level(at: usize, side: usize) -> Level {
+    let (_, rest) = FLOOR.split_at(at);
+    let (bytes, _) = rest.split_at(2 * side * side);
+    match Image::new(bytes, (side as u16, side as u16), Rgb565Texel) {
+        Ok(image) => image,
+        Err(_) => panic!("a level has another size"),
+    }
+}
+
+/// Squares of the floor, each way; one is 2 x 2 and shows the texture twice each way.
+const SQUARES: usize = 8;
+const FLOOR_POINTS: usize = (SQUARES + 1) * (SQUARES + 1);
+
+const fn floor_points() -> ([Vec3; FLOOR_POINTS], [[Scalar; 2]; FLOOR_POINTS], [u16; 4 * SQUARES * SQUARES]) {
+    let (mut points, mut uvs) = ([Vec3::ZERO; FLOOR_POINTS], [[Scalar::ZERO; 2]; FLOOR_POINTS]);
+    let mut k = 0;
+    while k < FLOOR_POINTS {
+        let (x, z) = ((k % (SQUARES + 1)) as i32 - SQUARES as i32 / 2, (k / (SQUARES + 1)) as i32 - SQUARES as i32 / 2);
+        points[k] = Vec3::from_ints(2 * x as i16, 0, 2 * z as i16);
+        uvs[k] = [Scalar::from_bits(x << 17), Scalar::from_bits(z << 17)];
+        k += 1;
+    }
+    let mut quads = [0; 4 * SQUARES * SQUARES];
+    let mut k = 0;
+    while k < SQUARES * SQUARES {
+        let first = (k / SQUARES * (SQUARES + 1) + k % SQUARES) as u16;
+        let below = first + SQUARES as u16 + 1;
+        (quads[4 * k], quads[4 * k + 1], quads[4 * k + 2], quads[4 * k + 3]) = (below, below + 1, first + 1, first);
+        k += 1;
+    }
+    (points, uvs, quads)
+}
+
+static FLOOR_DATA: ([Vec3; FLOOR_POINTS], [[Scalar; 2]; FLOOR_POINTS], [u16; 4 * SQUARES * SQUARES]) = floor_points();
+
+pub static GROUND: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    indices: Some(&FLOOR_DATA.2),
+    uvs: Some(&FLOOR_DATA.1),
+    ..MeshData::new(Positions::Exact(&FLOOR_DATA.0))
+});
+
+/// A mesh of wire: 16 x 16 texels of one bit.
+static WIRE: [u8; 32] = {
+    let mut bytes = [0; 32];
+    let mut y = 0;
+    while y < 16 {
+        let diagonals = 0xC003_u32 << y | 0xC003_u32 >> (16 - y) | 0xC003_u32 << (16 - y) | 0xC003_u32 >> y;
+        let row = diagonals as u16;
+        (bytes[2 * y], bytes[2 * y + 1]) = ((row >> 8) as u8, row as u8);
+        y += 1;
+    }
+    bytes
+};
+
+/// Four by one and a half, the wire in squares of 1/4.
+pub static FENCE: Mesh<'static> = Mesh::constant(MeshData {
+    topology: Topology::Quads,
+    uvs: Some(&[
+        [Scalar::ZERO, Scalar::from_bits(6 << 16)],
+        [Scalar::from_bits(16 << 16), Scalar::from_bits(6 << 16)],
+        [Scalar::from_bits(16 << 16), Scalar::ZERO],
+        [Scalar::ZERO, Scalar::ZERO],
+    ]),
+    ..MeshData::new(Positions::Exact(&[
+        Vec3::from_milli(-2000, 0, 0),
+        Vec3::from_milli(2000, 0, 0),
+        Vec3::from_milli(2000, 1500, 0),
+        Vec3::from_milli(-2000, 1500, 0),
+    ]))
+});
+
+/// How textures are looked at.
+#[derive(Clone, Copy, Debug)]
+pub struct Look {
+    pub bilinear: bool,
+    pub mips: bool,
+}
+
+/// World → eye: around the crates.
+fn around(turn: Angle) -> Affine {
+    Affine::rotation_x(Angle::from_degrees(16))
+        * Affine::translation(Vec3::from_milli(0, -1500, -3800))
+        * Affine::rotation_y(turn)
+}
+
+fn lens(screen: (u16, u16)) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16))
+}
+
+fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
+    let (lens, around) = (lens(scene.screen()), around(turn));
+    let floor = if mips { Textured::mipmapped(&FLOOR_LEVELS).ok() } else { None };
+    let floor = floor.unwrap_or(Textured::new(&FLOOR_LEVELS[0]));
+    scene.draw(&GROUND, &(lens * around), &floor.wrap(Repeat).filter(filter));
+    let crates = [(-700, 500, 0, 20), (650, 500, -400, -35), (-100, 1500, -150, 50)];
+    for (x, y, z, degrees) in crates {
+        let place = Affine::translation(Vec3::from_milli(x, y, z));
+        let model = around * place * Affine::rotation_y(Angle::from_degrees(degrees));
+        let wood = Textured::new(&WOODEN).filter(filter).lit(light().to_object(&model));
+        scene.draw(&CRATE, &(lens * model), &wood);
+    }
+}
+
+/// Crates on a floor.
+pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, look: Look) {
+    if look.bilinear {
+        with(scene, turn, look.mips, Bilinear);
+    } else {
+        with(scene, turn, look.mips, Nearest);
+    }
+}
+
+/// A fence behind the crates, seen from both sides.
+pub fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let Ok(wire) = Image::new(&WIRE, (16, 16), MaskTexel([150, 160, 170])) else { return };
+    let state = State { cull: Cull::None, ..State::DEFAULT };
+    let model = Affine::translation(Vec3::from_milli(0, 0, 1300));
+    scene.draw_with(state, &FENCE, &(lens(scene.screen()) * around(turn) * model), &Textured::new(&wire));
+}
+
+/// A crate so close that perspective is strong, and some of it before the near plane.
+pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let lens = camera(scene.screen(), Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16));
+    let model = Affine::translation(Vec3::from_milli(0, 0, -1250))
+        * Affine::rotation_x(Angle::from_degrees(25))
+        * Affine::rotation_y(turn);
+    scene.draw(&CRATE, &(lens * model), &Textured::new(&WOODEN));
+}
