@@ -1,7 +1,7 @@
-//! Firmware whose only user code is a frame, for `ci/proofs` to look into. Built four times:
+//! Firmware whose only user code is a frame, for `ci/proofs` to look into. Built five times:
 //! `--cfg 'proof="empty"'` draws nothing, the baseline; `proof="w4"` draws the flat torus of the
-//! benchmark without records; `proof="all"` draws every scene, `proof="formats"` those in other
-//! pixel formats.
+//! benchmark without records, `proof="w1-w6"` all six workloads; `proof="all"` draws every scene,
+//! `proof="formats"` those in other pixel formats.
 //!
 //! It prints the frame's peak stack as eight hexadecimal digits, one by one: formatting would link
 //! the panics that the image must not contain.
@@ -26,7 +26,8 @@ mod image {
     #[cfg(target_arch = "riscv32")]
     use riscv_rt::entry;
     use semihosting::sys::arm_compat::sys_writec;
-    use zstrip::output::Buffers;
+    use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+    use zstrip::output::{Buffers, Stats};
 
     const WIDTH: usize = 320;
     const HEIGHT: usize = 240;
@@ -63,9 +64,16 @@ mod image {
         }
         if cfg!(proof = "w4") {
             // Directly, not through the table of scenes, so that no scene is linked.
-            workloads::flat_torus(Buffers { color, depth, records }, |strip| {
-                black_box(strip);
-            });
+            workloads::flat_torus(Buffers { color, depth, records }, send);
+            return;
+        }
+        if cfg!(proof = "w1-w6") {
+            type Draw = fn(Buffers<'_, Rgb565>, fn(&[u16])) -> Stats;
+            use workloads::{flat_torus, gouraud_quad, gouraud_torus, quad, textured_quad, tiny};
+            let all: [Draw; 6] = [quad, gouraud_quad, textured_quad, flat_torus, gouraud_torus, tiny];
+            for draw in all {
+                draw(Buffers { color: &mut *color, depth: &mut *depth, records: &mut *records }, send);
+            }
             return;
         }
         if cfg!(proof = "formats") {
@@ -83,6 +91,10 @@ mod image {
                 black_box(strip);
             });
         }
+    }
+
+    fn send(strip: &[u16]) {
+        black_box(strip);
     }
 
     #[panic_handler]
