@@ -3,15 +3,15 @@
 //! ```text
 //! cargo run --release --example crates -- --help
 //! ```
-#[path = "host/mod.rs"]
 mod host;
-#[path = "host/modes.rs"]
-mod modes;
 mod scenes;
 
-use modes::Show;
+use host::program::{Demo, show};
 use scenes::textured::{Look, crates, fence};
-use std::process::ExitCode;
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::math::Angle;
+use zstrip::output::Strip;
 
 const LOOKS: [Look; 4] = [
     Look { bilinear: true, mips: true },
@@ -20,16 +20,21 @@ const LOOKS: [Look; 4] = [
     Look { bilinear: false, mips: false },
 ];
 
-fn main() -> ExitCode {
-    let show = Show {
-        name: "crates",
-        about: "Crates on a floor, behind a fence.",
-        modes: &["bilinear, mip levels", "nearest, mip levels", "bilinear, one level", "nearest, one level"],
-        background: scenes::BACKGROUND,
-        draw: |scene, turn, mode| {
-            crates(scene, turn, LOOKS[mode]);
-            fence(scene, turn);
-        },
-    };
-    show.run()
+struct Crates;
+
+impl Demo for Crates {
+    type Format = Rgb565;
+    const NAME: &'static str = "crates";
+    const ABOUT: &'static str = "Crates on a floor, behind a fence, with mip levels or one level of the textures.";
+    const BACKGROUND: Rgb565 = scenes::BACKGROUND;
+    const MODES: &'static [&'static str] = &["bilinear", "nearest", "bilinear-one-level", "nearest-one-level"];
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, mode: usize) {
+        crates(scene, turn, LOOKS[mode]);
+        fence(scene, turn);
+    }
+}
+
+fn main() -> std::process::ExitCode {
+    show(Crates)
 }

@@ -3,23 +3,30 @@
 //! ```text
 //! cargo run --release --example water -- --help
 //! ```
-#[path = "host/mod.rs"]
 mod host;
-#[path = "host/modes.rs"]
-mod modes;
 mod scenes;
 
-use modes::Show;
+use host::program::{Demo, show};
 use scenes::water::water;
-use std::process::ExitCode;
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::math::Angle;
+use zstrip::output::Strip;
 
-fn main() -> ExitCode {
-    let show = Show {
-        name: "water",
-        about: "Water, waved by a vertex shader, and a crate on it.",
-        modes: &["a breeze", "waves", "a gale"],
-        background: scenes::BACKGROUND,
-        draw: |scene, time, mode| water(scene, time, [1, 2, 3][mode]),
-    };
-    show.run()
+struct Water;
+
+impl Demo for Water {
+    type Format = Rgb565;
+    const NAME: &'static str = "water";
+    const ABOUT: &'static str = "Water, waved by a vertex shader, and a crate on it.";
+    const BACKGROUND: Rgb565 = scenes::BACKGROUND;
+    const MODES: &'static [&'static str] = &["breeze", "waves", "gale"];
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, mode: usize) {
+        water(scene, turn, [1, 2, 3][mode]);
+    }
+}
+
+fn main() -> std::process::ExitCode {
+    show(Water)
 }
