@@ -15,7 +15,7 @@ mod host;
 mod scenes;
 
 use core::convert::Infallible;
-use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888};
+use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565};
 use zstrip::fragment::PixelFormat;
 use zstrip::math::Angle;
 use zstrip::output::{Buffers, Dither, Dithered, Packer, Renderer, Rgb332, Rows, StripPixels};
@@ -32,8 +32,8 @@ mod counting {
     use zstrip::output::{Bgr565Be, PackedFormat, Pages, Rgb565Be, RowsLowFirst};
     use zstrip::{Cull, State};
 
-    const SCREEN: (u16, u16) = (128, 64);
-    const PIXELS: usize = 128 * 64;
+    const SCREEN: (u16, u16) = (320, 240);
+    const PIXELS: usize = 320 * 240;
 
     struct Memory {
         color: [u32; PIXELS],
@@ -134,6 +134,7 @@ use counting::run;
 #[cfg(not(target_os = "none"))]
 mod sheet {
     use super::*;
+    use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
     use zstrip::output::Levels;
 
     pub const CELL: (usize, usize) = (160, 120);
@@ -193,8 +194,8 @@ mod sheet {
             ("Gray2, NEAREST", greys::<Gray2>(Dither::NEAREST)),
             ("Gray2, BAYER_8", greys::<Gray2>(Dither::BAYER_8)),
             ("BinaryColor, NEAREST", greys::<BinaryColor>(Dither::NEAREST)),
-            ("BinaryColor, BAYER_4", greys::<BinaryColor>(Dither::BAYER_4)),
             ("BinaryColor, BAYER_8", greys::<BinaryColor>(Dither::BAYER_8)),
+            ("BinaryColor, BRIGHT_8", greys::<BinaryColor>(Dither::BRIGHT_8)),
             ("Gray2, BAYER_4", greys::<Gray2>(Dither::BAYER_4)),
             ("Gray4, BAYER_4", greys::<Gray4>(Dither::BAYER_4)),
         ]

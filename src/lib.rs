@@ -102,6 +102,7 @@ mod tests {
     fn errors_and_statistics_can_be_logged() {
         fn logged<T: defmt::Format>() {}
         logged::<crate::geometry::MeshError>();
+        logged::<crate::geometry::SortError>();
         logged::<crate::geometry::ViewportError>();
         logged::<crate::math::PrecisionError>();
         logged::<crate::math::ProjectionError>();

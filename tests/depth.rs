@@ -181,6 +181,13 @@ fn depths_of_a_frame_are_those_of_the_helper() {
         }
     }
     assert!((precision.uniform_bin().to_num::<f64>() - 799.5 / 65_535.0).abs() < 1e-9);
+    // Points are where vertices are.
+    let mut point = None;
+    whole::<Rgb565>((8, 8), Rgb565::BLACK, |scene| {
+        point = scene.project_with(uniform, Vec3::from_ints(0, 0, -250), &camera);
+    });
+    let point = point.expect("it is in view");
+    assert_eq!((point.x, point.y, point.z), (4 << 8, 4 << 8, depth_at(Scalar::from_num(250), uniform)));
 }
 
 #[test]

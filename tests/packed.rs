@@ -11,14 +11,14 @@ use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{OriginDimensions, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888, WebColors};
 use zstrip::embedded_graphics_core;
-use zstrip::fragment::{Flat, PixelFormat};
+use zstrip::fragment::{Flat, Gouraud, PixelFormat};
 use zstrip::geometry::{Mesh, MeshData, Positions};
 use zstrip::math::{Angle, Projective, Scalar};
 use zstrip::output::{
     Buffers, Dither, DitheredDisplay, Levels, PackedFormat, Packer, PackerError, Pages, Renderer, Rows, RowsLowFirst,
     Strip, StripPixels,
 };
-use zstrip::{Framebuffer, Scene};
+use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// Draws the torus in strips of `rows` rows and hands them, packed, to `sink` with their first row.
 fn torus<P: PixelFormat, F: PackedFormat>(
@@ -154,16 +154,42 @@ fn displays_of_few_levels_get_the_same_pixels_as_bytes() {
 
 #[test]
 fn colours_are_packed_by_their_luma() {
-    // A colour strip packs like a grey one of its lumas.
-    let mut packed: Vec<u8> = Vec::new();
-    torus::<Rgb888, Pages>((128, 64), 64, Dither::BAYER_8, Rgb888::new(70, 70, 70), |_, bytes| packed.extend(bytes));
-    let mut expected: Vec<u8> = Vec::new();
-    torus::<Gray8, Pages>((128, 64), 64, Dither::BAYER_8, Gray8::new(70), |_, bytes| expected.extend(bytes));
-    assert!(packed == expected);
-    let mut of_565: Vec<u8> = Vec::new();
-    torus::<Rgb565, Pages>((128, 64), 8, Dither::BAYER_8, Rgb565::new(8, 17, 8), |_, bytes| of_565.extend(bytes));
-    let differ: u32 = of_565.iter().zip(&expected).map(|(a, b): (&u8, &u8)| (*a ^ *b).count_ones()).sum();
-    assert!(differ > 0 && differ < 128 * 64 / 20, "{differ} pixels of 565 differ");
+    fn bytes<P: PixelFormat>(background: P::Color, rows: u16) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        torus::<P, Pages>((128, 64), rows, Dither::BAYER_8, background, |_, packed| bytes.extend_from_slice(packed));
+        bytes
+    }
+    let grey = bytes::<Gray8>(Gray8::new(70), 64);
+    let differ =
+        |other: Vec<u8>| -> u32 { grey.iter().zip(&other).map(|(a, b): (&u8, &u8)| (*a ^ *b).count_ones()).sum() };
+    // Grey strips interpolate luma, and round it; RGB565 has lost bits.
+    let (full, of_565) =
+        (differ(bytes::<Rgb888>(Rgb888::new(70, 70, 70), 64)), differ(bytes::<Rgb565>(Rgb565::new(8, 17, 8), 8)));
+    assert!(full < 128 * 64 / 100, "{full} pixels of RGB888 differ");
+    assert!(of_565 < 128 * 64 / 20, "{of_565} pixels of RGB565 differ");
+}
+
+/// Luma is interpolated as one quantity: within 1 of that of the channels in 8 bits, which are themselves rounded.
+#[test]
+fn luma_of_smooth_shading_is_that_of_its_colours() {
+    let mut worst = 0_f64;
+    for seed in 0..60 {
+        let soup = support::Soup::new(&mut reference::rng::Rng::new(seed), 30);
+        let (mesh, state) = (soup.mesh(), State { cull: Cull::None, ..State::DEFAULT });
+        let (grey, ..) = support::whole::<Gray8>((150, 110), Gray8::new(0), |scene| {
+            scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+        });
+        let (colors, ..) = support::whole::<Rgb888>((150, 110), Rgb888::new(0, 0, 0), |scene| {
+            scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+        });
+        for (place, (grey, [r, g, b])) in grey.into_iter().zip(colors).enumerate() {
+            let exact = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);
+            let error = (f64::from(grey) - exact).abs();
+            assert!(error <= 1.5, "seed {seed}, pixel {place}: {grey}, exactly {exact}");
+            worst = worst.max(error);
+        }
+    }
+    assert!(worst > 0.5, "the pictures have no colours");
 }
 
 /// A triangle over a screen of 16×12, half white: as the bytes of an SSD1306 draw it, eight rows a byte.

@@ -2,6 +2,7 @@
 
 use super::dither::{spread, spread_step};
 use super::flat::channels;
+use super::luma::{luma_span, weighted};
 use super::shader::fragments;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
 use crate::geometry::{Corner, Light, Lit, VertexShader};
@@ -92,7 +93,13 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
 
     #[inline]
     fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
-        if P::PACKED { prepare::<P>(rgb, d_dx) } else { [0; 2] }
+        if P::PACKED {
+            prepare::<P>(rgb, d_dx)
+        } else if P::IS_LUMA {
+            [weighted(*d_dx), 0]
+        } else {
+            [0; 2]
+        }
     }
 
     #[inline]
@@ -104,6 +111,10 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
                 pen.draw::<P, D>(test, P::dither(position)[0], color, depth);
             }
             span if P::PACKED => packed_span(span, test),
+            span if P::IS_LUMA => {
+                let [step, _] = span.steps.words;
+                luma_span(span, step, test);
+            }
             span => fragments(self, face, span, test),
         }
     }

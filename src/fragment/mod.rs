@@ -4,6 +4,7 @@
 //! |---|---|
 //! | [`Flat`], [`Gouraud`] | a colour a face or a vertex, under one light or none |
 //! | [`Shaded`] | a [`Material`](crate::geometry::Material) under any lights, per face, vertex or fragment |
+//! | [`Textured`], [`Textured::lit`] | images, perspective-correct |
 //! | [`Matcap`] | the colour of the normal, from a picture |
 //! | [`DepthOnly`] | no colour |
 //! | [`Fogged`] | around any of them: fog |
@@ -16,7 +17,7 @@
 //!
 //! | instructions a pixel | Cortex-M0+ | Cortex-M4 |
 //! |---|--:|--:|
-//! | `Flat`; `Shaded` per face | 18 | 14 |
+//! | `Flat`; `Shaded` per face | 14 | 13 |
 //! | `Gouraud`; `Shaded` per vertex | 25 | 19 |
 //! | `Matcap` | 42 | 25 |
 //! | `Shaded` per fragment, 1 directional light, matte | 194 | 130 |
@@ -26,12 +27,12 @@
 //! | `Shaded` per fragment, near, 1 point light, matte | 378 | 281 |
 //! | the same, glossy, shininess 32 | 556 | 443 |
 //! | the same, viewer near | 651 | 510 |
-//! | `Blend` of `Flat`, `Opacity` | 44 | 26 |
-//! | `Blend` of `Gouraud`, `Opacity` | 81 | 50 |
-//! | the same, `Alpha` | 81 | 41 |
-//! | the same, `Add` | 92 | 56 |
-//! | the same, `AddAlpha` | 117 | 69 |
-//! | the same, `Multiply` | 103 | 57 |
+//! | `Blend` of `Flat`, `Opacity` | 44 | 24 |
+//! | `Blend` of `Gouraud`, `Opacity` | 81 | 48 |
+//! | the same, `Alpha` | 84 | 45 |
+//! | the same, `Add` | 87 | 51 |
+//! | the same, `AddAlpha` | 116 | 68 |
+//! | the same, `Multiply` | 104 | 58 |
 //! | `AlphaTest` of `Gouraud` | 69 | 37 |
 //! | `ScreenDoor` of `Gouraud`, half of the pixels | 61 | 38 |
 //! | `Fogged` `Flat` | 71 | 44 |
@@ -48,6 +49,7 @@ mod fill;
 mod flat;
 mod fog;
 mod gouraud;
+mod luma;
 mod matcap;
 mod perspective;
 mod pixel;
@@ -70,6 +72,7 @@ pub use fill::fill;
 pub use flat::Flat;
 pub use fog::{FogCurve, FogTable, Fogged};
 pub use gouraud::Gouraud;
+pub use luma::luma;
 pub use matcap::Matcap;
 pub use perspective::Corrected;
 pub use pixel::PixelFormat;

@@ -18,6 +18,21 @@ pub trait PixelFormat {
     /// ones. [`pack`](Self::pack) leads back to the same pixel.
     fn unpack(raw: Self::Raw) -> [u8; 3];
 
+    /// The grey of a pixel: its [`luma`](super::luma).
+    #[inline(always)]
+    fn luma(raw: Self::Raw) -> u8 {
+        super::luma(Self::unpack(raw))
+    }
+
+    /// Whether a pixel is a grey of 8 bits, for which [`from_luma`](Self::from_luma) is a short way.
+    const IS_LUMA: bool = false;
+
+    /// The pixel of a grey.
+    #[inline(always)]
+    fn from_luma(luma: u8) -> Self::Raw {
+        Self::pack([luma; 3])
+    }
+
     /// From RGB565.
     #[inline(always)]
     fn from_rgb565(raw: u16) -> Self::Raw {

@@ -2,6 +2,7 @@
 
 use super::clip::ClipVertex;
 use crate::math::{Scalar, mul_high, mul_high_signed, reciprocal};
+use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Point;
 
 /// A vertex on the screen.
@@ -139,7 +140,7 @@ impl defmt::Format for DepthScale {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct UniformDepth {
     /// 2⁶³ / far, far normalized to 2³¹..2³².
-    reciprocal: u32,
+    reciprocal: NonZeroU32,
     /// Normalized far times two to this power is far's w in clip space.
     exponent: i32,
 }
@@ -152,7 +153,10 @@ impl UniformDepth {
             return None;
         }
         let zeros = far.leading_zeros();
-        Some(Self { reciprocal: reciprocal((far as u32) << zeros), exponent: 16 + scale - zeros as i32 })
+        match NonZeroU32::new(reciprocal((far as u32) << zeros)) {
+            Some(reciprocal) => Some(Self { reciprocal, exponent: 16 + scale - zeros as i32 }),
+            None => None,
+        }
     }
 
     /// Rounded to nearest.
@@ -167,7 +171,7 @@ impl UniformDepth {
         let high = (((z as u64) << zeros) >> 32) as u32;
         // z / far as 1.31, once the powers of two are made up for.
         let down = self.exponent - 32 + zeros as i32;
-        let fraction = if down < 0 { 1 << 31 } else { mul_high(high, self.reciprocal) >> down.min(31) };
+        let fraction = if down < 0 { 1 << 31 } else { mul_high(high, self.reciprocal.get()) >> down.min(31) };
         sixteen_bits(fraction)
     }
 }

@@ -79,7 +79,7 @@ const fn thresholds(bits: u32) -> Matrix {
     matrix
 }
 
-/// The least greys whose light reaches the thresholds.
+/// One less than the least greys whose light reaches the thresholds: those above become white.
 const fn greys(thresholds: &Matrix) -> Matrix {
     let mut matrix = [[0; 8]; 8];
     let mut k = 0;
@@ -88,7 +88,18 @@ const fn greys(thresholds: &Matrix) -> Matrix {
         while (LIGHT[grey] as u32) * 128 < thresholds[k / 8][k % 8] as u32 * 65_535 {
             grey += 1;
         }
-        matrix[k / 8][k % 8] = grey as u8;
+        matrix[k / 8][k % 8] = grey as u8 - 1;
+        k += 1;
+    }
+    matrix
+}
+
+/// One less than the least greys that reach the thresholds as numbers.
+const fn numbers(thresholds: &Matrix) -> Matrix {
+    let mut matrix = [[0; 8]; 8];
+    let mut k = 0;
+    while k < 64 {
+        matrix[k / 8][k % 8] = ((thresholds[k / 8][k % 8] as u32 * 255).div_ceil(128) - 1) as u8;
         k += 1;
     }
     matrix
@@ -110,6 +121,8 @@ const THRESHOLDS_8: Matrix = thresholds(3);
 
 static GREYS_4: Matrix = greys(&THRESHOLDS_4);
 static GREYS_8: Matrix = greys(&THRESHOLDS_8);
+static NUMBERS_4: Matrix = numbers(&THRESHOLDS_4);
+static NUMBERS_8: Matrix = numbers(&THRESHOLDS_8);
 static ADDENDS_4: Matrix = addends(&THRESHOLDS_4);
 static ADDENDS_8: Matrix = addends(&THRESHOLDS_8);
 
@@ -165,23 +178,24 @@ pub trait Levels: PixelColor {
     const BAYER_8: Dither<Self>;
 
     /// The level, below 2^`BITS`, of a grey at a place with this entry in the matrix.
-    fn level(tones: Self::Tones, entry: u8, grey: u8) -> u8;
+    fn level(tones: Self::Tones, entry: u32, grey: u8) -> u8;
 
     /// The colour of a level.
     fn from_level(level: u8) -> Self;
 }
 
-/// White and black: entries are the least greys to become white.
+/// White and black: greys above their entry become white.
 impl Levels for BinaryColor {
     const BITS: u32 = 1;
     type Tones = ();
-    const NEAREST: Dither<Self> = Dither { matrix: &[[128; 8]; 8], tones: () };
+    const NEAREST: Dither<Self> = Dither { matrix: &[[127; 8]; 8], tones: () };
     const BAYER_4: Dither<Self> = Dither { matrix: &GREYS_4, tones: () };
     const BAYER_8: Dither<Self> = Dither { matrix: &GREYS_8, tones: () };
 
     #[inline(always)]
-    fn level((): (), entry: u8, grey: u8) -> u8 {
-        u8::from(grey >= entry)
+    fn level((): (), entry: u32, grey: u8) -> u8 {
+        // The sign of the difference: a comparison would have to be turned into a number.
+        (entry.wrapping_sub(u32::from(grey)) >> 31) as u8
     }
 
     fn from_level(level: u8) -> Self {
@@ -200,8 +214,8 @@ macro_rules! grey_levels {
             const BAYER_8: Dither<Self> = Dither { matrix: &ADDENDS_8, tones: &$tones };
 
             #[inline(always)]
-            fn level(tones: &'static Tones, entry: u8, grey: u8) -> u8 {
-                ((tones[usize::from(grey)] + u16::from(entry)) >> 7) as u8
+            fn level(tones: &'static Tones, entry: u32, grey: u8) -> u8 {
+                ((u32::from(tones[usize::from(grey)]) + entry) >> 7) as u8
             }
 
             fn from_level(level: u8) -> Self {
@@ -243,6 +257,14 @@ pub struct Dither<C: Levels> {
     pub(super) tones: C::Tones,
 }
 
+impl Dither<BinaryColor> {
+    /// [`BAYER_4`](Self::BAYER_4) that mixes numbers instead of light: mid-tones become brighter than they should be, which
+    /// suits dark scenes, and panels whose black dots run into each other.
+    pub const BRIGHT_4: Self = Self { matrix: &NUMBERS_4, tones: () };
+    /// [`BAYER_8`](Self::BAYER_8) that mixes numbers instead of light.
+    pub const BRIGHT_8: Self = Self { matrix: &NUMBERS_8, tones: () };
+}
+
 impl<C: Levels> Dither<C> {
     /// No dithering: white from 128 on, or the level that is nearest in light.
     pub const NEAREST: Self = C::NEAREST;
@@ -254,7 +276,15 @@ impl<C: Levels> Dither<C> {
     /// The level of a grey at a pixel of the screen.
     #[inline]
     pub fn level(&self, grey: u8, (x, y): (i32, i32)) -> u8 {
-        C::level(self.tones, self.matrix[(y & 7) as usize][(x & 7) as usize], grey)
+        C::level(self.tones, self.row(y)[(x & 7) as usize], grey)
+    }
+
+    /// The entries of row `y` of the screen, hidden from the compiler: knowing that they are bytes it would see comparisons,
+    /// which small cores pay for with branches.
+    #[inline(always)]
+    pub(super) fn row(&self, y: i32) -> [u32; 8] {
+        let [a, b, c, d, e, f, g, h] = self.matrix[(y & 7) as usize];
+        core::hint::black_box([a.into(), b.into(), c.into(), d.into(), e.into(), f.into(), g.into(), h.into()])
     }
 
     /// The colour of a grey at a pixel of the screen.
@@ -316,10 +346,23 @@ mod tests {
     }
 
     #[test]
+    fn bright_dithering_mixes_numbers() {
+        for (dither, places) in [(Dither::<BinaryColor>::BRIGHT_4, 16.0), (Dither::<BinaryColor>::BRIGHT_8, 64.0)] {
+            for grey in 0..=255_u8 {
+                let white = (0..64).filter(|k| dither.level(grey, (k % 8, k / 8)) == 1).count() as f64;
+                let error = (white / 64.0 - f64::from(grey) / 255.0).abs();
+                assert!(error <= 0.5 / places + 1e-9, "{grey}: {white} of 64");
+            }
+        }
+    }
+
+    #[test]
     fn levels_themselves_are_drawn_without_a_pattern() {
         for k in 0..64 {
             let place = (k % 8, k / 8);
-            for dither in [Dither::<BinaryColor>::NEAREST, Dither::<BinaryColor>::BAYER_4, Dither::BAYER_8] {
+            for dither in
+                [Dither::<BinaryColor>::NEAREST, Dither::BAYER_4, Dither::BAYER_8, Dither::BRIGHT_4, Dither::BRIGHT_8]
+            {
                 assert_eq!((dither.level(0, place), dither.level(255, place)), (0, 1));
             }
             for dither in [Dither::<Gray2>::NEAREST, Dither::<Gray2>::BAYER_4, Dither::BAYER_8] {

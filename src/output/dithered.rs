@@ -58,6 +58,11 @@ impl<P: Ditherable> PixelFormat for Dithered<P> {
     }
 
     #[inline(always)]
+    fn from_rgb565(raw: u16) -> P::Raw {
+        P::from_rgb565(raw)
+    }
+
+    #[inline(always)]
     fn mix(a: P::Raw, b: P::Raw, weight: u32) -> P::Raw {
         P::mix(a, b, weight)
     }

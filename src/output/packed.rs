@@ -9,7 +9,7 @@ use crate::fragment::PixelFormat;
 use core::fmt;
 use core::marker::PhantomData;
 use embedded_graphics_core::draw_target::DrawTarget;
-use embedded_graphics_core::pixelcolor::{BinaryColor, Gray8};
+use embedded_graphics_core::pixelcolor::BinaryColor;
 
 /// How pixels share bytes.
 pub trait PackedFormat {
@@ -41,12 +41,6 @@ pub struct Rows<C>(PhantomData<C>);
 #[derive(Clone, Copy, Debug)]
 pub struct RowsLowFirst<C>(PhantomData<C>);
 
-/// The grey of a pixel.
-#[inline(always)]
-fn grey<P: PixelFormat>(raw: P::Raw) -> u8 {
-    Gray8::pack(P::unpack(raw))
-}
-
 impl PackedFormat for Pages {
     type Color = BinaryColor;
 
@@ -68,7 +62,7 @@ impl PackedFormat for Pages {
             // From the bottom up: each row moves those below it on.
             for row in page.chunks_exact(width).rev() {
                 y -= 1;
-                push_row::<P>(&dither.matrix[(y & 7) as usize], row, bytes);
+                push_row::<P>(&dither.row(y), row, bytes);
             }
         }
     }
@@ -76,9 +70,9 @@ impl PackedFormat for Pages {
 
 /// A row of a page: its bits come in from below.
 #[inline(never)]
-fn push_row<P: PixelFormat>(entries: &[u8; 8], row: &[P::Raw], bytes: &mut [u8]) {
-    let push = |byte: &mut u8, raw: &P::Raw, entry: u8| {
-        *byte = *byte << 1 | BinaryColor::level((), entry, grey::<P>(*raw));
+fn push_row<P: PixelFormat>(entries: &[u32; 8], row: &[P::Raw], bytes: &mut [u8]) {
+    let push = |byte: &mut u8, raw: &P::Raw, entry: u32| {
+        *byte = *byte << 1 | BinaryColor::level((), entry, P::luma(*raw));
     };
     let (mut pixels, mut bytes) = (row.chunks_exact(8), bytes.chunks_exact_mut(8));
     for (pixels, bytes) in (&mut pixels).zip(&mut bytes) {
@@ -143,20 +137,20 @@ fn pack_rows<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
     }
     let rows = pixels.chunks_exact(width).zip(bytes.chunks_exact_mut(row_bytes));
     for ((row, bytes), y) in rows.zip(y..) {
-        pack_row::<P, C, HIGH_FIRST>(&dither.matrix[(y & 7) as usize], dither.tones, row, bytes);
+        pack_row::<P, C, HIGH_FIRST>(&dither.row(y), dither.tones, row, bytes);
     }
 }
 
 /// Eight pixels to a word, and that to one, two or four bytes.
 #[inline(never)]
 fn pack_row<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
-    entries: &[u8; 8],
+    entries: &[u32; 8],
     tones: C::Tones,
     row: &[P::Raw],
     bytes: &mut [u8],
 ) {
-    let push = |word: u32, raw: P::Raw, entry: u8| {
-        let level = u32::from(C::level(tones, entry, grey::<P>(raw)));
+    let push = |word: u32, raw: P::Raw, entry: u32| {
+        let level = u32::from(C::level(tones, entry, P::luma(raw)));
         if HIGH_FIRST { word << C::BITS | level } else { word >> C::BITS | level << (32 - C::BITS) }
     };
     let Some((bytes, last)) = bytes.split_at_mut_checked(row.len() / 8 * C::BITS as usize) else { return };
@@ -298,10 +292,10 @@ impl<P: PixelFormat, D: DrawTarget<Color: Levels>> StripSink<P> for DitheredDisp
         let dither = self.dither;
         let rows = strip.pixels().chunks((area.size.width as usize).max(1)).zip(area.top_left.y..);
         let colors = rows.flat_map(|(row, y)| {
-            let entries = &dither.matrix[(y & 7) as usize];
-            row.iter().enumerate().map(move |(x, raw)| {
-                D::Color::from_level(D::Color::level(dither.tones, entries[x & 7], grey::<P>(*raw)))
-            })
+            let entries = dither.row(y);
+            row.iter()
+                .enumerate()
+                .map(move |(x, raw)| D::Color::from_level(D::Color::level(dither.tones, entries[x & 7], P::luma(*raw))))
         });
         self.display.fill_contiguous(&area, colors)
     }

@@ -1,7 +1,7 @@
 //! The pixel formats.
 
 use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
-use crate::fragment::PixelFormat;
+use crate::fragment::{PixelFormat, luma};
 use core::convert::identity;
 use embedded_graphics_core::pixelcolor::raw::RawU16;
 use embedded_graphics_core::pixelcolor::{
@@ -83,14 +83,20 @@ const fn from_bgr565(raw: u16) -> [u8; 3] {
 
 /// [`rgb565_from_packed`] with red and blue exchanged.
 #[inline(always)]
-const fn bgr565_from_packed(word: u32, _: u32) -> u16 {
-    bgr565([(word >> 24) as u8, (word >> 2) as u8, (word >> 13) as u8])
+const fn bgr565_from_packed(word: u32, green: u32) -> u16 {
+    (word >> 27 | word >> 16 << 11 | word << 1 & green) as u16
 }
 
-/// A format of 16 bits: its colour, its functions from and to 8 bits a channel and from packed channels, and how the 16 bits
+/// BGR565 from RGB565.
+#[inline(always)]
+const fn exchanged(raw: u16) -> u16 {
+    raw >> 11 | raw & 0x7E0 | raw << 11
+}
+
+/// A format of 16 bits: its colour, its functions from and to 8 bits a channel, from packed channels and from RGB565, and how the 16 bits
 /// come into memory, and back.
 macro_rules! sixteen_bits {
-    ($(#[$doc:meta])* $format:ty, $color:ty, ($pack:path, $unpack:path, $packed:path), $store:path, $load:path) => {
+    ($(#[$doc:meta])* $format:ty, $color:ty, ($pack:path, $unpack:path, $packed:path, $rgb:path), $store:path, $load:path) => {
         $(#[$doc])*
         impl PixelFormat for $format {
             type Raw = u16;
@@ -108,7 +114,7 @@ macro_rules! sixteen_bits {
 
             #[inline(always)]
             fn from_rgb565(raw: u16) -> u16 {
-                $store(raw)
+                $store($rgb(raw))
             }
 
             #[inline(always)]
@@ -153,7 +159,7 @@ sixteen_bits!(
     /// 16-bit pixels in the processor's byte order.
     Rgb565,
     Rgb565,
-    (rgb565, from_rgb565, rgb565_from_packed),
+    (rgb565, from_rgb565, rgb565_from_packed, identity),
     identity,
     identity
 );
@@ -161,7 +167,7 @@ sixteen_bits!(
     /// 16-bit pixels with blue on top, in the processor's byte order.
     Bgr565,
     Bgr565,
-    (bgr565, from_bgr565, bgr565_from_packed),
+    (bgr565, from_bgr565, bgr565_from_packed, exchanged),
     identity,
     identity
 );
@@ -171,13 +177,13 @@ sixteen_bits!(
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb565Be;
 
-sixteen_bits!(Rgb565Be, Rgb565, (rgb565, from_rgb565, rgb565_from_packed), u16::to_be, u16::from_be);
+sixteen_bits!(Rgb565Be, Rgb565, (rgb565, from_rgb565, rgb565_from_packed, identity), u16::to_be, u16::from_be);
 
 /// BGR565 with the high byte first in memory.
 #[derive(Clone, Copy, Debug)]
 pub struct Bgr565Be;
 
-sixteen_bits!(Bgr565Be, Bgr565, (bgr565, from_bgr565, bgr565_from_packed), u16::to_be, u16::from_be);
+sixteen_bits!(Bgr565Be, Bgr565, (bgr565, from_bgr565, bgr565_from_packed, exchanged), u16::to_be, u16::from_be);
 
 /// 8-bit pixels: 3 bits of red, 3 of green, 2 of blue, as displays with 256 colours take them. embedded-graphics has no such
 /// colour: [`Rgb888`] stands in.
@@ -273,19 +279,31 @@ three_bytes!(
     identity
 );
 
-/// 8-bit grey: luma of the colour, with the weights of BT.601 in 1/256 (77, 150, 29), cut.
+/// 8-bit grey: the [`luma`] of the colour.
 impl PixelFormat for Gray8 {
     type Raw = u8;
     type Color = Gray8;
 
     #[inline(always)]
     fn pack(rgb: [u8; 3]) -> u8 {
-        ((rgb[0] as u32 * 77 + rgb[1] as u32 * 150 + rgb[2] as u32 * 29) >> 8) as u8
+        luma(rgb)
     }
 
     #[inline(always)]
     fn unpack(raw: u8) -> [u8; 3] {
         [raw; 3]
+    }
+
+    #[inline(always)]
+    fn luma(raw: u8) -> u8 {
+        raw
+    }
+
+    const IS_LUMA: bool = true;
+
+    #[inline(always)]
+    fn from_luma(luma: u8) -> u8 {
+        luma
     }
 
     fn from_color(color: Gray8) -> u8 {
@@ -308,6 +326,9 @@ mod tests {
     ) {
         assert_eq!(P::unpack(P::pack([255; 3])), [255; 3]);
         assert_eq!(P::unpack(P::pack([0; 3])), [0; 3]);
+        for raw in [0x1234, 0xFEDC, 0x07E0, 0x801F, 0xF801] {
+            assert_eq!(P::from_rgb565(raw), P::pack(from_rgb565(raw)));
+        }
         for raw in raws {
             assert_eq!(P::pack(P::unpack(raw)), raw);
             assert_eq!(P::from_color(P::to_color(raw)), raw);
@@ -323,6 +344,7 @@ mod tests {
     fn packing_is_the_inverse_of_unpacking() {
         check::<Rgb565>(0..=u16::MAX, Rgb888::from);
         check::<Rgb565Be>(0..=u16::MAX, Rgb888::from);
+        assert_eq!(Bgr565::from_packed(0x89AB_CDEF, green_mask()), Bgr565::pack([0x89, 0x7B, 0x5E]));
         check::<Bgr565>(0..=u16::MAX, Rgb888::from);
         check::<Bgr565Be>(0..=u16::MAX, Rgb888::from);
         check::<Rgb332>(0..=u8::MAX, |color| color);

@@ -51,7 +51,7 @@ impl<F: Framebuffer> Scene<'_, F> {
     pub fn project_with(&self, state: State, point: Vec3, mvp: &Projective) -> Option<ScreenVertex> {
         let mut transform = Transform::new(mvp, &self.viewport, &POINTS, false);
         transform.set_depth_scale(state.depth_scale);
-        match transform.place(&Positions::Exact(&[point]), 0) {
+        match transform.place_clip(&transform.point(point)) {
             Placed::Screen(vertex) => Some(vertex),
             Placed::Outside(_) => None,
         }
