@@ -20,6 +20,7 @@ impl Demo for Fog {
     const NAME: &'static str = "fog";
     const ABOUT: &'static str = "A flight over hills and a lake in the morning fog, which thickens in three ways.";
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const RECORDS: usize = 64 * 1024;
     const MODES: &'static [&'static str] = &["squared", "exponential", "linear"];
 
     fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {

@@ -19,6 +19,7 @@ impl Demo for Glass {
     const NAME: &'static str = "glass";
     const ABOUT: &'static str = "A glass pot between coloured panes, and a fountain of sparks.";
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const RECORDS: usize = 64 * 1024;
 
     fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, _mode: usize) {
         scenes::light::glass(scene, turn);

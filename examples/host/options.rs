@@ -4,9 +4,6 @@ use super::program::Demo;
 use std::error::Error;
 use std::path::PathBuf;
 
-/// Words of records that are enough for most of what is shown.
-const AMPLE: usize = 16 * 1024;
-
 /// What a frame is drawn with.
 pub struct Settings {
     pub png: Option<PathBuf>,
@@ -15,11 +12,6 @@ pub struct Settings {
     pub frame: u32,
     pub mode: usize,
     pub size: (u16, u16),
-}
-
-/// Words of records where the command line says nothing.
-const fn default_records<D: Demo>() -> usize {
-    if D::DEPTH { AMPLE } else { 0 }
 }
 
 /// What `--help` prints.
@@ -52,7 +44,7 @@ keys in the window
 {keys}  Esc               quit{names}",
         about = D::ABOUT,
         name = D::NAME,
-        records = default_records::<D>(),
+        records = D::RECORDS,
         keys = D::KEYS,
     )
 }
@@ -60,14 +52,8 @@ keys in the window
 /// The settings of the command line, or `None` if help was asked for.
 pub fn arguments<D: Demo>() -> Result<Option<Settings>, Box<dyn Error>> {
     use lexopt::prelude::*;
-    let mut settings = Settings {
-        png: None,
-        strip_rows: 16,
-        records: default_records::<D>(),
-        frame: 0,
-        mode: D::FIRST,
-        size: (320, 240),
-    };
+    let mut settings =
+        Settings { png: None, strip_rows: 16, records: D::RECORDS, frame: 0, mode: D::FIRST, size: (320, 240) };
     let mut parser = lexopt::Parser::from_env();
     while let Some(argument) = parser.next()? {
         match argument {

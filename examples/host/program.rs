@@ -29,6 +29,8 @@ pub trait Demo {
     const FIRST: usize = 0;
     /// Whether frames have a depth buffer.
     const DEPTH: bool = true;
+    /// Words of records where the command line says nothing: enough for most of what is shown.
+    const RECORDS: usize = if Self::DEPTH { 16 * 1024 } else { 0 };
     /// What [`key`](Self::key) does, a line for each of its keys.
     const KEYS: &'static str = "";
 
