@@ -7,11 +7,11 @@ mod host;
 mod scenes;
 
 use host::program::{Demo, show};
-use scenes::textured::{Look, crates, fence};
+use scenes::textured::{Look, crates};
 use zstrip::Scene;
-use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle;
-use zstrip::output::Strip;
+use zstrip::output::{Dithered, Strip};
 
 const LOOKS: [Look; 4] = [
     Look { bilinear: true, mips: true },
@@ -23,15 +23,15 @@ const LOOKS: [Look; 4] = [
 struct Crates;
 
 impl Demo for Crates {
-    type Format = Rgb565;
+    type Format = Dithered<Rgb565>;
     const NAME: &'static str = "crates";
-    const ABOUT: &'static str = "Crates on a floor, behind a fence, with mip levels or one level of the textures.";
-    const BACKGROUND: Rgb565 = scenes::BACKGROUND;
-    const MODES: &'static [&'static str] = &["bilinear", "nearest", "bilinear-one-level", "nearest-one-level"];
+    const ABOUT: &'static str =
+        "Crates on a floor, behind a fence, with and without mip levels and bilinear filtering.";
+    const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const MODES: &'static [&'static str] = &["bilinear", "nearest", "one-level", "pixels"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
         crates(scene, turn, LOOKS[mode]);
-        fence(scene, turn);
     }
 }
 

@@ -9,20 +9,20 @@ mod scenes;
 use host::program::{Demo, show};
 use scenes::water::water;
 use zstrip::Scene;
-use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle;
-use zstrip::output::Strip;
+use zstrip::output::{Dithered, Strip};
 
 struct Water;
 
 impl Demo for Water {
-    type Format = Rgb565;
+    type Format = Dithered<Rgb565>;
     const NAME: &'static str = "water";
     const ABOUT: &'static str = "Water, waved by a vertex shader, and a crate on it.";
-    const BACKGROUND: Rgb565 = scenes::BACKGROUND;
+    const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["breeze", "waves", "gale"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
         water(scene, turn, [1, 2, 3][mode]);
     }
 }

@@ -220,6 +220,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             // What is out of view leaves a header without vertices.
             let vertices = if culled { 0 } else { mesh.vertex_count() };
             self.records.begin_draw(fingerprint(state, mesh, mvp, &self.viewport, stride), vertices, stride);
+            if self.records.overflowed() {
+                return None;
+            }
         }
         if culled {
             self.stats.culled = self.stats.culled.wrapping_add(1);

@@ -49,7 +49,10 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
-    SceneInfo { name: "crates", draw: |scene, turn| crates(scene, turn) },
+    SceneInfo {
+        name: "crates",
+        draw: |scene, turn| textured::crates(scene, turn, textured::Look { bilinear: true, mips: true }),
+    },
     SceneInfo { name: "close", draw: |scene, turn| textured::close(scene, turn) },
     SceneInfo { name: "water", draw: |scene, turn| water::water(scene, turn, 1) },
     SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
@@ -63,12 +66,6 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
     SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
 ];
-
-/// Crates, mip chains, filters, and a fence with holes.
-fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    textured::crates(scene, turn, textured::Look { bilinear: true, mips: true });
-    textured::fence(scene, turn);
-}
 
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);

@@ -251,17 +251,18 @@ fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: 
     }
 }
 
-/// Crates on a floor.
+/// Crates on a floor, behind a fence.
 pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, look: Look) {
     if look.bilinear {
         with(scene, turn, look.mips, Bilinear);
     } else {
         with(scene, turn, look.mips, Nearest);
     }
+    fence(scene, turn);
 }
 
 /// A fence behind the crates, seen from both sides.
-pub fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let Ok(wire) = Image::new(&WIRE, (16, 16), MaskTexel([150, 160, 170])) else { return };
     let state = State { cull: Cull::None, ..State::DEFAULT };
     let model = Affine::translation(Vec3::from_milli(0, 0, 1300));

@@ -42,7 +42,7 @@ pub(super) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
         let next = coordinates(&u, &v, q, is_affine, &mut shift);
         pen.vu = packed(uv);
         let [du, dv] = [next[0].wrapping_sub(uv[0]), next[1].wrapping_sub(uv[1])];
-        pen.step = step([(du + STEP as i32 / 2) >> 4, (dv + STEP as i32 / 2) >> 4]);
+        pen.step = step([du.wrapping_add(8) >> 4, dv.wrapping_add(8) >> 4]);
         uv = next;
         // As if it changed: what it is multiplied by would be computed before the loop, and live on the stack.
         pen.dz_dx = core::hint::black_box(pen.dz_dx);

@@ -186,7 +186,7 @@ fn visible<P: PixelFormat>(rgba: [u8; 4], position: (i32, i32)) -> Option<P::Raw
 #[inline(always)]
 fn under(channel: u8, light: i32) -> u8 {
     // 0..=256; a plane may leave the range of its vertices by 1/8.
-    let light = ((light + (light >> 8)).clamp(0, 0xFF_FFFF) + (1 << 15)) >> 16;
+    let light = (light.wrapping_add(light >> 8).clamp(0, 0xFF_FFFF) + (1 << 15)) >> 16;
     ((i32::from(channel) * light) >> 8) as u8
 }
 
