@@ -6,22 +6,35 @@
 mod host;
 mod scenes;
 
-use host::show::{Show, Variant};
+use host::program::{Demo, show};
 use scenes::textured::{Look, crates};
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use zstrip::math::Angle;
+use zstrip::output::{Dithered, Strip};
+
+const LOOKS: [Look; 4] = [
+    Look { bilinear: true, mips: true },
+    Look { bilinear: false, mips: true },
+    Look { bilinear: true, mips: false },
+    Look { bilinear: false, mips: false },
+];
+
+struct Crates;
+
+impl Demo for Crates {
+    type Format = Dithered<Rgb565>;
+    const NAME: &'static str = "crates";
+    const ABOUT: &'static str =
+        "Crates on a floor, behind a fence, with and without mip levels and bilinear filtering.";
+    const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const MODES: &'static [&'static str] = &["bilinear", "nearest", "one-level", "pixels"];
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+        crates(scene, turn, LOOKS[mode]);
+    }
+}
 
 fn main() -> std::process::ExitCode {
-    let show = Show {
-        name: "crates",
-        about: "Crates on a floor, behind a fence, with and without mip levels and bilinear filtering.",
-        variants: &[
-            Variant { name: "bilinear", draw: |scene, turn| crates(scene, turn, Look { bilinear: true, mips: true }) },
-            Variant { name: "nearest", draw: |scene, turn| crates(scene, turn, Look { bilinear: false, mips: true }) },
-            Variant {
-                name: "one-level",
-                draw: |scene, turn| crates(scene, turn, Look { bilinear: true, mips: false }),
-            },
-            Variant { name: "pixels", draw: |scene, turn| crates(scene, turn, Look { bilinear: false, mips: false }) },
-        ],
-    };
-    show.main()
+    show(Crates)
 }

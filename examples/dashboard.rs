@@ -7,14 +7,26 @@
 mod host;
 mod scenes;
 
-use host::viewer::{Program, show};
+use host::program::{Demo, show};
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::math::Angle;
+use zstrip::output::Strip;
+
+struct Dashboard;
+
+impl Demo for Dashboard {
+    type Format = Rgb565;
+    const NAME: &'static str = "dashboard";
+    const ABOUT: &'static str = "Instruments drawn with embedded-graphics, strip by strip and without a depth buffer.";
+    const BACKGROUND: Rgb565 = scenes::BACKGROUND;
+    const DEPTH: bool = false;
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, _mode: usize) {
+        scenes::dashboard::draw(scene, turn);
+    }
+}
 
 fn main() -> std::process::ExitCode {
-    show(&Program {
-        name: "dashboard",
-        about: "Instruments drawn with embedded-graphics, strip by strip and without a depth buffer.",
-        scene: "dashboard",
-        all: false,
-        depth: false,
-    })
+    show(Dashboard)
 }

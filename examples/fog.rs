@@ -6,18 +6,28 @@
 mod host;
 mod scenes;
 
-use host::show::{Show, Variant};
+use host::program::{Demo, show};
 use scenes::light::{Mist, fog};
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use zstrip::math::Angle;
+use zstrip::output::{Dithered, Strip};
+
+struct Fog;
+
+impl Demo for Fog {
+    type Format = Dithered<Rgb565>;
+    const NAME: &'static str = "fog";
+    const ABOUT: &'static str = "A flight over hills and a lake in the morning fog, which thickens in three ways.";
+    const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const RECORDS: usize = 64 * 1024;
+    const MODES: &'static [&'static str] = &["squared", "exponential", "linear"];
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+        fog(scene, turn, [Mist::Squared, Mist::Exponential, Mist::Linear][mode]);
+    }
+}
 
 fn main() -> std::process::ExitCode {
-    let show = Show {
-        name: "fog",
-        about: "A flight over hills and a lake in the morning fog, which thickens in three ways.",
-        variants: &[
-            Variant { name: "squared", draw: |scene, turn| fog(scene, turn, Mist::Squared) },
-            Variant { name: "exponential", draw: |scene, turn| fog(scene, turn, Mist::Exponential) },
-            Variant { name: "linear", draw: |scene, turn| fog(scene, turn, Mist::Linear) },
-        ],
-    };
-    show.main()
+    show(Fog)
 }

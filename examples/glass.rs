@@ -6,14 +6,26 @@
 mod host;
 mod scenes;
 
-use host::show::{Show, Variant};
-use scenes::light::glass;
+use host::program::{Demo, show};
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use zstrip::math::Angle;
+use zstrip::output::{Dithered, Strip};
+
+struct Glass;
+
+impl Demo for Glass {
+    type Format = Dithered<Rgb565>;
+    const NAME: &'static str = "glass";
+    const ABOUT: &'static str = "A glass pot between coloured panes, and a fountain of sparks.";
+    const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const RECORDS: usize = 64 * 1024;
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, _mode: usize) {
+        scenes::light::glass(scene, turn);
+    }
+}
 
 fn main() -> std::process::ExitCode {
-    let show = Show {
-        name: "glass",
-        about: "A glass pot between coloured panes, and a fountain of sparks.",
-        variants: &[Variant { name: "all", draw: |scene, turn| glass(scene, turn) }],
-    };
-    show.main()
+    show(Glass)
 }

@@ -3,12 +3,10 @@
 //! ```text
 //! cargo run --release --example horizon -- --help
 //! ```
-#[path = "host/demo.rs"]
-mod demo;
 mod host;
 mod scenes;
 
-use demo::Demo;
+use host::program::{Demo, show};
 use minifb::Key;
 use std::process::ExitCode;
 use zstrip::Scene;
@@ -25,9 +23,10 @@ struct Horizon {
 }
 
 impl Demo for Horizon {
+    type Format = Rgb565;
     const NAME: &'static str = "horizon";
-    const ABOUT: &'static str = "An artificial horizon";
-    const MODES: &'static [&'static str] = &["a gentle wind", "calm air"];
+    const ABOUT: &'static str = "An artificial horizon.";
+    const MODES: &'static [&'static str] = &["wind", "calm"];
     const KEYS: &'static str = "  W, S              nose down and up\n  A, D              roll to the left and right\n";
     const BACKGROUND: Rgb565 = Rgb565::new(4, 10, 5);
 
@@ -52,7 +51,7 @@ impl Demo for Horizon {
         self.roll = Angle((self.steered.1 + sway(97, 24) + sway(301, 4)) as u16);
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle, mode: usize) {
         let steered = (Angle(self.steered.0 as u16), Angle(self.steered.1 as u16));
         let (pitch, roll) = if mode == 0 { (self.pitch, self.roll) } else { steered };
         scenes::horizon::horizon(scene, pitch, roll);
@@ -60,5 +59,5 @@ impl Demo for Horizon {
 }
 
 fn main() -> ExitCode {
-    demo::main(Horizon::default())
+    show(Horizon::default())
 }

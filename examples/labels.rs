@@ -7,14 +7,25 @@
 mod host;
 mod scenes;
 
-use host::viewer::{Program, show};
+use host::program::{Demo, show};
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
+use zstrip::math::Angle;
+use zstrip::output::Strip;
+
+struct Labels;
+
+impl Demo for Labels {
+    type Format = Rgb565;
+    const NAME: &'static str = "labels";
+    const ABOUT: &'static str = "A torus with labels in its space, hidden by what is in front of them.";
+    const BACKGROUND: Rgb565 = scenes::BACKGROUND;
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, _mode: usize) {
+        scenes::labels::draw(scene, turn);
+    }
+}
 
 fn main() -> std::process::ExitCode {
-    show(&Program {
-        name: "labels",
-        about: "A torus with labels in its space, hidden by what is in front of them.",
-        scene: "labels",
-        all: false,
-        depth: true,
-    })
+    show(Labels)
 }

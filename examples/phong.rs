@@ -6,20 +6,30 @@
 mod host;
 mod scenes;
 
-use host::show::{Show, Variant};
+use host::program::{Demo, show};
 use scenes::light::{Shading, phong};
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use zstrip::math::Angle;
+use zstrip::output::{Dithered, Strip};
+
+const SHADINGS: [Shading; 5] =
+    [Shading::PerFragmentNear, Shading::PerVertex, Shading::PerFace, Shading::PerFragment, Shading::Matcap];
+
+struct Phong;
+
+impl Demo for Phong {
+    type Format = Dithered<Rgb565>;
+    const NAME: &'static str = "phong";
+    const ABOUT: &'static str = "A glazed pot under the moon and two lamps, shaded in five ways.";
+    const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const MODES: &'static [&'static str] = &["fragment", "vertex", "face", "sun", "matcap"];
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+        phong(scene, turn, SHADINGS[mode]);
+    }
+}
 
 fn main() -> std::process::ExitCode {
-    let show = Show {
-        name: "phong",
-        about: "A glazed pot under the moon and two lamps, shaded in five ways.",
-        variants: &[
-            Variant { name: "fragment", draw: |scene, turn| phong(scene, turn, Shading::PerFragmentNear) },
-            Variant { name: "vertex", draw: |scene, turn| phong(scene, turn, Shading::PerVertex) },
-            Variant { name: "face", draw: |scene, turn| phong(scene, turn, Shading::PerFace) },
-            Variant { name: "sun", draw: |scene, turn| phong(scene, turn, Shading::PerFragment) },
-            Variant { name: "matcap", draw: |scene, turn| phong(scene, turn, Shading::Matcap) },
-        ],
-    };
-    show.main()
+    show(Phong)
 }

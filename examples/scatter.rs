@@ -3,12 +3,10 @@
 //! ```text
 //! cargo run --release --example scatter -- --help
 //! ```
-#[path = "host/demo.rs"]
-mod demo;
 mod host;
 mod scenes;
 
-use demo::Demo;
+use host::program::{Demo, show};
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Compare, DepthState, Flat, Gouraud};
@@ -62,10 +60,10 @@ impl Scatter {
 }
 
 impl Demo for Scatter {
+    type Format = Rgb565;
     const NAME: &'static str = "scatter";
-    const ABOUT: &'static str = "A scatter plot in space";
-    const MODES: &'static [&'static str] = &["squares", "squares on stems", "larger squares"];
-    const KEYS: &'static str = "";
+    const ABOUT: &'static str = "A scatter plot in space.";
+    const MODES: &'static [&'static str] = &["squares", "stems", "large"];
     const BACKGROUND: Rgb565 = Rgb565::new(2, 5, 4);
 
     fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
@@ -97,7 +95,7 @@ impl Demo for Scatter {
         axes.extend([at(-x, -1000, z), at(-x, 1000, z)]);
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle, mode: usize) {
         let pairs = |ends| Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(ends)));
         let (Ok(grid), Ok(axes)) = (pairs(&self.grid), pairs(&self.axes)) else { return };
         let behind = State { depth: DepthState { compare: Compare::Always, write: false }, ..State::DEFAULT };
@@ -132,5 +130,5 @@ impl Demo for Scatter {
 }
 
 fn main() -> ExitCode {
-    demo::main(Scatter::new())
+    show(Scatter::new())
 }

@@ -6,18 +6,27 @@
 mod host;
 mod scenes;
 
-use host::show::{Show, Variant};
+use host::program::{Demo, show};
 use scenes::water::water;
+use zstrip::Scene;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use zstrip::math::Angle;
+use zstrip::output::{Dithered, Strip};
+
+struct Water;
+
+impl Demo for Water {
+    type Format = Dithered<Rgb565>;
+    const NAME: &'static str = "water";
+    const ABOUT: &'static str = "Water, waved by a vertex shader, and a crate on it.";
+    const BACKGROUND: Rgb565 = Rgb565::BLACK;
+    const MODES: &'static [&'static str] = &["breeze", "waves", "gale"];
+
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+        water(scene, turn, [1, 2, 3][mode]);
+    }
+}
 
 fn main() -> std::process::ExitCode {
-    let show = Show {
-        name: "water",
-        about: "Water, waved by a vertex shader, and a crate on it.",
-        variants: &[
-            Variant { name: "breeze", draw: |scene, time| water(scene, time, 1) },
-            Variant { name: "waves", draw: |scene, time| water(scene, time, 2) },
-            Variant { name: "gale", draw: |scene, time| water(scene, time, 3) },
-        ],
-    };
-    show.main()
+    show(Water)
 }

@@ -3,12 +3,10 @@
 //! ```text
 //! cargo run --release --example wireframe -- --help
 //! ```
-#[path = "host/demo.rs"]
-mod demo;
 mod host;
 mod scenes;
 
-use demo::Demo;
+use host::program::{Demo, show};
 use scenes::wires::BEHIND_LINES;
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
@@ -119,10 +117,10 @@ impl Wireframe {
 }
 
 impl Demo for Wireframe {
+    type Format = Rgb565;
     const NAME: &'static str = "wireframe";
-    const ABOUT: &'static str = "A machine part as a drawing";
-    const MODES: &'static [&'static str] = &["hidden lines dashed", "hidden lines removed", "shaded", "all edges"];
-    const KEYS: &'static str = "";
+    const ABOUT: &'static str = "A machine part as a drawing.";
+    const MODES: &'static [&'static str] = &["dashed", "removed", "shaded", "all"];
     const BACKGROUND: Rgb565 = Rgb565::new(2, 8, 8);
 
     fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
@@ -146,7 +144,7 @@ impl Demo for Wireframe {
         }
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle, mode: usize) {
         let mesh = self.part.mesh();
         let edges = if mode == 3 { &self.all } else { &self.seen };
         let Ok(lines) = Lines::of_mesh(&mesh, edges) else { return };
@@ -175,5 +173,5 @@ impl Demo for Wireframe {
 }
 
 fn main() -> ExitCode {
-    demo::main(Wireframe::new())
+    show(Wireframe::new())
 }

@@ -1,0 +1,187 @@
+//! A program around something to draw, strip by strip as on a small display: a window with keys, or a PNG where there is no
+//! display.
+
+use super::Picture;
+use super::options::{Settings, arguments, help};
+use minifb::{Key, KeyRepeat, Scale, Window, WindowOptions};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+use zstrip::fragment::PixelFormat;
+use zstrip::math::Angle;
+use zstrip::output::{RamBudget, Stats, Strip, StripPixels};
+use zstrip::{Buffers, Renderer, Scene};
+
+/// What is shown.
+pub trait Demo {
+    /// What is drawn into.
+    type Format: PixelFormat;
+
+    /// Its name, and that of its picture.
+    const NAME: &'static str;
+    /// What it shows, in a sentence.
+    const ABOUT: &'static str;
+    const BACKGROUND: <Self::Format as PixelFormat>::Color;
+    /// Names of its modes, where there are several.
+    const MODES: &'static [&'static str] = &[];
+    /// The mode to begin with.
+    const FIRST: usize = 0;
+    /// Whether frames have a depth buffer.
+    const DEPTH: bool = true;
+    /// Words of records where the command line says nothing: enough for most of what is shown.
+    const RECORDS: usize = if Self::DEPTH { 16 * 1024 } else { 0 };
+    /// What [`key`](Self::key) does, a line for each of its keys.
+    const KEYS: &'static str = "";
+
+    /// A key is held down.
+    fn key(&mut self, _key: Key) {}
+
+    /// Called before each frame, with the screen's size.
+    fn prepare(&mut self, _frame: u32, _screen: (u16, u16)) {}
+
+    /// Draws the frame that was prepared, for an angle that each frame adds 1/512 of a turn to. Called for each strip.
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize);
+}
+
+/// What the keys choose from; the height of the screen is the tallest strip.
+const STRIP_ROWS: [u16; 7] = [1, 2, 4, 7, 8, 16, 40];
+const RECORDS: [usize; 5] = [0, 100, 1000, 16 * 1024, 64 * 1024];
+const DIGITS: [Key; 9] =
+    [Key::Key1, Key::Key2, Key::Key3, Key::Key4, Key::Key5, Key::Key6, Key::Key7, Key::Key8, Key::Key9];
+
+/// Draws a frame through strips, as a display would get it.
+fn render<D: Demo>(demo: &mut D, settings: &Settings, picture: &mut Picture) -> Result<Stats, Box<dyn Error>> {
+    let pixels = usize::from(settings.size.0) * usize::from(settings.strip_rows.min(settings.size.1));
+    let depths = if D::DEPTH { pixels } else { 0 };
+    let mut color = vec![bytemuck::Zeroable::zeroed(); pixels];
+    let (mut depth, mut records) = (vec![0; depths], vec![0; settings.records]);
+    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
+    let mut renderer = Renderer::<D::Format>::new(settings.size, buffers)?;
+    let to_picture = |strip: &StripPixels<'_, D::Format>| {
+        picture.put(strip);
+        Ok::<(), std::convert::Infallible>(())
+    };
+    demo.prepare(settings.frame, settings.size);
+    let turn = Angle(settings.frame.wrapping_mul(128) as u16);
+    Ok(renderer.frame_to(to_picture, D::BACKGROUND, |scene| demo.draw(scene, turn, settings.mode))?)
+}
+
+/// Settings and statistics in a line.
+fn describe<D: Demo>(settings: &Settings, stats: &Stats) -> String {
+    let (width, height) = settings.size;
+    let rows = settings.strip_rows.min(height);
+    let budget = RamBudget::new::<D::Format>(width, rows).with_record_words(settings.records);
+    let ram = if D::DEPTH { budget } else { budget.without_depth() };
+    let mut line = D::NAME.to_string();
+    line.extend(D::MODES.get(settings.mode).map(|mode| format!(" {mode}")));
+    line += &format!(" {width}x{height} | {rows} rows, {} records: {} bytes |", settings.records, ram.total());
+    line += &format!(" {} triangles, {} drawn", stats.triangles, stats.drawn);
+    if stats.lines + stats.points > 0 {
+        line += &format!(", {} lines, {} points", stats.lines, stats.points);
+    }
+    line + &format!(", {} walks, {} overflows", stats.walks, stats.overflows)
+}
+
+fn picture<D: Demo>(demo: &mut D, settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
+    let mut picture = Picture::new(settings.size);
+    let stats = render(demo, settings, &mut picture)?;
+    picture.write_png(path)?;
+    println!("{}", describe::<D>(settings, &stats));
+    println!("wrote {}", path.display());
+    Ok(())
+}
+
+/// The window, or why there is none.
+fn open(name: &str, (width, height): (u16, u16)) -> Result<Window, String> {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    if cfg!(target_os = "linux") && !is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") {
+        return Err("neither DISPLAY nor WAYLAND_DISPLAY is set".into());
+    }
+    let options = WindowOptions { scale: if width <= 640 { Scale::X2 } else { Scale::X1 }, ..WindowOptions::default() };
+    Window::new(name, width.into(), height.into(), options).map_err(|error| error.to_string())
+}
+
+/// The next entry above `value`, or the one below; `value` itself at the ends.
+fn neighbour<T: Copy + PartialOrd>(list: impl Iterator<Item = T> + Clone, value: T, up: bool) -> T {
+    let next = if up { list.clone().find(|entry| *entry > value) } else { list.filter(|entry| *entry < value).last() };
+    next.unwrap_or(value)
+}
+
+/// What a key does that was pressed.
+fn press<D: Demo>(key: Key, settings: &mut Settings, paused: &mut bool) {
+    let height = settings.size.1;
+    let rows = STRIP_ROWS.into_iter().filter(|rows| *rows < height).chain([height]);
+    match key {
+        Key::Up | Key::Down => settings.strip_rows = neighbour(rows, settings.strip_rows, key == Key::Up),
+        Key::Left | Key::Right => {
+            settings.records = neighbour(RECORDS.into_iter(), settings.records, key == Key::Right);
+        }
+        // S is a second key for it, unless it steers something.
+        Key::M | Key::S if key == Key::M || D::KEYS.is_empty() => {
+            settings.mode = (settings.mode + 1) % D::MODES.len().max(1);
+        }
+        Key::Space => *paused = !*paused,
+        Key::Comma => settings.frame = settings.frame.wrapping_sub(1),
+        Key::Period => settings.frame = settings.frame.wrapping_add(1),
+        _ => {
+            let digit = DIGITS.iter().position(|digit| *digit == key);
+            settings.mode = digit.filter(|mode| *mode < D::MODES.len()).unwrap_or(settings.mode);
+        }
+    }
+}
+
+/// Runs until the window is closed.
+fn play<D: Demo>(demo: &mut D, window: &mut Window, mut settings: Settings) -> Result<(), Box<dyn Error>> {
+    window.set_target_fps(60);
+    let mut picture = Picture::new(settings.size);
+    let mut paused = false;
+    let (mut since, mut frames, mut drawing) = (Instant::now(), 0, Duration::ZERO);
+    while window.is_open() && !window.is_key_down(Key::Escape) {
+        let start = Instant::now();
+        let stats = render(demo, &settings, &mut picture)?;
+        drawing += start.elapsed();
+        window.update_with_buffer(&picture.to_0rgb(), settings.size.0.into(), settings.size.1.into())?;
+        frames += 1;
+        let seconds = since.elapsed().as_secs_f64();
+        if seconds > 0.5 {
+            let (fps, ms) = (f64::from(frames) / seconds, drawing.as_secs_f64() * 1e3 / f64::from(frames));
+            window.set_title(&format!("{fps:.0} fps, {ms:.2} ms | {}", describe::<D>(&settings, &stats)));
+            (since, frames, drawing) = (Instant::now(), 0, Duration::ZERO);
+        }
+        settings.frame = settings.frame.wrapping_add(u32::from(!paused));
+        window.get_keys().into_iter().for_each(|key| demo.key(key));
+        for key in window.get_keys_pressed(KeyRepeat::No) {
+            press::<D>(key, &mut settings, &mut paused);
+        }
+    }
+    Ok(())
+}
+
+fn run<D: Demo>(demo: &mut D) -> Result<(), Box<dyn Error>> {
+    let Some(settings) = arguments::<D>()? else {
+        println!("{}", help::<D>());
+        return Ok(());
+    };
+    if let Some(path) = &settings.png {
+        return picture(demo, &settings, path);
+    }
+    match open(D::NAME, settings.size) {
+        Ok(mut window) => play(demo, &mut window, settings),
+        Err(reason) => {
+            println!("no window ({reason}): writing a picture instead");
+            picture(demo, &settings, &PathBuf::from(format!("{}.png", D::NAME)))
+        }
+    }
+}
+
+/// Runs an example.
+pub fn show<D: Demo>(mut demo: D) -> ExitCode {
+    match run(&mut demo) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("{}: {error}", D::NAME);
+            ExitCode::from(2)
+        }
+    }
+}
