@@ -14,11 +14,13 @@ mod firmware;
 mod rows {
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
     use zstrip::fragment::{
-        Add, AddAlpha, Alpha, AlphaTest, Blend, DepthState, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap,
-        Multiply, Opacity, PerFragment, PerFragmentNear, ScreenDoor, Shaded, Shader,
+        Add, AddAlpha, Alpha, AlphaTest, Bilinear, Blend, Clamp, DepthState, Flat, FogCurve, FogTable, Fogged, Gouraud,
+        Image, Matcap, Mirror, Multiply, Opacity, PaletteTexel, PerFragment, PerFragmentNear, Rgb888Texel, ScreenDoor,
+        Shaded, Shader, TexelFormat, Textured, Tile,
     };
     use zstrip::geometry::{
-        DirectionalLight, Lighting, LitMaterial, Material, Mesh, MeshData, PointLight, Positions, Topology, Viewer,
+        DirectionalLight, Light, Lighting, LitMaterial, Material, Mesh, MeshData, PointLight, Positions, Topology,
+        Viewer,
     };
     use zstrip::math::{Affine, Projective, Scalar, Vec3};
     use zstrip::output::Strip;
@@ -34,6 +36,19 @@ mod rows {
         ("`Flat`; `Shaded` per face", |s| square(s, &flat())),
         ("`Gouraud`; `Shaded` per vertex", |s| square(s, &GOURAUD)),
         ("`Matcap`", |s| square(s, &Matcap::<Rgb565, 64>::new(&BALL, &Affine::IDENTITY))),
+        ("`Textured`, nearest, repeated, w constant", |s| square(s, &Textured::new(&TILE))),
+        ("the same in perspective", |s| floor(s, &Textured::new(&TILE))),
+        ("mirrored", |s| floor(s, &Textured::new(&TILE).wrap(Mirror))),
+        ("clamped", |s| floor(s, &Textured::new(&TILE).wrap(Clamp))),
+        ("bilinear", |s| floor(s, &Textured::new(&TILE).filter(Bilinear))),
+        ("nearest, RGB888", |s| image(s, Rgb888Texel, |s, t| floor(s, &Textured::new(t)))),
+        ("bilinear, RGB888", |s| image(s, Rgb888Texel, |s, t| floor(s, &Textured::new(t).filter(Bilinear)))),
+        ("nearest, palette of 8 bits", |s| {
+            image(s, PaletteTexel::<8>(&[[200, 100, 50]; 256]), |s, t| floor(s, &Textured::new(t)));
+        }),
+        ("nearest, lit", |s| floor(s, &Textured::new(&TILE).lit(light()))),
+        ("bilinear, lit", |s| floor(s, &Textured::new(&TILE).filter(Bilinear).lit(light()))),
+        ("`Blend` of it, nearest, `Opacity`", |s| floor(s, &Blend::new(Textured::new(&TILE), Opacity(100)))),
         ("`Shaded` per fragment, 1 directional light, matte", |s| square(s, &far::<1>(0))),
         ("the same, 2 directional lights", |s| square(s, &far::<2>(0))),
         ("1 directional light, glossy, shininess 32", |s| square(s, &far::<1>(32))),
@@ -71,6 +86,43 @@ mod rows {
         colors: Some(&[[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]),
         ..MeshData::new(Positions::Exact(&CORNERS))
     });
+
+    /// The same square, its upper side twice as far away.
+    static FLOOR: Mesh<'static> = {
+        const fn corner(x: i32, y: i32, w: i32) -> [Scalar; 4] {
+            let half = Scalar::from_bits(w << 15);
+            [Scalar::from_bits((x * w) << 16), Scalar::from_bits((y * w) << 16), half, Scalar::from_bits(w << 16)]
+        }
+        const CORNERS: [[Scalar; 4]; 4] = [corner(-1, -1, 1), corner(1, -1, 1), corner(1, 1, 2), corner(-1, 1, 2)];
+        const FOUR: Scalar = Scalar::from_bits(4 << 16);
+        const ZERO: Scalar = Scalar::ZERO;
+        Mesh::constant(MeshData {
+            topology: Topology::Quads,
+            normals: Some(&[[0, 0, 16_384]; 4]),
+            uvs: Some(&[[ZERO, FOUR], [FOUR, FOUR], [FOUR, ZERO], [ZERO, ZERO]]),
+            ..MeshData::new(Positions::Homogeneous(&CORNERS))
+        })
+    };
+
+    static TEXELS: [[u16; 64]; 64] = [[0x1234; 64]; 64];
+    static TILE: Tile<'static, 64, 64> = Tile::new(&TEXELS);
+    static BYTES: [u8; 3 * 64 * 64] = [77; 3 * 64 * 64];
+
+    fn floor(scene: S<'_, '_, '_>, shader: &impl Shader<Rgb565>) {
+        scene.draw(&FLOOR, &Projective::IDENTITY, shader);
+    }
+
+    /// Draws with a texture of 64 x 64 texels.
+    fn image<T: TexelFormat>(scene: S<'_, '_, '_>, format: T, draw: impl FnOnce(S<'_, '_, '_>, &Image<'_, T>)) {
+        let bytes = BYTES.get(..64 * 64 * T::BITS / 8).unwrap_or_default();
+        if let Ok(image) = Image::new(bytes, (64, 64), format) {
+            draw(scene, &image);
+        }
+    }
+
+    fn light() -> Light {
+        Light::new(Vec3::from_ints(1, 2, 4), Rgb888::new(220, 220, 200), Rgb888::new(30, 30, 30))
+    }
 
     static BALL: [[u16; 64]; 64] = [[0x1234; 64]; 64];
 

@@ -18,25 +18,36 @@
 //! | instructions a pixel | Cortex-M0+ | Cortex-M4 |
 //! |---|--:|--:|
 //! | `Flat`; `Shaded` per face | 14 | 13 |
-//! | `Gouraud`; `Shaded` per vertex | 25 | 19 |
+//! | `Gouraud`; `Shaded` per vertex | 27 | 20 |
 //! | `Matcap` | 42 | 25 |
-//! | `Shaded` per fragment, 1 directional light, matte | 194 | 130 |
-//! | the same, 2 directional lights | 256 | 186 |
-//! | 1 directional light, glossy, shininess 32 | 269 | 212 |
-//! | the same, shininess 255 | 305 | 232 |
-//! | `Shaded` per fragment, near, 1 point light, matte | 378 | 281 |
-//! | the same, glossy, shininess 32 | 556 | 443 |
-//! | the same, viewer near | 651 | 510 |
-//! | `Blend` of `Flat`, `Opacity` | 44 | 24 |
-//! | `Blend` of `Gouraud`, `Opacity` | 81 | 48 |
-//! | the same, `Alpha` | 84 | 45 |
-//! | the same, `Add` | 87 | 51 |
-//! | the same, `AddAlpha` | 116 | 68 |
-//! | the same, `Multiply` | 104 | 58 |
-//! | `AlphaTest` of `Gouraud` | 69 | 37 |
-//! | `ScreenDoor` of `Gouraud`, half of the pixels | 61 | 38 |
-//! | `Fogged` `Flat` | 71 | 44 |
-//! | `Fogged` `Gouraud` | 112 | 67 |
+//! | `Textured`, nearest, repeated, w constant | 27 | 18 |
+//! | the same in perspective | 31 | 20 |
+//! | mirrored | 79 | 57 |
+//! | clamped | 82 | 58 |
+//! | bilinear | 195 | 126 |
+//! | nearest, RGB888 | 64 | 42 |
+//! | bilinear, RGB888 | 333 | 203 |
+//! | nearest, palette of 8 bits | 63 | 46 |
+//! | nearest, lit | 187 | 97 |
+//! | bilinear, lit | 414 | 227 |
+//! | `Blend` of it, nearest, `Opacity` | 94 | 71 |
+//! | `Shaded` per fragment, 1 directional light, matte | 186 | 123 |
+//! | the same, 2 directional lights | 255 | 189 |
+//! | 1 directional light, glossy, shininess 32 | 265 | 208 |
+//! | the same, shininess 255 | 301 | 228 |
+//! | `Shaded` per fragment, near, 1 point light, matte | 375 | 277 |
+//! | the same, glossy, shininess 32 | 554 | 442 |
+//! | the same, viewer near | 648 | 509 |
+//! | `Blend` of `Flat`, `Opacity` | 40 | 26 |
+//! | `Blend` of `Gouraud`, `Opacity` | 81 | 52 |
+//! | the same, `Alpha` | 83 | 41 |
+//! | the same, `Add` | 87 | 52 |
+//! | the same, `AddAlpha` | 118 | 66 |
+//! | the same, `Multiply` | 101 | 59 |
+//! | `AlphaTest` of `Gouraud` | 62 | 32 |
+//! | `ScreenDoor` of `Gouraud`, half of the pixels | 62 | 37 |
+//! | `Fogged` `Flat` | 68 | 44 |
+//! | `Fogged` `Gouraud` | 112 | 68 |
 
 mod alpha;
 mod bias;
