@@ -194,6 +194,8 @@ pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [
     let mut colors = color.chunks_exact_mut(RUN);
     let mut depths = depth.chunks_exact_mut(RUN);
     for run in (&mut colors).zip(&mut depths) {
+        // Hidden from the compiler: it would prepare all multiples of the step, and spill them.
+        pen.dz_dx = core::hint::black_box(pen.dz_dx);
         // Spelled out: at `opt-level = "s"` a loop would stay a loop.
         let ([a, b0, c, d, e, f, g0, h], [az, bz, cz, dz, ez, fz, gz, hz]) = run else { return };
         pen.draw::<P, D>(test, addends[0], a, az);
