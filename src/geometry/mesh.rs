@@ -279,6 +279,13 @@ impl<'a> Mesh<'a> {
         if n >= self.triangles as usize {
             return None;
         }
+        // The usual mesh, by the shortest way.
+        if let (Topology::Triangles, Some(indices)) = (self.data.topology, self.data.indices) {
+            return match indices.split_at_checked(3 * n) {
+                Some((_, [a, b, c, ..])) => Some([*a, *b, *c]),
+                _ => None,
+            };
+        }
         let at = match self.data.topology {
             Topology::Triangles => [3 * n, 3 * n + 1, 3 * n + 2],
             // Odd triangles of a strip swap the first two corners, so that all face the same way.
