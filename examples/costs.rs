@@ -94,12 +94,13 @@ mod rows {
             [Scalar::from_bits((x * w) << 16), Scalar::from_bits((y * w) << 16), half, Scalar::from_bits(w << 16)]
         }
         const CORNERS: [[Scalar; 4]; 4] = [corner(-1, -1, 1), corner(1, -1, 1), corner(1, 1, 2), corner(-1, 1, 2)];
-        const FOUR: Scalar = Scalar::from_bits(4 << 16);
-        const ZERO: Scalar = Scalar::ZERO;
+        const fn at(u: i32, v: i32) -> [Scalar; 2] {
+            [Scalar::from_bits(u << 16), Scalar::from_bits(v << 16)]
+        }
         Mesh::constant(MeshData {
             topology: Topology::Quads,
             normals: Some(&[[0, 0, 16_384]; 4]),
-            uvs: Some(&[[ZERO, FOUR], [FOUR, FOUR], [FOUR, ZERO], [ZERO, ZERO]]),
+            uvs: Some(&[at(0, 4), at(4, 4), at(6, 0), at(-2, 0)]),
             ..MeshData::new(Positions::Homogeneous(&CORNERS))
         })
     };

@@ -7,7 +7,7 @@ use support::{difference, strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::fragment::{
     Add, AddAlpha, Alpha, AlphaTest, Blend, BlendMode, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud,
-    Multiply, Opacity, PixelFormat, Replace, Rgba8888, ScreenDoor, Shader,
+    Image, Multiply, Opacity, PixelFormat, Replace, Rgb888Texel, Rgba8888, ScreenDoor, Shader, Textured, WithAlpha,
 };
 use zstrip::geometry::{Corner, Mesh, MeshData, Positions, Topology, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
@@ -162,6 +162,55 @@ fn blended_draws_see_what_is_there_and_leave_depth() {
             }
         }
     }
+}
+
+/// A floor that fills the screen, twice as far away at the upper side; columns of a texture run away from the viewer.
+static FLOOR: Mesh<'static> = {
+    const fn corner(x: i32, y: i32, w: i32) -> [Scalar; 4] {
+        [
+            Scalar::from_bits((x * w) << 16),
+            Scalar::from_bits((y * w) << 16),
+            Scalar::from_bits(w << 15),
+            Scalar::from_bits(w << 16),
+        ]
+    }
+    const CORNERS: [[Scalar; 4]; 4] = [corner(-1, -1, 1), corner(1, -1, 1), corner(1, 1, 2), corner(-1, 1, 2)];
+    Mesh::constant(MeshData {
+        topology: Topology::Quads,
+        uvs: Some(&[
+            [Scalar::ZERO, Scalar::ZERO],
+            [Scalar::ONE, Scalar::ZERO],
+            [Scalar::from_bits(3 << 15), Scalar::ZERO],
+            [Scalar::from_bits(-1 << 15), Scalar::ZERO],
+        ]),
+        ..MeshData::new(Positions::Homogeneous(&CORNERS))
+    })
+};
+
+#[test]
+fn textures_are_blended_by_their_alpha_in_perspective_too() {
+    const COLOR: [u8; 3] = [200, 100, 50];
+    let bytes = COLOR.repeat(4);
+    let image = Image::new(&bytes, (4, 1), Rgb888Texel).expect("an image");
+    let texture = WithAlpha::new(image, &[0x05, 0xAF]).expect("as many alphas");
+    let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::CSS_DARK_SLATE_BLUE, |scene| {
+        scene.draw(&FLOOR, &Projective::IDENTITY, &Blend::new(Textured::new(&texture), Alpha));
+    });
+    let there = [Rgb888::CSS_DARK_SLATE_BLUE.r(), Rgb888::CSS_DARK_SLATE_BLUE.g(), Rgb888::CSS_DARK_SLATE_BLUE.b()];
+    let mut sure = 0;
+    for (k, pixel) in picture.iter().enumerate() {
+        let (x, y) = (k % usize::from(SCREEN.0), k / usize::from(SCREEN.0));
+        // 1 / w falls from 1 at the lower side to 1/2.
+        let inv_w = 1.0 - 0.5 * (23.5 - y as f64) / 24.0;
+        let column = (((x as f64 + 0.5) / 20.0 - 1.0) / inv_w + 1.0) * 2.0;
+        if (column - column.round()).abs() > 0.02 {
+            let alpha = [0, 5, 10, 15][column.rem_euclid(4.0) as usize] * 17;
+            let [r, g, b] = COLOR;
+            assert_eq!(*pixel, BlendMode::<Rgb888>::blend(&Alpha, [r, g, b, alpha], there), "pixel {x}, {y}");
+            sure += 1;
+        }
+    }
+    assert!(sure > 800, "{sure}");
 }
 
 #[test]

@@ -18,7 +18,7 @@
 //! | instructions a pixel | Cortex-M0+ | Cortex-M4 |
 //! |---|--:|--:|
 //! | `Flat`; `Shaded` per face | 14 | 13 |
-//! | `Gouraud`; `Shaded` per vertex | 27 | 20 |
+//! | `Gouraud`; `Shaded` per vertex | 25 | 19 |
 //! | `Matcap` | 42 | 25 |
 //! | `Textured`, nearest, repeated, w constant | 27 | 18 |
 //! | the same in perspective | 31 | 20 |
