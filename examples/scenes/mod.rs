@@ -28,6 +28,7 @@ use zstrip::output::{Buffers, FrameError, Renderer, Stats, Strip, StripPixels};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// Something to draw.
+#[derive(Clone, Copy)]
 pub struct SceneInfo {
     /// Its name on the command line and in reports.
     pub name: &'static str,
@@ -35,8 +36,8 @@ pub struct SceneInfo {
     pub draw: fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle),
 }
 
-/// All scenes; the first two are a torus flat and Gouraud shaded.
-pub const SCENES: &[SceneInfo] = &[
+/// Scenes of plain meshes, which the flash of a small chip holds, too; the first two are a torus flat and Gouraud shaded.
+const PLAIN: [SceneInfo; 11] = [
     SceneInfo { name: "torus_flat", draw: |scene, turn| torus_flat(scene, turn) },
     SceneInfo { name: "torus_gouraud", draw: |scene, turn| torus_gouraud(scene, turn) },
     SceneInfo { name: "room", draw: |scene, turn| room(scene, turn) },
@@ -48,6 +49,11 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "cycle", draw: |scene, turn| cycle(scene, turn) },
     SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
     SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
+];
+
+/// All the others.
+const OTHERS: &[SceneInfo] = if cfg!(any(small_ram = "bare", small_ram = "records")) { &[] } else { MANY };
+const MANY: &[SceneInfo] = &[
     SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
     SceneInfo {
         name: "crates",
@@ -66,6 +72,17 @@ pub const SCENES: &[SceneInfo] = &[
     SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
     SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
 ];
+
+/// All scenes that there is room for.
+pub const SCENES: &[SceneInfo] = &{
+    let mut all = [PLAIN[0]; PLAIN.len() + OTHERS.len()];
+    let mut k = 1;
+    while k < all.len() {
+        all[k] = if k < PLAIN.len() { PLAIN[k] } else { OTHERS[k - PLAIN.len()] };
+        k += 1;
+    }
+    all
+};
 
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
