@@ -7,7 +7,7 @@ use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{strips, vector};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::fragment::{DepthState, Fragment, Shader};
+use zstrip::fragment::{Blend, DepthState, Fragment, Replace, ScreenDoor, Shader};
 use zstrip::geometry::{Corner, Mesh, MeshData, Perspective, Positions, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::{Cull, State};
@@ -125,6 +125,28 @@ fn pixels_are_drawn_where_no_distance_is_negative_and_once() {
         }
     }
     assert!(kept > 10_000 && cut_away > 10_000, "{kept} {cut_away}");
+}
+
+/// What a shader cuts away must stay away when another is put around it.
+#[test]
+fn shaders_around_others_keep_their_distances() {
+    let mut rng = Rng::new(3);
+    let corners = fan(&mut rng);
+    let mesh = Mesh::new(MeshData { indices: Some(&FAN), ..MeshData::new(Positions::Exact(&corners)) });
+    let mesh = mesh.expect("a mesh");
+    fn picture(mesh: &Mesh<'_>, shader: &impl Shader<Rgb565>) -> Vec<u16> {
+        strips::<Rgb565>(SCREEN, 64, 2000, Rgb565::BLACK, |s| s.draw_with(ANY, mesh, &camera(), shader)).0
+    }
+    let planes = [(Vec3::from_ints(1, 0, 0), 0), (Vec3::from_ints(0, 1, 0), 30_000)];
+    let cut = picture(&mesh, &Cut::<2>::new(&planes));
+    let whole = picture(&mesh, &Cut::<0>::new(&planes));
+    let drawn = |picture: &[u16]| picture.iter().filter(|p| **p != 0).count();
+    assert!(drawn(&cut) > 100 && drawn(&whole) > drawn(&cut) + 100);
+    assert!(picture(&mesh, &Blend::new(Cut::<2>::new(&planes), Replace)) == cut);
+    assert!(picture(&mesh, &ScreenDoor::new(Cut::<2>::new(&planes), 16)) == cut);
+    let (left, all) = (picture(&mesh, &RightOf(1)), picture(&mesh, &RightOf(i32::MIN / 2)));
+    assert!(drawn(&all) > drawn(&left));
+    assert!(picture(&mesh, &Blend::new(RightOf(1), Replace)) == left);
 }
 
 /// Leaves out triangles that are left of a line altogether.

@@ -157,6 +157,13 @@ macro_rules! inner_vertex_stage {
         const WORDS: usize = S::WORDS;
         const ZERO_BITS: u32 = S::ZERO_BITS;
         const DISPLACES: bool = S::DISPLACES;
+        const CLIP_DISTANCES: usize = S::CLIP_DISTANCES;
+        const CULL_DISTANCES: usize = S::CULL_DISTANCES;
+
+        #[inline]
+        fn distances(&self, vertex: &Corner<'_>) -> [i32; crate::geometry::MAX_DISTANCES] {
+            self.shader.distances(vertex)
+        }
 
         #[inline]
         fn vertex(&self, vertex: &Corner<'_>) -> S::Varyings {
