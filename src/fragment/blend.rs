@@ -193,22 +193,30 @@ macro_rules! inner_vertex_stage {
 }
 pub(super) use inner_vertex_stage;
 
+/// Hands on how the `shader` in a wrapper wants its varyings.
+macro_rules! inner_steps {
+    () => {
+        const STEP: usize = S::STEP;
+
+        #[inline(always)]
+        fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+            self.shader.level(corners, area)
+        }
+    };
+}
+pub(super) use inner_steps;
+
 impl<S: VertexShader, M> VertexShader for Blend<S, M> {
     inner_vertex_stage!();
 }
 
 impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<S, M> {
-    const STEP: usize = S::STEP;
+    inner_steps!();
 
     /// Blended with black.
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
         Some(self.mode.blend(self.shader.fragment(fragment)?, P::pack([0; 3])))
-    }
-
-    #[inline(always)]
-    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
-        self.shader.level(corners, area)
     }
 
     #[inline(always)]

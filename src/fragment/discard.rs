@@ -1,6 +1,6 @@
 //! Shaders that leave fragments out: the alpha test, and the screen door.
 
-use super::blend::inner_vertex_stage;
+use super::blend::{inner_steps, inner_vertex_stage};
 use super::{Fragment, PixelFormat, Rgba8888, Shader};
 use crate::geometry::{Corner, Face, VertexShader};
 use crate::math::Vec3;
@@ -24,12 +24,7 @@ impl<S: VertexShader> VertexShader for AlphaTest<S> {
 }
 
 impl<P: PixelFormat, S: Shader<Rgba8888>> Shader<P> for AlphaTest<S> {
-    const STEP: usize = S::STEP;
-
-    #[inline(always)]
-    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
-        self.shader.level(corners, area)
-    }
+    inner_steps!();
 
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
@@ -61,12 +56,7 @@ impl<S: VertexShader> VertexShader for ScreenDoor<S> {
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for ScreenDoor<S> {
-    const STEP: usize = S::STEP;
-
-    #[inline(always)]
-    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
-        self.shader.level(corners, area)
-    }
+    inner_steps!();
 
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {

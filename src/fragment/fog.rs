@@ -5,7 +5,7 @@
 //! a small table takes it to the amount of fog, fine where depth is coarse: beyond 15/16 of the depth range, and again
 //! beyond 255/256.
 
-use super::blend::inner_vertex_stage;
+use super::blend::{inner_steps, inner_vertex_stage};
 use super::{Fragment, PixelFormat, Shader};
 use crate::geometry::{Corner, Face, VertexShader};
 use crate::math::{ProjectionError, Scalar, Vec3, exp_negative};
@@ -189,12 +189,7 @@ impl<S: VertexShader> VertexShader for Fogged<'_, S> {
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for Fogged<'_, S> {
-    const STEP: usize = S::STEP;
-
-    #[inline(always)]
-    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
-        self.shader.level(corners, area)
-    }
+    inner_steps!();
 
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
