@@ -25,6 +25,6 @@ pub use micromath::FloatError;
 pub use precision::{DepthPrecision, PrecisionError};
 pub use projective::{ProjectionError, Projective};
 pub(crate) use reciprocal::SMALL_CORE;
-pub use reciprocal::{CoarseDivisor, Divisor, mul_high, mul_high_signed, reciprocal};
+pub use reciprocal::{CoarseDivisor, Divisor, ShortDivisor, mul_high, mul_high_signed, reciprocal};
 pub use root::isqrt;
 pub use vector::Vec3;

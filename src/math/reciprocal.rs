@@ -122,6 +122,50 @@ impl Divisor {
     }
 }
 
+/// [`Divisor`] for numbers below 2¹⁶.
+#[derive(Clone, Copy, Debug)]
+pub struct ShortDivisor {
+    shift: u32,
+    /// 2⁴⁷ / x of the divisor x, brought to 2³¹..2³², in 2¹⁵..=2¹⁶, and what is wrong with it: 2³¹ - x `reciprocal` / 2¹⁶,
+    /// below 2¹⁵·¹.
+    reciprocal: i32,
+    defect: i32,
+}
+
+impl ShortDivisor {
+    /// Of a number that is not 0.
+    ///
+    /// # Format
+    /// The table is within 2⁻⁹ where the reciprocal is near 2¹⁶, within 2⁻¹⁰ where it is near 2¹⁵; a step of Newton's squares
+    /// that, to 1/4 or 1/32 of a unit, and rounds by 1/2: times x16 below 2¹⁵·¹.
+    #[inline(always)]
+    pub const fn new(q: u32) -> Self {
+        let shift = q.leading_zeros() & 31;
+        let x16 = ((q << shift) >> 16) as i32;
+        let r = SEED[(x16 >> 7) as usize & 0xFF] as i32;
+        let defect = (1_i32 << 31).wrapping_sub(x16.wrapping_mul(r));
+        let r = r + ((r * (defect >> 8) + (1 << 22)) >> 23);
+        Self { shift, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(x16.wrapping_mul(r)) }
+    }
+
+    /// How many bits bring the divisor to 2³¹..2³².
+    #[inline(always)]
+    pub const fn shift(&self) -> u32 {
+        self.shift
+    }
+
+    /// `n` / q · 2^(47 - shift), 47 - shift fractional bits.
+    ///
+    /// # Format
+    /// |n| ≤ 2¹⁴: the result is below 2³⁰ and a little. Off by less than 0.55 for rounding and 2⁻³¹·⁸ of itself, and then rounded
+    /// down.
+    #[inline(always)]
+    pub const fn divide(&self, n: i32) -> i32 {
+        let h = n.wrapping_mul(self.reciprocal);
+        h.wrapping_add(((h + (1 << 15)) >> 16).wrapping_mul(self.defect) >> 15)
+    }
+}
+
 /// Out of line, for cores that cannot count them.
 #[cold]
 #[inline(never)]
@@ -205,6 +249,22 @@ mod tests {
         std::println!("worst {worst:.2} units; coarse: {worst_coarse:.2} beside 2^-18");
         assert!(worst < 6.0, "worst {worst} units");
         assert!(worst_coarse < 192.0, "worst {worst_coarse} units beside 2^-18 of the quotient");
+    }
+
+    #[test]
+    fn short_divisors_are_within_their_bound() {
+        let mut worst = (0_f64, 0_f64);
+        for q in 1..1 << 16 {
+            let divisor = ShortDivisor::new(q);
+            assert!(divisor.defect.abs() < 35_100, "{q}: {}", divisor.defect);
+            for n in [1, 255, 256, 5000, 16_383, 16_384, (q % 16_384) as i32].into_iter().flat_map(|n| [n, -n]) {
+                let exact = f64::from(n) / f64::from(q) * 2f64.powi(47 - divisor.shift() as i32);
+                let off = f64::from(divisor.divide(n)) - exact;
+                let part = exact.abs() * 2f64.powf(-31.8);
+                worst = (worst.0.min(off + part), worst.1.max(off - part));
+            }
+        }
+        assert!(worst.0 > -1.55 && worst.1 < 0.55, "{worst:?}");
     }
 
     /// Worst relative error over `count` inputs from a multiplicative walk, against exact division.

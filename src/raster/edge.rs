@@ -1,27 +1,27 @@
-//! An edge of a triangle, walked from row to row: exact, with one addition and one comparison a row.
+//! An edge of a triangle, walked from row to row: exact, with one addition of 64 bits a row.
 //!
 //! The pixel where a span begins, or the one behind its end, is the first whose centre is not left of the edge:
 //! pixel = ⌈(x - 128) / 256⌉ with x the edge's position, in 1/256 px, at the height of the row's pixel centres. A centre
 //! exactly on the edge belongs to the span to its right, which is the top-left rule for edges that are not horizontal.
+//!
+//! With dy the edge's height, that position in pixels is a multiple of 1 / D, D = 256 dy. So a value that is too small by more
+//! than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the exact one. D is below 2³², and 45
+//! bits behind the point leave room for the rounding of a step in each of 4,096 rows.
 
-use crate::geometry::small;
+use crate::math::{ShortDivisor, mul_high_signed, reciprocal};
 use core::num::NonZeroU32;
 
 /// The state of an edge at a row.
-///
-/// With the edge from `a` down to `b`, D = 256 (b.y - a.y), and N / D = (x - 128) / 256 its exact position in pixels at
-/// this row, `pixel` = ⌈N / D⌉ and `error` = `pixel` D - N, in 0..D. A row down, N grows by 256 dx = q D + 256 r.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    pixel: i32,
-    error: u32,
-    /// ⌊dx / dy⌋.
-    quotient: i32,
-    /// 256 (dx mod dy).
-    remainder: u32,
-    /// D, at most 2³² - 2⁹.
-    denominator: u32,
+    /// One pixel more than the position, less something within what the module's documentation allows; 45 fractional bits.
+    x: i64,
+    /// What a row adds.
+    step: i64,
 }
+
+/// Fractional bits of positions.
+const FRACTION: u32 = 45;
 
 /// `num / den` and the remainder, for quotients below 2³².
 #[inline]
@@ -50,99 +50,124 @@ fn long_divide(high: u32, low: u32, den: NonZeroU32) -> (u32, u32) {
     (low, rest)
 }
 
+/// ⌊num 2^`bits` / den⌋ modulo 2⁶⁴, |num| < 2⁴⁹, 0 < den < 2²⁵, bit by bit.
+#[cold]
+#[inline(never)]
+fn quotient(num: i64, den: u32, bits: u32) -> i64 {
+    // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
+    let flip = num >> 63;
+    let mut word = ((num ^ flip) as u64) << 14;
+    let (mut rest, mut quotient) = (0_u32, 0_i64);
+    for bit in 0..50 + bits {
+        if bit == 50 {
+            word = flip as u64;
+        }
+        rest = rest << 1 | (word >> 63) as u32;
+        word = word << 1 | (flip & 1) as u64;
+        quotient <<= 1;
+        if rest >= den {
+            rest -= den;
+            quotient |= 1;
+        }
+    }
+    quotient ^ flip
+}
+
+/// `value` 2^`by`, 0 < `by` < 32, in two words.
+#[inline(always)]
+const fn shifted(value: i32, by: u32) -> i64 {
+    // Shifts of 64 bits are calls on small cores.
+    ((value >> (32 - by)) as i64) << 32 | ((value as u32) << by) as i64
+}
+
 impl Edge {
     /// An edge with nothing to walk.
-    pub const EMPTY: Self = Self { pixel: 0, error: 0, quotient: 0, remainder: 0, denominator: 0 };
+    pub const EMPTY: Self = Self { x: 0, step: 0 };
 
     /// The edge from `a` down to `b`, at pixel row `row`; `EMPTY` unless `b` is below `a`.
     ///
     /// # Format
     /// Points (x, y) in 24.8, at most ±32,767 px; `row` is one the edge crosses: 0 ≤ p < dy for its height p below `a`.
-    /// dx = q dy + r with 0 ≤ r < dy ≤ 2²⁴, and the position at p is a.x + p q + p r / dy: p q stays within dx ± dy,
-    /// p r below 2⁴⁸ (and mostly below 2³²).
+    ///
+    /// The usual edge is below 32 px high, 64 px wide, and dx dy is below 2²⁶. Its step is h 2^(z - 2) with the z of
+    /// [`ShortDivisor`], and 1 / D, more than 2^(z + 5), is 128 units of h. On up to 32 rows, h is off by less than 0.55 a row
+    /// and 5 in all, cut by less than 1 a row; the start is cut by 1: the sum is in -56..=23, and what is taken off at the
+    /// start makes that -104..=-25.
     #[inline(never)]
     pub fn new(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let p = 256 * row + 128 - a.1;
-        // The usual edge: short, not flatter than 1 in 4, and begun at its upper end.
-        if small(dx) & (dy > 0) & ((dy as u32) < 1 << 15) & ((p as u32) < 256) && dx.abs() <= 4 * dy {
-            return Self::walked(a.0, dx, dy, p);
+        let usual = (((dx + (1 << 14)) as u32) < 1 << 15) & (((dy - 1) as u32) < (1 << 13) - 1);
+        if !usual || dx.unsigned_abs() * dy as u32 >= 1 << 26 {
+            return Self::large(a.0, dx, dy, p);
         }
-        Self::divided(a, b, row)
+        let divisor = ShortDivisor::new(dy as u32);
+        let by = divisor.shift() - 2;
+        let h = divisor.divide(dx);
+        let step = shifted(h, by);
+        let along = if p < 256 {
+            // p h / 2⁸ in two products that fit.
+            shifted((h >> 8) * p + (((h & 0xFF) * p) >> 8) - 48, by)
+        } else {
+            ((step * i64::from(p)) >> 8) - shifted(48, by)
+        };
+        Self { x: Self::start(a.0) + along, step }
     }
 
-    /// [`new`](Self::new) without a division, for quotients of -4..=4.
+    /// A position of 24.8, and half a pixel: of the centre that it is compared with, and the one pixel more.
+    #[inline(always)]
+    const fn start(x: i32) -> i64 {
+        ((x + 128) as i64) << (FRACTION - 8)
+    }
+
+    /// [`new`](Self::new) for other edges: the quotient in two digits, the second of which divides the rest that the first one
+    /// leaves.
     ///
     /// # Format
-    /// |dx|, dy < 2¹⁵, so D < 2²³; p < 2⁸. N is taken from the pixel of `x`: (-128..128) dy + p dx, below 2²³ + 2²².
-    #[inline]
-    fn walked(x: i32, dx: i32, dy: i32, p: i32) -> Self {
-        let (mut quotient, mut r) = (0, dx);
-        while r < 0 {
-            r += dy;
-            quotient -= 1;
+    /// For |dx| < 2¹⁷, dy < 2¹⁹. dx / dy is h 2^(z - 43), h below 2²⁹ and off by less than 2; the rest, in units of 2^(z - 43), is
+    /// below 2 dy, so 32 bits hold it although its terms do not fit; its quotient is cut to 2^(2z - 82), or to a unit. 2¹¹ rows
+    /// lose less than 2¹² units, or 2^(z - 12) where edges are lower: within the half of 1 / D that is taken off. |p step|
+    /// is below |dx| 2⁴⁵.
+    #[inline(never)]
+    fn large(x: i32, dx: i32, dy: i32, p: i32) -> Self {
+        if dy <= 0 {
+            return Self::EMPTY;
         }
-        while r >= dy {
-            r -= dy;
-            quotient += 1;
+        if dx.unsigned_abs() >> 17 != 0 || dy >> 19 != 0 {
+            return Self::huge(x, dx, dy, p);
         }
-        let d = dy << 8;
-        let mut pixel = x >> 8;
-        let mut error = (128 - (x & 0xFF)) * dy - p * dx;
-        while error < 0 {
-            error += d;
-            pixel += 1;
-        }
-        while error >= d {
-            error -= d;
-            pixel -= 1;
-        }
-        Self { pixel, error: error as u32, quotient, remainder: (r << 8) as u32, denominator: d as u32 }
+        let z = dy.leading_zeros();
+        let inverse = reciprocal((dy as u32) << z);
+        let h = mul_high_signed(dx << 12, inverse);
+        let rest = (dx << (43 - z)).wrapping_sub(h.wrapping_mul(dy));
+        let second = i64::from(mul_high_signed(rest << 8, inverse)) << 20 >> (57 - 2 * (z as i32)).max(0);
+        let step = (i64::from(h) << (z + 2)).wrapping_add(second);
+        Self { x: Self::start(x).wrapping_add((step.wrapping_mul(p.into())) >> 8) - (1 << (z + 4)), step }
     }
 
-    /// [`new`](Self::new) for any edge.
+    /// The same by long division, rounded down.
+    ///
+    /// # Format
+    /// |p dx| < 2⁴⁸. The start and up to 4,095 steps are each too small by less than 1; with the 1 that is taken off that is
+    /// within 1 / D = 2³⁷ / dy, more than 2¹³. A step of an edge with two rows, dy > 2⁸, is below 2⁶²; others are not taken.
+    #[cold]
     #[inline(never)]
-    fn divided(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
-        let dx = b.0 - a.0;
-        let Ok(dy) = u32::try_from(b.1 - a.1) else {
-            return Self::EMPTY;
-        };
-        let Some(dy) = NonZeroU32::new(dy) else {
-            return Self::EMPTY;
-        };
-        // Floor division of a signed number: for dx < 0, ⌊dx / dy⌋ = -⌊(-dx - 1) / dy⌋ - 1 = !⌊!dx / dy⌋.
-        let sign = dx >> 31;
-        let magnitude = (dx ^ sign) as u32;
-        let (quotient, rest) = (magnitude / dy, magnitude % dy);
-        let quotient = quotient as i32 ^ sign;
-        let r = if sign < 0 { dy.get() - 1 - rest } else { rest };
-
-        let p = 256 * row + 128 - a.1;
-        let (k, fraction) = divide(u64::from(p as u32) * u64::from(r), dy);
-        // N / dy = whole + fraction / dy, all in 1/256 px.
-        let whole = a.0 - 128 + p.wrapping_mul(quotient).wrapping_add(k as i32);
-        let pixel = (whole + 255 + i32::from(fraction > 0)) >> 8;
-        // In 0..D although the terms may wrap: the missing part of a pixel, 0..=256 of 1/256 px, less the fraction.
-        let error = dy.get().wrapping_mul((256 * pixel - whole) as u32).wrapping_sub(fraction);
-        Self { pixel, error, quotient, remainder: r << 8, denominator: dy.get() << 8 }
+    fn huge(x: i32, dx: i32, dy: i32, p: i32) -> Self {
+        let step = quotient(dx.into(), dy as u32, FRACTION);
+        let along = quotient(i64::from(p) * i64::from(dx), dy as u32, FRACTION - 8);
+        Self { x: Self::start(x).wrapping_add(along) - 1, step }
     }
 
     /// The first pixel whose centre is on the edge or to the right of it.
     #[inline]
     pub const fn pixel(&self) -> i32 {
-        self.pixel
+        (self.x >> FRACTION) as i32
     }
 
     /// Goes one row down.
     #[inline]
     pub const fn step(&mut self) {
-        self.pixel = self.pixel.wrapping_add(self.quotient);
-        let (error, borrow) = self.error.overflowing_sub(self.remainder);
-        self.error = error;
-        if borrow {
-            self.error = error.wrapping_add(self.denominator);
-            self.pixel = self.pixel.wrapping_add(1);
-        }
+        self.x = self.x.wrapping_add(self.step);
     }
 }
 
@@ -162,31 +187,77 @@ mod tests {
             let num = (u64::from(den.get()) * (next() >> (32 + next() % 32))) + next() % u64::from(den.get());
             let expected = ((num / u64::from(den.get())) as u32, (num % u64::from(den.get())) as u32);
             assert_eq!(long_divide((num >> 32) as u32, num as u32, den), expected, "{num} / {den}");
+            let (num, den) = (next() as i64 >> (15 + next() % 48), (next() >> (39 + next() % 24)) as u32 | 1);
+            for bits in [37, 45] {
+                let expected = ((i128::from(num) << bits).div_euclid(i128::from(den))) as i64;
+                assert_eq!(quotient(num, den, bits), expected, "{num} << {bits} / {den}");
+            }
         }
     }
 
+    /// ⌈N / D⌉ in exact arithmetic.
+    fn exact(a: (i32, i32), b: (i32, i32), row: i32) -> i32 {
+        let [ax, ay, bx, by] = [a.0, a.1, b.0, b.1].map(i128::from);
+        let (dx, dy) = (bx - ax, by - ay);
+        let n = (ax - 128) * dy + (256 * i128::from(row) + 128 - ay) * dx;
+        -((-n).div_euclid(256 * dy)) as i32
+    }
+
+    /// Any size, any start; ends on pixel centres, where positions are whole pixels, as often as not.
     #[test]
-    fn walking_and_dividing_give_the_same_edge() {
-        let mut state = 7_u32;
+    fn each_row_begins_at_the_exact_pixel() {
+        let mut state = 7_u64;
         let mut next = |low: i32, high: i32| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            low + ((u64::from(state >> 8) * (high - low) as u64) >> 24) as i32
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            low + (((state >> 32) * (high - low) as u64) >> 32) as i32
         };
-        let mut walked = 0;
-        for _ in 0..200_000 {
-            let size = [3, 100, 2000, 32_768][next(0, 4) as usize];
-            let a = (next(-100_000, 100_000), next(-100_000, 100_000));
-            let b = (a.0 + next(-size, size), a.1 + next(1, size));
-            let row = (a.1 + 127) >> 8;
-            if 256 * row + 128 >= b.1 {
+        let (mut rows, mut usual) = (0, 0);
+        for case in 0..150_000 {
+            let size = [3, 100, 600, 2000, 8192, 32_768, 200_000, (1 << 23) - 1][next(0, 8) as usize];
+            let height = [3, 100, 600, 2000, 8192, 32_768, 200_000, (1 << 23) - 1][next(0, 8) as usize];
+            let grid = if next(0, 2) == 0 { 1 } else { 128 };
+            let snap = |v: i32| v / grid * grid;
+            let far = (1 << 23) - 1;
+            let near = next(1, 24);
+            let a = (snap(next(-far >> near, far >> near)), snap(next(-far >> near, far >> near)));
+            let b = (
+                snap((a.0 + next(-size, size)).clamp(-far, far)),
+                snap((a.1 + next(1, height + 1)).min(far)),
+            );
+            let (first, end) = ((a.1 + 127) >> 8, (b.1 + 127) >> 8);
+            if first >= end {
                 continue;
             }
-            let (dx, dy, p) = (b.0 - a.0, b.1 - a.1, 256 * row + 128 - a.1);
-            if dx.abs() <= 4 * dy {
-                walked += 1;
-                assert_eq!(Edge::walked(a.0, dx, dy, p), Edge::divided(a, b, row), "{a:?} {b:?}");
+            usual += u32::from(end - first > 1);
+            for start in [first, next(first, end)] {
+                let mut edge = Edge::new(a, b, start);
+                for row in start..end.min(start + 4096) {
+                    if row - start < 70 || next(0, 50) == 0 {
+                        rows += 1;
+                        assert_eq!(edge.pixel(), exact(a, b, row), "case {case}: {a:?} {b:?} row {row} from {start}");
+                    }
+                    edge.step();
+                }
             }
         }
-        assert!(walked > 50_000, "{walked}");
+        assert!(usual > 50_000 && rows > 1_000_000, "{usual} edges, {rows} rows");
+    }
+
+    /// The steepest and the flattest edges of the short way, where its bound is used up most.
+    #[test]
+    fn short_edges_are_exact_at_the_limits() {
+        for dy in (1..1 << 13).step_by(7).chain((1 << 13) - 40..1 << 13) {
+            let widest = ((1 << 26) / dy - 1).min((1 << 15) - 1);
+            for dx in [-widest, 1 - widest, -dy, -1, 0, 1, dy / 3, dy, widest / 2, widest - 1, widest] {
+                for ax in [-128, -1, 0, 5, 128] {
+                    let (a, b) = ((ax, 100), (ax + dx, 100 + dy));
+                    let mut edge = Edge::new(a, b, 0);
+                    for row in 0..(b.1 + 127) >> 8 {
+                        assert_eq!(edge.pixel(), exact(a, b, row), "{a:?} {b:?} row {row}");
+                        edge.step();
+                    }
+                }
+            }
+        }
     }
 }
