@@ -69,6 +69,9 @@ pub trait DepthTest: Copy {
         length: usize,
     ) -> &'d mut [Self::Stored];
 
+    /// What is stored of all pixels. `nothing` is for tests that need none.
+    fn whole<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [Self::Stored];
+
     /// Compares `z` with the stored depth.
     fn passes(self, z: u16, stored: Self::Stored) -> bool;
 
@@ -103,6 +106,11 @@ impl DepthTest for LessWrite {
     }
 
     #[inline(always)]
+    fn whole<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+        depths
+    }
+
+    #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
         z < stored
     }
@@ -130,6 +138,11 @@ impl DepthTest for NoDepth {
     #[inline(always)]
     fn stored<'d>(_: &'d mut [u16], nothing: &'d mut [(); MAX_SPAN], _: usize, length: usize) -> &'d mut [()] {
         nothing.get_mut(..length).unwrap_or_default()
+    }
+
+    #[inline(always)]
+    fn whole<'d>(_: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [()] {
+        nothing
     }
 
     #[inline(always)]
@@ -182,6 +195,11 @@ impl DepthTest for AnyDepth {
     #[inline(always)]
     fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
         part(depths, start, length)
+    }
+
+    #[inline(always)]
+    fn whole<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+        depths
     }
 
     #[inline(always)]

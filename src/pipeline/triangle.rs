@@ -1,10 +1,10 @@
 //! Stages 8 to 11: a triangle on the screen → pixels.
 
 use super::{State, Target};
-use crate::fragment::{AnyDepth, Compare, DepthState, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps};
+use crate::fragment::{AnyDepth, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
 use crate::geometry::{Correction, ScreenVertex, Varyings, signed_area};
 use crate::output::Framebuffer;
-use crate::raster::{Gradients, PixelRect, Trapezoids, homogenize, widen};
+use crate::raster::{Gradients, PixelRect, PlaneEquation, Trapezoids, homogenize, widen};
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F, S> {
@@ -56,61 +56,97 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let words = self.shader.prepare(&mut corner, &d_dx);
         let steps = Steps { dz_dx: depth.dx, d_dx, words, side: self.state.side(area), level, correction };
 
-        // 9. Spans, between two edges from row to row.
-        let columns = &self.clip.x;
+        // 9. Spans, in a loop of its own for each kind of depth test.
+        let set_up = SetUp { v, area, face, depth, corner, d_dy, steps };
+        match self.test() {
+            DepthState::LESS => self.spans(&set_up, LessWrite),
+            DepthState::OFF => self.spans(&set_up, NoDepth),
+            other => self.spans(&set_up, AnyDepth::new(other)),
+        }
+    }
+
+    /// 9. Spans, between two edges from row to row.
+    #[inline(never)]
+    fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+        let SetUp { v, area, face, depth, corner, d_dy, steps } = set_up;
+        let columns = self.clip.x.clone();
         let width = usize::from(self.screen.0);
-        let test = self.test();
+        let first = self.target.rows.start;
         let framebuffer = &mut *self.target.framebuffer;
-        let mut nothing = [(); MAX_SPAN];
-        let mut parts = Trapezoids::new(v, area, &self.clip.y);
+        let together = framebuffer.rows(first as u32, width).is_some();
+        let mut nothing = [(); usize::MAX];
+        let mut parts = Trapezoids::new(v, *area, &self.clip.y);
         while let Some(rows) = parts.next() {
+            let (mut left, mut right) = (parts.left, parts.right);
             let mut y = rows.start;
-            // Column 0 of the row: where its depths are, and what is there; depth with the half that rounds.
-            let mut row = width.wrapping_mul((y - self.target.rows.start) as usize);
+            // What is at column 0 of the row; depth with the half that rounds.
             let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
-            let mut values = corner;
+            let mut values = *corner;
             for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
                 *value = value.wrapping_add(dy.wrapping_mul(y));
             }
             while y < rows.end {
-                let start = parts.left.pixel().max(columns.start);
-                let length = parts.right.pixel().min(columns.end) - start;
-                if length > 0 {
-                    let (column, length) = (start as usize, length as usize);
-                    let color = framebuffer.span(y as u32, column, length);
-                    let mut varyings = values;
-                    for (value, dx) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-                        *value = value.wrapping_add(dx.wrapping_mul(start));
-                    }
-                    let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
-                    // 10, 11. Depth test and fragments, in a loop of its own for each kind of test.
-                    let (steps, position) = (&steps, (start, y));
-                    if test == DepthState::OFF {
-                        let depth = nothing.get_mut(..color.len()).unwrap_or_default();
-                        let span = Fragments { color, depth, z, varyings, steps, position };
-                        self.shader.span(face, span, NoDepth);
-                    } else {
-                        // As many depths as pixels, should the framebuffer be narrower than the screen.
-                        let Some(depth) = self.target.depth.get_mut(row + column..) else { return };
-                        let Some(depth) = depth.get_mut(..color.len()) else { return };
-                        let span = Fragments { color, depth, z, varyings, steps, position };
-                        match test {
-                            DepthState { compare: Compare::Less, write: true } => {
-                                self.shader.span(face, span, LessWrite);
-                            }
-                            other => self.shader.span(face, span, AnyDepth::new(other)),
+                // All rows where they lie one after the other in memory, as their depths do, otherwise one.
+                let mut row = width.wrapping_mul((y - first) as usize);
+                let mut depths = D::whole(self.target.depth, &mut nothing);
+                let mut end = rows.end;
+                let colors = if together {
+                    framebuffer.rows(first as u32, width).unwrap_or_default()
+                } else {
+                    depths = depths.get_mut(row..).unwrap_or_default();
+                    (row, end) = (0, y + 1);
+                    framebuffer.row(y as u32)
+                };
+                // Of one length, so that a span in one of them is known to be in the other.
+                let length = colors.len().min(depths.len());
+                let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else { return };
+                while y < end {
+                    let start = left.pixel().max(columns.start);
+                    let past = right.pixel().min(columns.end);
+                    if start < past {
+                        let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
+                        let (Some(color), Some(depth)) = (part(colors, at, length), part(depths, at, length)) else {
+                            return;
+                        };
+                        let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
+                        let mut varyings = values;
+                        for (value, dx) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                            *value = value.wrapping_add(dx.wrapping_mul(start));
                         }
+                        // 10, 11. Depth test and fragments.
+                        let span = Fragments { color, depth, z, varyings, steps, position: (start, y) };
+                        self.shader.span(*face, span, test);
                     }
-                }
-                parts.left.step();
-                parts.right.step();
-                y += 1;
-                row += width;
-                z = z.wrapping_add_signed(depth.dy);
-                for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
-                    *value = value.wrapping_add(*dy);
+                    left.step();
+                    right.step();
+                    y += 1;
+                    row = row.wrapping_add(width);
+                    z = z.wrapping_add_signed(depth.dy);
+                    for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
+                        *value = value.wrapping_add(*dy);
+                    }
                 }
             }
+            (parts.left, parts.right) = (left, right);
         }
     }
+}
+
+/// A triangle, set up.
+struct SetUp<'a, V: Varyings> {
+    v: &'a [ScreenVertex; 3],
+    area: i64,
+    face: u32,
+    depth: PlaneEquation,
+    /// Varyings at the screen's corner, and how they change.
+    corner: V,
+    d_dy: V,
+    steps: Steps<V>,
+}
+
+/// `length` elements from `start` on, if there are: in two steps, each a comparison; a range is checked at both ends at once,
+/// which costs twice that.
+#[inline(always)]
+fn part<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]> {
+    slice.get_mut(start..)?.get_mut(..length)
 }
