@@ -1,7 +1,7 @@
 //! Clip space → screen: divide, and snap to 1/256 px.
 
 use super::clip::ClipVertex;
-use crate::math::{Scalar, mul_high, mul_high_signed, reciprocal};
+use crate::math::{Divisor, Scalar, mul_high, reciprocal};
 use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Point;
 
@@ -55,22 +55,24 @@ pub(crate) fn small(difference: i32) -> bool {
 /// x, y must lie in the guard band and z in 0..=w (all are clamped, for what rounding in the clipper may leave over).
 ///
 /// # Format
-/// Positions: within 2⁻⁶ of 1/256 px, plus rounding to nearest. w is normalized to 2³¹..2³² (cut bits: 2⁻³¹), x to
-/// 2⁻²⁵ of w, and x / w = x' · (2⁶³ / w') with a reciprocal good to 2⁻²⁹: on the guard band, 2²³ steps, 2⁻⁶ in all.
+/// Positions: within 2⁻⁴ of 1/256 px, plus rounding to nearest. w is normalized to 2³¹..2³² (cut bits: 2⁻³¹), x to
+/// 2⁻²⁵ of w, and x / w, on the guard band 2²³ steps, comes in units of 2⁻⁷ and is off by less than 5.
 /// Depth: 65,535 z / w rounded to nearest, within 2⁻¹² of a step besides.
 #[inline(never)]
 pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     if v.w <= 0 {
         return None;
     }
-    // w' = w 2^shift / 2³². x' keeps 7 bits of headroom for the guard band: x 2^shift / 2³⁹, below 2³¹.
+    // w' = w 2^shift / 2³². x' keeps 7 bits of headroom for the guard band: x 2^shift / 2³⁹, at most w' / 2.
     let shift = v.w.leading_zeros();
+    let scaled = |c: i64| (((c << (shift - 1)) as u64) >> 31) as u32;
+    let w = scaled(v.w);
+    let half = i64::from(w >> 1);
     let position = |c: i64| {
         let c = if shift >= 39 { c << (shift - 39) } else { c >> (39 - shift) };
-        c.clamp(-0x7FFF_FF00, 0x7FFF_FF00) as i32
+        c.clamp(-half, half) as i32
     };
-    let depth = |c: i64| (((c << (shift - 1)) as u64) >> 31) as u32;
-    let placed = divide(position(v.x), position(v.y), depth(v.z.clamp(0, v.w)), depth(v.w));
+    let placed = divide(position(v.x), position(v.y), scaled(v.z.clamp(0, v.w)), w);
     Some(ScreenVertex { x: placed.x.clamp(-LIMIT, LIMIT), y: placed.y.clamp(-LIMIT, LIMIT), ..placed })
 }
 
@@ -97,17 +99,13 @@ pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
 }
 
 /// The division itself: x and y with 7 bits less than w and z, w in 2³¹..2³².
-#[inline(never)]
+#[inline(always)]
 fn divide(x: i32, y: i32, z: u32, w: u32) -> ScreenVertex {
-    let inv_w = reciprocal(w);
-    let position = |c: i32| (mul_high_signed(c, inv_w) + 64) >> 7;
-    ScreenVertex { x: position(x), y: position(y), z: depth(z, inv_w) }
-}
-
-/// 65,535 z / w rounded to nearest, from z and 2⁶³ / w in the scale that puts w into 2³¹..2³².
-#[inline]
-fn depth(z: u32, inv_w: u32) -> u16 {
-    sixteen_bits(mul_high(z, inv_w))
+    let divisor = Divisor::of_normalized(w);
+    let position = |c: i32| (divisor.divide_normalized(c) + 64) >> 7;
+    // Of half of z, so that it is not above half of w; the 2 is in the middle of what the quotient may be off by.
+    let half = divisor.divide_normalized((z >> 1) as i32);
+    ScreenVertex { x: position(x), y: position(y), z: sixteen_bits(2 * (half + 2).max(0) as u32) }
 }
 
 /// How depth grows with distance.

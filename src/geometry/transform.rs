@@ -7,7 +7,7 @@
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
-use crate::math::{Projective, Vec3};
+use crate::math::{Projective, SMALL_CORE, Vec3};
 use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
@@ -36,7 +36,8 @@ pub struct Transform {
 /// # Format
 /// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵. The short path, for
 /// quantized positions q, computes Σ m q / 2¹⁵, with m = 2¹⁵ high + low below 2³⁰, low in -2¹⁴..2¹⁴ but for the last: that
-/// entry, for q = 1, is the translation, and its low half has the half that rounds.
+/// entry, for q = 1, is the translation, and its low half has the half that rounds. Cores that multiply to 64 bits have all of m
+/// in `high`, and that entry in `translation`.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
     high: [i32; 4],
@@ -205,14 +206,15 @@ impl Transform {
                 if short {
                     // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
                     let m = ((e + (1 << 9)) >> 10) as i32;
-                    *low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
-                    *high = (m - *low) >> 15;
+                    *low = if SMALL_CORE { ((m & 0x7FFF) ^ 0x4000) - 0x4000 } else { 0 };
+                    *high = if SMALL_CORE { (m - *low) >> 15 } else { m };
                 }
             }
             if short {
                 let t = (row.translation + (1 << 9)) >> 10;
                 row.high[3] = (t >> 15) as i32;
                 row.low[3] = (t & 0x7FFF) as i32 + (1 << 14);
+                row.translation = t + (1 << 14);
             }
         }
         Self { rows, short, scale: view_scale - shift, uniform: None }
@@ -329,8 +331,15 @@ impl Transform {
     fn apply_short(&self, q: [i16; 3]) -> [i32; 4] {
         let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
         let apply = |row: &Row| {
-            let ([hx, hy, hz, ht], [lx, ly, lz, lt]) = (row.high, row.low);
-            hx * x + hy * y + hz * z + ht + ((lx * x + ly * y + lz * z + lt) >> 15)
+            if SMALL_CORE {
+                let ([hx, hy, hz, ht], [lx, ly, lz, lt]) = (row.high, row.low);
+                hx * x + hy * y + hz * z + ht + ((lx * x + ly * y + lz * z + lt) >> 15)
+            } else {
+                // The same, of whole entries.
+                let [mx, my, mz, _] = row.high;
+                let product = |m: i32, q: i32| i64::from(m) * i64::from(q);
+                ((row.translation + product(mx, x) + product(my, y) + product(mz, z)) >> 15) as i32
+            }
         };
         // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
         let [a, b, c, d] = &self.rows;

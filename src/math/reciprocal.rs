@@ -94,14 +94,35 @@ impl Divisor {
     #[inline(always)]
     pub fn new(q: u32) -> Self {
         let shift = q.leading_zeros() & 31;
-        let x = q << shift;
+        Self { shift, ..Self::of_normalized(q << shift) }
+    }
+
+    /// [`new`](Self::new) of a number with its top bit set.
+    #[inline(always)]
+    pub fn of_normalized(x: u32) -> Self {
         let r0 = SEED[(x >> 23) as usize & 0xFF] as i32;
         // The first step of `reciprocal`, rounded to 16 bits.
         let x16 = (x >> 16) + ((x >> 15) & 1);
         let defect = (1_i32 << 31).wrapping_sub((x16 as i32).wrapping_mul(r0));
         let r = r0 + ((r0 * (defect >> 8) + (1 << 22)) >> 23);
         let product = (x >> 16).wrapping_mul(r as u32).wrapping_add((x & 0xFFFF).wrapping_mul(r as u32) >> 16);
-        Self { shift, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(product as i32) }
+        Self { shift: 0, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(product as i32) }
+    }
+
+    /// `n` / x as 1.31 for an `x` with its top bit set.
+    ///
+    /// # Format
+    /// |n| ≤ x / 2. Off by -5..=3 units: less than 1 each for two cuts, 1.1 for the rounding of the correction's factor, half of
+    /// one for the defect's, and twice the second of two steps' 2⁻²⁹·⁸.
+    #[inline(always)]
+    pub const fn divide_normalized(&self, n: i32) -> i32 {
+        let h = if SMALL_CORE {
+            let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
+            (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32)
+        } else {
+            ((n as i64 * self.reciprocal as i64) >> 16) as i32
+        };
+        h.wrapping_add(((h.wrapping_add(1 << 15)) >> 16).wrapping_mul(self.defect) >> 15)
     }
 
     /// `n` / q as 1.31.
@@ -240,6 +261,10 @@ mod tests {
                 for n in [n as i32, -(n as i32)] {
                     let exact = f64::from(n) / f64::from(x) * 2f64.powi(31);
                     worst = worst.max((f64::from(Divisor::new(x).divide(n)) - exact).abs());
+                    if x >> 31 != 0 {
+                        let off = f64::from(Divisor::of_normalized(x).divide_normalized(n)) - exact;
+                        assert!(off > -5.0 && off < 3.0, "{n} / {x}: {off} units");
+                    }
                     let coarse = CoarseDivisor::near(x, &mut (random() % 32)).divide(n / 2);
                     let exact = f64::from(n / 2) / f64::from(x) * 2f64.powi(31);
                     worst_coarse = worst_coarse.max((f64::from(coarse) - exact).abs() - exact.abs() / 262_144.0);
