@@ -9,6 +9,7 @@ mod assembly;
 mod canvas;
 mod lines;
 mod overlay;
+mod scan;
 mod stroke;
 mod triangle;
 
@@ -132,7 +133,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         };
         let stride = S::WORDS + VERTEX_WORDS;
         if self.phase == Phase::Replay {
-            if self.find_draw(fingerprint(&state, mesh, mvp, &self.viewport, stride), stride) {
+            let print = fingerprint(&state, mesh, mvp, &self.viewport, stride);
+            if self.find_draw(print, mesh.vertex_count(), stride) {
                 self.replay(&state, shader);
             }
         } else {
@@ -156,7 +158,10 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             let mut assembly = Assembly { scene: self, state, mesh, shader, transform: &transform, clip };
             match mesh.data().hierarchy {
                 Some(nodes) if !S::DISPLACES => assembly.parts(nodes, mvp),
-                _ => assembly.triangles(0..mesh.triangle_count()),
+                _ => {
+                    assembly.shade_all();
+                    assembly.triangles(0..mesh.triangle_count());
+                }
             }
             self.end_draw();
         }
@@ -245,9 +250,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Finds the records of a draw; `false` if they are not those of this one.
     #[inline(never)]
-    fn find_draw(&mut self, print: u32, stride: usize) -> bool {
+    fn find_draw(&mut self, print: u32, vertices: usize, stride: usize) -> bool {
         let draw = self.count_draw();
-        let found = self.changed.is_none() && self.records.replay_draw(print, stride);
+        let found = self.changed.is_none() && self.records.replay_draw(print, vertices, stride);
         if !found {
             self.changed = self.changed.or(Some(draw));
         }

@@ -34,14 +34,25 @@ impl ScreenVertex {
 /// Differences of 24.8 coordinates are at most 2²⁴, the result below 2⁵⁰ in units of 2⁻¹⁶ px². Exact.
 #[inline]
 pub fn signed_area(a: &ScreenVertex, b: &ScreenVertex, c: &ScreenVertex) -> i64 {
-    let (bx, by) = (b.x - a.x, b.y - a.y);
-    let (cx, cy) = (c.x - a.x, c.y - a.y);
+    area_of((a.x, a.y), (b.x, b.y), (c.x, c.y))
+}
+
+/// [`signed_area`] of points.
+#[inline]
+pub(crate) fn area_of(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> i64 {
+    let (bx, by) = (b.0 - a.0, b.1 - a.1);
+    let (cx, cy) = (c.0 - a.0, c.1 - a.1);
     // 2¹⁵ · 2¹⁵ · 2 needs no more than 32 bits: nearly all triangles.
     if small(bx) & small(by) & small(cx) & small(cy) {
         i64::from(bx * cy - cx * by)
     } else {
-        i64::from(bx) * i64::from(cy) - i64::from(cx) * i64::from(by)
+        wide_area((bx, by), (cx, cy))
     }
+}
+
+#[inline(never)]
+fn wide_area(b: (i32, i32), c: (i32, i32)) -> i64 {
+    i64::from(b.0) * i64::from(c.1) - i64::from(c.0) * i64::from(b.1)
 }
 
 /// Whether a difference of coordinates is within -2¹⁵..2¹⁵, so that products of two fit 31 bits.

@@ -6,6 +6,9 @@
 //! │ lists │ header │ vertices │ header │ vertices    │ →             ←  │  2   │  1   │  0   │
 //! └───────┴────────┴──────────┴────────┴─────────────┴───────────── ─ ─ ┴──────┴──────┴──────┘
 //! ```
+//! Vertices are the positions of all of them, two words each, then the varyings of all of them; what the clipper adds comes
+//! behind, position and varyings together.
+//!
 //! A strip's word holds the first and the last of its triangles, which are linked through their records in drawing
 //! order. Each triangle is in one list at a time: recorded into the list of the topmost strip it touches, it moves on to
 //! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
@@ -55,13 +58,19 @@ impl Slot {
         }
     }
 
-    /// From the first words of a vertex.
+    /// x and y of a vertex on the screen.
     #[inline]
-    pub(crate) fn read(words: &[u32]) -> Self {
-        match words {
-            [a, b, ..] => Self([*a, *b]),
-            _ => Self([UNSHADED, 0]),
-        }
+    pub(crate) const fn xy(self) -> (i32, i32) {
+        (self.0[0] as i32 >> 8, self.0[1] as i32 >> 8)
+    }
+
+    /// Of a vertex that is not shaded yet.
+    pub(crate) const NONE: Self = Self([UNSHADED, 0]);
+
+    /// From its words.
+    #[inline]
+    pub(crate) const fn from_words(words: [u32; 2]) -> Self {
+        Self(words)
     }
 
     #[inline]
@@ -77,6 +86,12 @@ impl Slot {
     /// Outcode of a vertex that is not on the screen, 0 of one that is.
     pub(crate) const fn outcode(self) -> u8 {
         if self.is_on_screen() { 0 } else { self.0[0] as u8 }
+    }
+
+    /// Its words.
+    #[inline]
+    pub(crate) const fn words(self) -> [u32; 2] {
+        self.0
     }
 
     /// First words below it, taken as signed, are not those of vertices on the screen; y of others begins their second.
@@ -112,10 +127,12 @@ pub(crate) struct Layout {
     front: usize,
     /// Triangles recorded.
     triangles: u16,
-    /// The current draw: its header, its first vertex, how many there are, and words a vertex.
+    /// The current draw: its header, the first word of its vertices, how many the mesh has, how many the clipper added, and
+    /// words a vertex.
     header: usize,
     vertices: usize,
-    vertex_count: u16,
+    count: usize,
+    added: u16,
     stride: usize,
     overflow: bool,
     /// Replay: the strip, its next triangle, and where the last one that moves on was put in the next strip's list.
@@ -175,15 +192,12 @@ impl<'a> Records<'a> {
             return false;
         }
         self.layout.vertices = start;
-        self.layout.vertex_count = vertices as u16;
+        self.layout.count = vertices;
+        self.layout.added = 0;
         self.layout.stride = stride;
         self.layout.front = start + needs;
-        if let Some(block) = self.words.get_mut(start..start + needs) {
-            for vertex in block.chunks_mut(stride) {
-                if let Some(word) = vertex.first_mut() {
-                    *word = UNSHADED;
-                }
-            }
+        for place in self.positions_mut() {
+            *place = Slot::NONE.0;
         }
         true
     }
@@ -224,57 +238,76 @@ impl<'a> Records<'a> {
         self.layout.stride > 0
     }
 
+    /// What is known of where the vertices of the current draw are: words of [`Slot`]s.
+    #[inline]
+    pub(crate) fn positions(&self) -> &[[u32; 2]] {
+        let start = self.layout.vertices;
+        let words = self.words.get(start..start + 2 * self.layout.count).unwrap_or_default();
+        bytemuck::try_cast_slice(words).unwrap_or_default()
+    }
+
+    fn positions_mut(&mut self) -> &mut [[u32; 2]] {
+        let start = self.layout.vertices;
+        let words = self.words.get_mut(start..start + 2 * self.layout.count).unwrap_or_default();
+        bytemuck::try_cast_slice_mut(words).unwrap_or_default()
+    }
+
     /// What is known of where a vertex of the current draw is.
     #[inline]
     pub(crate) fn slot(&self, index: usize) -> Slot {
-        Slot::read(self.words.get(self.layout.vertices + index * self.layout.stride..).unwrap_or_default())
+        self.positions().get(index).map_or(Slot::NONE, |words| Slot(*words))
     }
 
-    /// The words of the current draw's vertices, and how many each has.
+    /// The places of all vertices, and those of their varyings.
+    pub(crate) fn vertices_mut(&mut self) -> (&mut [[u32; 2]], &mut [u32]) {
+        let start = self.layout.vertices;
+        let words = self.words.get_mut(start..start + self.layout.count * self.layout.stride).unwrap_or_default();
+        let Some((positions, varyings)) = words.split_at_mut_checked(2 * self.layout.count) else {
+            return Default::default();
+        };
+        (bytemuck::try_cast_slice_mut(positions).unwrap_or_default(), varyings)
+    }
+
+    /// The first words of a vertex's position and of its varyings.
     #[inline]
-    pub(crate) fn vertices(&self) -> (&[u32], usize) {
-        (self.words.get(self.layout.vertices..).unwrap_or_default(), self.layout.stride)
+    fn places(&self, index: usize) -> (usize, usize) {
+        let Layout { vertices, count, stride, .. } = *self.layout;
+        if index < count {
+            (vertices + VERTEX * index, vertices + VERTEX * count + (stride - VERTEX) * index)
+        } else {
+            let start = vertices + stride * index;
+            (start, start + VERTEX)
+        }
     }
 
-    /// The words of a vertex of the current draw.
-    #[inline]
-    fn vertex(&self, index: usize) -> &[u32] {
-        let start = self.layout.vertices + index * self.layout.stride;
-        self.words.get(start..).and_then(|rest| rest.get(..self.layout.stride)).unwrap_or_default()
-    }
-
-    #[inline]
-    fn vertex_mut(&mut self, index: usize) -> &mut [u32] {
-        let start = self.layout.vertices + index * self.layout.stride;
-        self.words.get_mut(start..start + self.layout.stride).unwrap_or_default()
-    }
-
-    /// Packs a vertex of the current draw.
+    /// Packs a vertex of the current draw, which has places for vertices.
     #[inline]
     pub(crate) fn keep<S: VertexShader>(&mut self, index: usize, slot: Slot, varyings: &S::Varyings) {
-        if let [a, b, rest @ ..] = self.vertex_mut(index) {
-            [*a, *b] = slot.0;
-            S::store(varyings, rest);
-        }
+        let (position, rest) = self.places(index);
+        let [a, b] = slot.0;
+        self.set(position, a);
+        self.set(position + 1, b);
+        S::store(varyings, self.words.get_mut(rest..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default());
     }
 
     /// Where a vertex of the current draw is on the screen, and its varyings.
     #[inline(never)]
     pub(crate) fn corner<S: VertexShader>(&self, index: u16) -> (ScreenVertex, S::Varyings) {
-        let words = self.vertex(usize::from(index));
-        (Slot::read(words).screen(), S::load(words.get(VERTEX..).unwrap_or_default()))
+        let (position, rest) = self.places(index.into());
+        let words = self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default();
+        (Slot([self.get(position), self.get(position + 1)]).screen(), S::load(words))
     }
 
     /// Adds a vertex to the current draw, for a polygon that the clipper made.
     pub(crate) fn push_vertex(&mut self) -> u16 {
-        let index = self.layout.vertex_count;
-        if self.free() < self.layout.stride || index == u16::MAX {
+        let index = self.layout.count + usize::from(self.layout.added);
+        if self.free() < self.layout.stride || index >= usize::from(u16::MAX) {
             self.layout.overflow = true;
             return 0;
         }
         self.layout.front += self.layout.stride;
-        self.layout.vertex_count += 1;
-        index
+        self.layout.added += 1;
+        index as u16
     }
 
     /// Records a triangle whose topmost strip, in this band, is `strip`.
@@ -322,10 +355,11 @@ impl<'a> Records<'a> {
     }
 
     /// Finds the next recorded draw; `false` if it is not the one that was recorded.
-    pub(crate) fn replay_draw(&mut self, fingerprint: u32, stride: usize) -> bool {
+    pub(crate) fn replay_draw(&mut self, fingerprint: u32, vertices: usize, stride: usize) -> bool {
         let header = self.layout.front;
         self.layout.header = header;
         self.layout.vertices = self.get(header + 1) as usize;
+        self.layout.count = vertices;
         self.layout.stride = stride;
         self.layout.front = self.get(header + 3) as usize;
         self.get(header) == fingerprint

@@ -1,16 +1,16 @@
 //! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
 
+use super::scan::{Culling, Scan, Seen, Stop};
 use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, ClipCorner, ClipVertex, Corner, Correction, DISTANCE_CORNERS, DistancePolygon, Face, InverseW,
-    MAX_DISTANCES, Mesh, Outcode, Part, Placed, ScreenVertex, Side, Transform, Varyings, VertexShader, View,
-    clip_triangle, cut_by_distance, inverse_w, signed_area, weighted,
+    MAX_DISTANCES, Mesh, Outcode, Part, Placed, ScreenVertex, Transform, Varyings, VertexShader, View, clip_triangle,
+    cut_by_distance, inverse_w, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
-use crate::raster::{PixelRect, pixel_rect};
-use crate::{Cull, Winding};
+use crate::raster::PixelRect;
 use core::ops::Range;
 
 /// The corners of a clipped polygon on the screen, with their weights.
@@ -28,15 +28,6 @@ pub(super) struct Assembly<'s, 'a, F, S> {
     pub(super) transform: &'s Transform,
     /// Pixels that can be drawn in this phase.
     pub(super) clip: PixelRect,
-}
-
-impl State {
-    /// The side that a triangle of this signed area, which is not 0, shows.
-    #[inline]
-    pub(super) fn side(&self, area: i64) -> Side {
-        // y points down here: a positive area goes with the clock.
-        if (area > 0) == (self.front == Winding::CounterClockwise) { Side::Back } else { Side::Front }
-    }
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
@@ -60,51 +51,88 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Takes triangles one by one.
     #[inline(never)]
     pub(super) fn triangles(&mut self, numbers: Range<usize>) {
-        for number in numbers {
-            if self.scene.records.overflowed() {
-                return;
+        let first = numbers.start;
+        let mut scan = Scan::new(self.mesh, numbers);
+        let culling = self.state.culling();
+        while !self.scene.records.overflowed() {
+            match scan.next(&self.scene.records, culling, &self.clip, self.scene.stats) {
+                Stop::Seen => self.seen(&scan.seen, scan.corners, scan.number),
+                Stop::Unplaced => self.unplaced(culling, scan.corners, scan.number),
+                Stop::End => break,
             }
-            // 2. Primitive assembly.
-            let Some(corners) = self.mesh.triangle(number) else {
-                return;
-            };
-            self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
-            if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
-                self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
-                continue;
-            }
-            // 3. Vertex stage, once a vertex where there are records to keep the result.
-            // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
+        }
+        self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add((scan.next_number() - first) as u32);
+    }
+
+    /// A triangle that has a vertex which is not shaded yet, or not on the screen.
+    #[inline(never)]
+    fn unplaced(&mut self, culling: Culling, corners: [u16; 3], number: usize) {
+        if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            return;
+        }
+        // 3. Vertex stage, once a vertex where there are records to keep the result.
+        // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
+        let [i, j, k] = corners;
+        let (a, b, c) = (self.slot(i), self.slot(j), self.slot(k));
+        if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
+            return self.clip([a.outcode(), b.outcode(), c.outcode()], corners, number);
+        }
+        let v = [a.screen(), b.screen(), c.screen()];
+        if let Some(seen) = Seen::new(v, culling, &self.clip, self.scene.stats) {
+            self.shade_face(&seen, corners, number);
+        }
+    }
+
+    /// A triangle on the screen.
+    #[inline]
+    fn seen(&mut self, seen: &Seen, corners: [u16; 3], number: usize) {
+        if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            return;
+        }
+        self.shade_face(seen, corners, number);
+    }
+
+    #[inline(never)]
+    fn shade_face(&mut self, seen: &Seen, corners: [u16; 3], number: usize) {
+        let word = self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)));
+        if self.scene.phase == Phase::Record {
+            self.record(seen.row, corners, word);
+        } else {
             let [i, j, k] = corners;
-            let (a, b, c) = (self.slot(usize::from(i)), self.slot(usize::from(j)), self.slot(usize::from(k)));
-            if a.is_on_screen() & b.is_on_screen() & c.is_on_screen() {
-                self.screen_triangle(&[a.screen(), b.screen(), c.screen()], corners, number);
-            } else {
-                self.clip([a.outcode(), b.outcode(), c.outcode()], corners, number);
+            self.draw(seen, &[self.varyings(i), self.varyings(j), self.varyings(k)], word);
+        }
+    }
+
+    /// The vertex stage's result for a vertex, from the records if it is there.
+    #[inline]
+    fn slot(&mut self, index: u16) -> Slot {
+        let slot = self.scene.records.slot(index.into());
+        if slot.is_unshaded() { self.shade(index.into()) } else { slot }
+    }
+
+    /// 3. Vertex stage, of all vertices, where there are records to keep the result.
+    #[inline(never)]
+    pub(super) fn shade_all(&mut self) {
+        let Self { scene, mesh, shader, transform, .. } = self;
+        let stage = VertexStage { mesh, shader: *shader, transform };
+        let (places, varyings) = scene.records.vertices_mut();
+        scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
+        for (index, place) in places.iter_mut().enumerate() {
+            *place = stage.place(index).words();
+            if S::WORDS > 0 {
+                let words = varyings.get_mut(index * S::WORDS..).and_then(|rest| rest.get_mut(..S::WORDS));
+                S::store(&stage.varyings(index), words.unwrap_or_default());
             }
         }
     }
 
     /// The vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
-    #[inline]
-    fn slot(&mut self, index: usize) -> Slot {
-        let slot = self.scene.records.slot(index);
-        if slot.is_unshaded() { self.shade(index) } else { slot }
-    }
-
     #[inline(never)]
     pub(super) fn shade(&mut self, index: usize) -> Slot {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
-        let placed = if S::DISPLACES {
-            self.transform.place_clip(&self.transformed(index))
-        } else {
-            self.transform.place(&self.mesh.data().positions, index)
-        };
-        let mut slot = Slot::new(&placed);
-        if S::CLIP_DISTANCES > 0 && self.distances(index).iter().any(|distance| *distance < 0) {
-            // Off the screen, but not by the planes that outcodes know.
-            slot = Slot::new(&Placed::Outside(Outcode(slot.outcode())));
-        }
+        let slot = self.stage().place(index);
         if self.scene.records.has_vertices() {
             let varyings = self.vertex(index);
             self.scene.records.keep::<S>(index, slot, &varyings);
@@ -113,12 +141,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline]
+    fn stage(&self) -> VertexStage<'_, S> {
+        VertexStage { mesh: self.mesh, shader: self.shader, transform: self.transform }
+    }
+
+    #[inline]
     pub(super) fn transformed(&self, index: usize) -> ClipVertex {
-        if S::DISPLACES {
-            self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
-        } else {
-            self.transform.vertex(&self.mesh.data().positions, index)
-        }
+        self.stage().transformed(index)
     }
 
     /// 4. Clipping, of a triangle with a vertex outside.
@@ -145,14 +174,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let (mut fan, mut inverse_ws) = (Fan::<N>::new(), InverseWs::<S>::default());
         self.cut(corners, codes, part, &mut fan, &mut inverse_ws);
         self.fan(&fan, &inverse_ws, corners, number);
-    }
-
-    /// The clip distances of a vertex; those that the shader does not have are 0.
-    #[inline]
-    fn distances(&self, index: usize) -> [i32; MAX_DISTANCES] {
-        let mut distances = self.shader.distances(&Corner::new(self.mesh, index));
-        distances.iter_mut().skip(S::CLIP_DISTANCES).for_each(|distance| *distance = 0);
-        distances
     }
 
     /// Whether one of the cull distances is negative at all corners.
@@ -190,7 +211,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         clip_triangle(triangle, codes, part, |corner| {
             let _ = polygon.push_back(*corner);
         });
-        let [i, j, k] = [i, j, k].map(|index| self.distances(usize::from(index)));
+        let [i, j, k] = [i, j, k].map(|index| self.stage().distances(usize::from(index)));
         for ((i, j), k) in i.into_iter().zip(j).zip(k).take(S::CLIP_DISTANCES) {
             cut_by_distance(&mut polygon, [i, j, k]);
         }
@@ -221,14 +242,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             }
             if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k.wrapping_sub(1))) {
                 let v = [first.0, last.0, *placed];
-                if let Some((row, side)) = self.visible(&v) {
+                if let Some(seen) = Seen::new(v, self.state.culling(), &self.clip, self.scene.stats) {
+                    let side = self.state.side(seen.area);
                     let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
                     if recording {
-                        self.record(row, [indices[0], indices[1], index], word);
+                        self.record(seen.row, [indices[0], indices[1], index], word);
                     } else {
                         // What the records would keep of the varyings, so that the picture is the same without them.
                         let at = |k, weights| rounded::<S>(&at(k, weights));
-                        self.draw(&v, &[at(0, &first.1), at(k - 1, &last.1), at(k, weights)], word);
+                        self.draw(&seen, &[at(0, &first.1), at(k - 1, &last.1), at(k, weights)], word);
                     }
                 }
             }
@@ -239,24 +261,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// The varyings of a vertex, with 1 / w if they take it.
     #[inline]
     pub(super) fn vertex(&self, index: usize) -> S::Varyings {
-        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
-        if S::Varyings::PERSPECTIVE > 0 {
-            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
-        }
-        varyings
-    }
-
-    /// A triangle that needs no clipping.
-    #[inline]
-    fn screen_triangle(&mut self, v: &[ScreenVertex; 3], corners: [u16; 3], number: usize) {
-        let Some((row, side)) = self.visible(v) else { return };
-        let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
-        if self.scene.phase == Phase::Record {
-            self.record(row, corners, word);
-        } else {
-            let [i, j, k] = corners;
-            self.draw(v, &[self.varyings(i), self.varyings(j), self.varyings(k)], word);
-        }
+        self.stage().varyings(index)
     }
 
     fn varyings(&self, index: u16) -> S::Varyings {
@@ -266,48 +271,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         rounded::<S>(&self.vertex(usize::from(index)))
     }
 
-    /// 5. Culling by winding, and of what covers no pixel: in which row the triangle can begin, and which side it shows.
-    #[inline(never)]
-    fn visible(&mut self, v: &[ScreenVertex; 3]) -> Option<(u16, Side)> {
-        let stats = &mut *self.scene.stats;
-        let area = signed_area(&v[0], &v[1], &v[2]);
-        let side = self.state.side(area);
-        let culled = match self.state.cull {
-            Cull::Back => side == Side::Back,
-            Cull::Front => side == Side::Front,
-            Cull::None => false,
-        };
-        if area == 0 {
-            stats.degenerate = stats.degenerate.wrapping_add(1);
-            return None;
-        }
-        if culled {
-            stats.back_facing = stats.back_facing.wrapping_add(1);
-            return None;
-        }
-        let rect = pixel_rect(v);
-        if rect.is_empty() {
-            stats.empty = stats.empty.wrapping_add(1);
-            return None;
-        }
-        let rect = rect.intersection(&self.clip);
-        if rect.is_empty() {
-            stats.outside = stats.outside.wrapping_add(1);
-            return None;
-        }
-        stats.drawn = stats.drawn.wrapping_add(1);
-        Some((rect.y.start as u16, side))
-    }
-
     /// 6, 7. Into the records, to the strip it begins in.
-    fn record(&mut self, row: u16, corners: [u16; 3], face: u32) {
-        let row = i32::from(row) - self.scene.band.start;
+    fn record(&mut self, row: i32, corners: [u16; 3], face: u32) {
+        let row = row - self.scene.band.start;
         let strip = self.scene.strips.of(row as u32);
         self.scene.records.push_triangle(corners, face, strip);
     }
 
-    fn draw(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
-        self.scene.painter(&self.clip, self.state, self.shader).triangle(v, varyings, face);
+    fn draw(&mut self, seen: &Seen, varyings: &[S::Varyings; 3], face: u32) {
+        self.scene.painter(&self.clip, self.state, self.shader).triangle_of_area(&seen.v, seen.area, varyings, face);
     }
 }
 
@@ -319,4 +291,56 @@ pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let words = words.get_mut(..S::WORDS).unwrap_or_default();
     S::store(varyings, words);
     S::load(words)
+}
+
+/// What the vertex stage works with.
+struct VertexStage<'s, S> {
+    mesh: &'s Mesh<'s>,
+    shader: &'s S,
+    transform: &'s Transform,
+}
+
+impl<S: VertexShader> VertexStage<'_, S> {
+    /// Where a vertex is: transformed, projected and snapped, or its outcode.
+    #[inline(always)]
+    fn place(&self, index: usize) -> Slot {
+        let placed = if S::DISPLACES {
+            self.transform.place_clip(&self.transformed(index))
+        } else {
+            self.transform.place(&self.mesh.data().positions, index)
+        };
+        let slot = Slot::new(&placed);
+        if S::CLIP_DISTANCES > 0 && self.distances(index).iter().any(|distance| *distance < 0) {
+            // Off the screen, but not by the planes that outcodes know.
+            return Slot::new(&Placed::Outside(Outcode(slot.outcode())));
+        }
+        slot
+    }
+
+    #[inline]
+    fn transformed(&self, index: usize) -> ClipVertex {
+        if S::DISPLACES {
+            self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
+        } else {
+            self.transform.vertex(&self.mesh.data().positions, index)
+        }
+    }
+
+    /// The clip distances of a vertex; those that the shader does not have are 0.
+    #[inline]
+    fn distances(&self, index: usize) -> [i32; MAX_DISTANCES] {
+        let mut distances = self.shader.distances(&Corner::new(self.mesh, index));
+        distances.iter_mut().skip(S::CLIP_DISTANCES).for_each(|distance| *distance = 0);
+        distances
+    }
+
+    /// The varyings of a vertex, with 1 / w if they take it.
+    #[inline]
+    fn varyings(&self, index: usize) -> S::Varyings {
+        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+        if S::Varyings::PERSPECTIVE > 0 {
+            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
+        }
+        varyings
+    }
 }

@@ -90,7 +90,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let kind = (count as u32).rotate_left(8) ^ !(reach as u32);
         let print = fingerprint(state, vertices, mvp, &self.viewport, stride) ^ kind;
         if self.phase == Phase::Replay {
-            return self.find_draw(print, stride) && !self.records.is_draw_empty();
+            return self.find_draw(print, vertices.vertex_count(), stride) && !self.records.is_draw_empty();
         }
         self.count_draw();
         let recording = self.phase == Phase::Record;
@@ -181,14 +181,13 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     /// below them. Many lines are passed over in each strip, so this is a loop of its own.
     #[inline(never)]
     fn next_near(&self, lines: &Lines<'_>, mut number: usize, top: i32, bottom: i32) -> Option<(usize, [u16; 2])> {
-        let (words, stride) = self.scene.records.vertices();
+        let positions = self.scene.records.positions();
         // Coordinates have 24 bits; those of vertices that are not on the screen are the least there are.
         let (top, bottom) = (top.max(-(1 << 23)) << 8, (bottom.min((1 << 23) - 1) << 8) | 0xFF);
         loop {
             let [i, j] = lines.line(number)?;
-            let (at, to) = (usize::from(i) * stride, usize::from(j) * stride);
-            let (Some(x), Some(to_x)) = (words.get(at), words.get(to)) else { return Some((number, [i, j])) };
-            let (Some(y), Some(to_y)) = (words.get(at + 1), words.get(to + 1)) else { return Some((number, [i, j])) };
+            let ends = (positions.get(usize::from(i)), positions.get(usize::from(j)));
+            let (Some([x, y]), Some([to_x, to_y])) = ends else { return Some((number, [i, j])) };
             let (y, to_y) = (*y as i32, *to_y as i32);
             if !((y < top && to_y < top) || (y > bottom && to_y > bottom)) {
                 return Some((number, [i, j]));

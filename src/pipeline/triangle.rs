@@ -23,13 +23,18 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     }
 
     /// Draws a triangle.
-    #[inline(never)]
+    #[inline]
     pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
-        // 8. Plane equations of depth and varyings; from here on, values are those at the screen's corner.
         let area = signed_area(&v[0], &v[1], &v[2]);
-        if area == 0 {
-            return;
+        if area != 0 {
+            self.triangle_of_area(v, area, varyings, face);
         }
+    }
+
+    /// Draws a triangle, whose signed area is given and not 0.
+    #[inline(never)]
+    pub(super) fn triangle_of_area(&mut self, v: &[ScreenVertex; 3], area: i64, varyings: &[S::Varyings; 3], face: u32) {
+        // 8. Plane equations of depth and varyings; from here on, values are those at the screen's corner.
         let gradients = Gradients::new(v, area, self.screen);
         let mut depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
         if !self.state.bias.is_none() {

@@ -1,0 +1,195 @@
+//! Stages 2 and 5: a mesh's triangles one after the other, without those that cannot be seen. The same code for all shaders.
+
+use super::{Cull, State, Winding};
+use crate::geometry::{Mesh, ScreenVertex, Side, Topology, area_of};
+use crate::output::{Records, Slot, Stats};
+use crate::raster::{PixelRect, pixel_rect};
+use core::ops::Range;
+use core::slice::ChunksExact;
+
+/// Where a walk over triangles is, and the last one it found.
+pub(super) struct Scan<'m> {
+    mesh: &'m Mesh<'m>,
+    /// Those to come, if the mesh is an indexed list.
+    list: ChunksExact<'m, u16>,
+    next: usize,
+    end: usize,
+    /// Number and vertices of the triangle that was found.
+    pub(super) number: usize,
+    pub(super) corners: [u16; 3],
+    /// Where it is, if all its vertices are on the screen.
+    pub(super) seen: Seen,
+}
+
+/// A triangle on the screen that may have pixels.
+#[derive(Clone, Copy)]
+pub(super) struct Seen {
+    pub(super) v: [ScreenVertex; 3],
+    /// Twice the signed area; not 0.
+    pub(super) area: i64,
+    /// The first row it can have a pixel in.
+    pub(super) row: i32,
+}
+
+/// What a walk stopped at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// A triangle that may be seen.
+    Seen,
+    /// One with a vertex that is not shaded yet, or not on the screen.
+    Unplaced,
+    /// There are no more.
+    End,
+}
+
+/// Which areas are those of faces that are left out.
+#[derive(Clone, Copy)]
+pub(super) struct Culling {
+    positive: bool,
+    negative: bool,
+}
+
+impl State {
+    /// The side that a triangle of this signed area, which is not 0, shows.
+    #[inline]
+    pub(super) fn side(&self, area: i64) -> Side {
+        // y points down here: a positive area goes with the clock.
+        if (area > 0) == (self.front == Winding::CounterClockwise) { Side::Back } else { Side::Front }
+    }
+
+    /// Which faces are left out.
+    pub(super) fn culling(&self) -> Culling {
+        let culled = |area| match self.cull {
+            Cull::Back => self.side(area) == Side::Back,
+            Cull::Front => self.side(area) == Side::Front,
+            Cull::None => false,
+        };
+        Culling { positive: culled(1), negative: culled(-1) }
+    }
+}
+
+impl Culling {
+    #[inline]
+    fn leaves_out(self, area: i64) -> bool {
+        (self.positive & (area > 0)) | (self.negative & (area < 0))
+    }
+}
+
+impl Seen {
+    /// Nothing yet.
+    pub(super) const NONE: Self = Self { v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
+
+    /// 5. Culling by winding, and of what covers no pixel of `clip`.
+    #[inline(never)]
+    pub(super) fn new(v: [ScreenVertex; 3], culling: Culling, clip: &PixelRect, stats: &mut Stats) -> Option<Self> {
+        let [a, b, c] = &v;
+        let area = area_of((a.x, a.y), (b.x, b.y), (c.x, c.y));
+        if culling.leaves_out(area) {
+            stats.back_facing = stats.back_facing.wrapping_add(1);
+            return None;
+        }
+        let mut seen = Self { v, area, row: 0 };
+        if seen.has_pixels(clip, stats) { Some(seen) } else { None }
+    }
+
+    /// Whether it may have pixels in `clip`, and in which row the first.
+    #[inline]
+    fn has_pixels(&mut self, clip: &PixelRect, stats: &mut Stats) -> bool {
+        if self.area == 0 {
+            stats.degenerate = stats.degenerate.wrapping_add(1);
+            return false;
+        }
+        let rect = pixel_rect(&self.v);
+        if rect.is_empty() {
+            stats.empty = stats.empty.wrapping_add(1);
+            return false;
+        }
+        let rect = rect.intersection(clip);
+        if rect.is_empty() {
+            stats.outside = stats.outside.wrapping_add(1);
+            return false;
+        }
+        stats.drawn = stats.drawn.wrapping_add(1);
+        self.row = rect.y.start;
+        true
+    }
+}
+
+impl<'m> Scan<'m> {
+    /// Of some triangles of a mesh.
+    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>) -> Self {
+        let indices = match mesh.data() {
+            data if data.topology == Topology::Triangles => data.indices,
+            _ => None,
+        };
+        let list = indices.and_then(|indices| indices.get(3 * numbers.start..3 * numbers.end));
+        let list = list.unwrap_or_default().chunks_exact(3);
+        Self {
+            mesh,
+            list,
+            next: numbers.start,
+            end: numbers.end.min(mesh.triangle_count()),
+            number: 0,
+            corners: [0; 3],
+            seen: Seen::NONE,
+        }
+    }
+
+    /// The number of the next triangle.
+    pub(super) const fn next_number(&self) -> usize {
+        self.next
+    }
+
+    /// Goes on to the next triangle that may be seen, or that has to be looked at.
+    #[inline(never)]
+    pub(super) fn next(
+        &mut self,
+        records: &Records<'_>,
+        culling: Culling,
+        clip: &PixelRect,
+        stats: &mut Stats,
+    ) -> Stop {
+        let vertices = records.positions();
+        let slot = |index: u16| vertices.get(usize::from(index)).map_or(Slot::NONE, |words| Slot::from_words(*words));
+        let mut list = self.list.clone();
+        let mut number = self.next;
+        let stop = loop {
+            // 2. Primitive assembly. The usual mesh by the shortest way.
+            let (i, j, k) = match list.next() {
+                Some([i, j, k]) => (*i, *j, *k),
+                _ => match self.other(number) {
+                    Some([i, j, k]) => (i, j, k),
+                    None => break Stop::End,
+                },
+            };
+            number += 1;
+            let (a, b, c) = (slot(i), slot(j), slot(k));
+            if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
+                self.corners = [i, j, k];
+                break Stop::Unplaced;
+            }
+            // 5. Culling by winding, as early as can be.
+            let area = area_of(a.xy(), b.xy(), c.xy());
+            if culling.leaves_out(area) {
+                stats.back_facing = stats.back_facing.wrapping_add(1);
+                continue;
+            }
+            self.corners = [i, j, k];
+            self.seen.v = [a.screen(), b.screen(), c.screen()];
+            self.seen.area = area;
+            if self.seen.has_pixels(clip, stats) {
+                break Stop::Seen;
+            }
+        };
+        self.list = list;
+        self.next = number;
+        self.number = number.wrapping_sub(1);
+        stop
+    }
+
+    /// The vertices of a triangle of any topology; none past the last.
+    #[inline(never)]
+    fn other(&self, number: usize) -> Option<[u16; 3]> {
+        if number < self.end { self.mesh.triangle(number) } else { None }
+    }
+}
