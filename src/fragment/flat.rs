@@ -3,37 +3,48 @@
 use super::dither::dithered_span;
 use super::fill::fill;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
-use crate::geometry::{Corner, Face, Light, VertexShader};
+use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
 
 /// Flat shading: each triangle in one colour, lit by its face normal.
 ///
 /// The colour is the shader's, or that of the provoking vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat {
-    light: Option<Light>,
-    /// That of the provoking vertex where there is none.
-    color: Option<[u8; 3]>,
+    paint: Paint,
+}
+
+/// Where a face's colour comes from.
+#[derive(Clone, Copy, Debug)]
+enum Paint {
+    /// One colour.
+    Color([u8; 3]),
+    /// One colour under a light.
+    Lit(Lit),
+    /// The provoking vertices' colours.
+    Colors,
+    /// The same under a light.
+    LitColors(Light),
 }
 
 impl Flat {
     /// A colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { light: Some(light), color: Some(channels(color.into())) }
+        Self { paint: Paint::Lit(light.on(channels(color.into()))) }
     }
 
     /// A colour without light.
     pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { light: None, color: Some(channels(color.into())) }
+        Self { paint: Paint::Color(channels(color.into())) }
     }
 
     /// The colours of the mesh's vertices as they are, the provoking one's a triangle.
     pub const fn colors_unlit() -> Self {
-        Self { light: None, color: None }
+        Self { paint: Paint::Colors }
     }
 
     /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
     pub const fn colors(light: Light) -> Self {
-        Self { light: Some(light), color: None }
+        Self { paint: Paint::LitColors(light) }
     }
 }
 
@@ -53,15 +64,16 @@ impl VertexShader for Flat {
     /// The colour, 8 bits a channel, blue lowest.
     #[inline]
     fn face(&self, face: &Face<'_>) -> u32 {
-        let color = self.color.unwrap_or_else(|| face.provoking().color());
-        let [r, g, b] = match &self.light {
-            Some(light) => {
-                let [r, g, b] = light.shade(color, face.normal());
-                [round(r), round(g), round(b)]
+        let [r, g, b] = match &self.paint {
+            Paint::Color([r, g, b]) => return u32::from_be_bytes([0, *r, *g, *b]),
+            Paint::Lit(lit) => lit.shade(face.normal()),
+            Paint::Colors => {
+                let [r, g, b] = face.provoking().color();
+                return u32::from_be_bytes([0, r, g, b]);
             }
-            None => color,
+            Paint::LitColors(light) => light.shade(face.provoking().color(), face.normal()),
         };
-        u32::from_be_bytes([0, r, g, b])
+        u32::from_be_bytes([0, round(r), round(g), round(b)])
     }
 }
 

@@ -66,7 +66,9 @@ pub struct Face<'a> {
 
 impl<'a> Face<'a> {
     pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3], side: Side) -> Self {
-        Self { mesh, triangle, corners, side }
+        // Taken apart: three halfwords are else a call to copy them.
+        let [a, b, c] = corners;
+        Self { mesh, triangle, corners: [a, b, c], side }
     }
 
     /// Which side is seen: faces that show their back are drawn if [`State::cull`](crate::State::cull) lets them, and may

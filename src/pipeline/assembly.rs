@@ -52,11 +52,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     pub(super) fn triangles(&mut self, numbers: Range<usize>) {
         let first = numbers.start;
-        let mut scan = Scan::new(self.mesh, numbers);
         let culling = self.state.culling();
+        if S::CULL_DISTANCES > 0 {
+            return self.triangles_by_distance(numbers, culling);
+        }
+        let mut scan = Scan::new(self.mesh, numbers);
         while !self.scene.records.overflowed() {
             match scan.next(&self.scene.records, culling, &self.clip, self.scene.stats) {
-                Stop::Seen => self.seen(&scan.seen, scan.corners, scan.number),
+                Stop::Seen => self.shade_face(&scan.seen, scan.corners, scan.number),
                 Stop::Unplaced => self.unplaced(culling, scan.corners, scan.number),
                 Stop::End => break,
             }
@@ -64,13 +67,25 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add((scan.next_number() - first) as u32);
     }
 
+    /// [`triangles`](Self::triangles) for shaders with cull distances, which come before all else.
+    fn triangles_by_distance(&mut self, numbers: Range<usize>, culling: Culling) {
+        for number in numbers {
+            let Some(corners) = self.mesh.triangle(number) else { return };
+            if self.scene.records.overflowed() {
+                return;
+            }
+            self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
+            if self.is_culled_by_distance(corners) {
+                self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            } else {
+                self.unplaced(culling, corners, number);
+            }
+        }
+    }
+
     /// A triangle that has a vertex which is not shaded yet, or not on the screen.
     #[inline(never)]
     fn unplaced(&mut self, culling: Culling, corners: [u16; 3], number: usize) {
-        if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
-            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
-            return;
-        }
         // 3. Vertex stage, once a vertex where there are records to keep the result.
         // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
         let [i, j, k] = corners;
@@ -85,15 +100,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     /// A triangle on the screen.
-    #[inline]
-    fn seen(&mut self, seen: &Seen, corners: [u16; 3], number: usize) {
-        if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
-            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
-            return;
-        }
-        self.shade_face(seen, corners, number);
-    }
-
     #[inline(never)]
     fn shade_face(&mut self, seen: &Seen, corners: [u16; 3], number: usize) {
         let word = self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)));

@@ -12,7 +12,7 @@
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::mul_high_signed;
+use crate::math::{leading_zeros, mul_high_signed};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -57,7 +57,7 @@ impl Gradients {
         let is_small = small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]);
         if is_small {
             let magnitude = (area as i32).unsigned_abs();
-            shift = magnitude.leading_zeros() as i32;
+            shift = leading_zeros(magnitude) as i32;
             reciprocal = crate::math::reciprocal(magnitude << shift);
         } else if medium(x[0]) & medium(x[1]) & medium(y[0]) & medium(y[1]) {
             // Areas up to 2³⁵, of which the upper 32 bits count: 2⁻³¹ is lost.
