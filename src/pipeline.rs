@@ -18,8 +18,8 @@ use crate::geometry::{
     Bounds, DepthRange, DepthScale, MAX_DISTANCES, Mesh, Positions, Transform, Varyings, View, Viewport,
 };
 use crate::math::Projective;
-use crate::output::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
-use crate::raster::{PixelRect, first_centre};
+use crate::output::{Framebuffer, Records, Stats, StripRows, TriangleRecord, VERTEX_WORDS};
+use crate::raster::PixelRect;
 use assembly::Assembly;
 pub use canvas::{Canvas, ScreenPoint};
 use core::ops::Range;
@@ -271,14 +271,11 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     fn replay<S: Shader<F::Format>>(&mut self, state: &State, shader: &S) {
         let end = self.target.rows.end;
         let clip = self.clip_rect(&self.target.rows);
-        while let Some(triangle) = self.records.replay_triangle() {
-            let [i, j, k] = triangle.corners;
-            let (a, b, c) = (self.records.corner::<S>(i), self.records.corner::<S>(j), self.records.corner::<S>(k));
-            if first_centre(a.0.y.max(b.0.y).max(c.0.y)) > end {
-                self.records.move_on(&triangle);
-            }
-            let v = [a.0, b.0, c.0];
-            self.painter(&clip, state, shader).triangle(&v, &[a.1, b.1, c.1], triangle.face);
+        while let Some(TriangleRecord { v, corners, face }) = self.records.replay_triangle(end) {
+            let [i, j, k] = corners;
+            let varyings = |index| self.records.varyings::<S>(index);
+            let varyings = [varyings(i), varyings(j), varyings(k)];
+            self.painter(&clip, state, shader).triangle(&v, &varyings, face);
         }
     }
 

@@ -13,7 +13,8 @@
 //! order. Each triangle is in one list at a time: recorded into the list of the topmost strip it touches, it moves on to
 //! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
 
-use crate::geometry::{Placed, ScreenVertex, VertexShader};
+use crate::geometry::{Placed, ScreenVertex, Varyings, VertexShader};
+use crate::raster::first_centre;
 
 /// No triangle.
 const NONE: u16 = u16::MAX;
@@ -105,12 +106,12 @@ impl Slot {
     }
 }
 
-/// A triangle in the records.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// A triangle from the records.
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct TriangleRecord {
+    pub(crate) v: [ScreenVertex; 3],
     pub(crate) corners: [u16; 3],
     pub(crate) face: u32,
-    number: u16,
 }
 
 /// The words, and where in them things are.
@@ -290,12 +291,21 @@ impl<'a> Records<'a> {
         S::store(varyings, self.words.get_mut(rest..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default());
     }
 
-    /// Where a vertex of the current draw is on the screen, and its varyings.
+    /// The varyings of a vertex of the current draw.
+    #[inline]
+    pub(crate) fn varyings<S: VertexShader>(&self, index: u16) -> S::Varyings {
+        if S::WORDS == 0 {
+            return S::Varyings::ZERO;
+        }
+        let (_, rest) = self.places(index.into());
+        S::load(self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
+    }
+
+    /// Where a vertex is that the clipper added.
     #[inline(never)]
-    pub(crate) fn corner<S: VertexShader>(&self, index: u16) -> (ScreenVertex, S::Varyings) {
-        let (position, rest) = self.places(index.into());
-        let words = self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default();
-        (Slot([self.get(position), self.get(position + 1)]).screen(), S::load(words))
+    fn added(&self, index: u16) -> Slot {
+        let (position, _) = self.places(index.into());
+        Slot([self.get(position), self.get(position + 1)])
     }
 
     /// Adds a vertex to the current draw, for a polygon that the clipper made.
@@ -370,22 +380,34 @@ impl<'a> Records<'a> {
         self.layout.front == self.layout.vertices
     }
 
-    /// The next triangle of the current draw in this strip.
-    pub(crate) fn replay_triangle(&mut self) -> Option<TriangleRecord> {
+    /// The next triangle of the current draw in this strip, which ends at row `end`. If it reaches beyond, it moves on to the next
+    /// strip.
+    #[inline(never)]
+    pub(crate) fn replay_triangle(&mut self, end: i32) -> Option<TriangleRecord> {
         let number = self.layout.next;
         if number == NONE || u32::from(number) >= self.get(self.layout.header + 2) {
             return None;
         }
-        let at = self.triangle_at(number);
-        let (a, b) = (self.get(at), self.get(at + 1));
-        self.layout.next = (b >> 16) as u16;
-        Some(TriangleRecord { corners: [a as u16, (a >> 16) as u16, b as u16], face: self.get(at + 2), number })
+        let Some([a, b, face, ..]) = self.words.get(self.triangle_at(number)..) else { return None };
+        let (corners, face) = ([*a as u16, (*a >> 16) as u16, *b as u16], *face);
+        self.layout.next = (*b >> 16) as u16;
+        let positions = self.positions();
+        let screen = |index: u16| match positions.get(usize::from(index)) {
+            Some(words) => Slot(*words).screen(),
+            None => self.added(index).screen(),
+        };
+        let v = [screen(corners[0]), screen(corners[1]), screen(corners[2])];
+        if first_centre(v[0].y.max(v[1].y).max(v[2].y)) > end {
+            self.move_on(number);
+        }
+        Some(TriangleRecord { v, corners, face })
     }
 
     /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
     ///
     /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
-    pub(crate) fn move_on(&mut self, triangle: &TriangleRecord) {
+    #[inline(never)]
+    fn move_on(&mut self, number: u16) {
         let strip = self.layout.strip + 1;
         if strip >= self.layout.lists {
             return;
@@ -393,16 +415,16 @@ impl<'a> Records<'a> {
         let list = self.get(strip);
         let mut before = self.layout.moved;
         let mut after = if before == NONE { list as u16 } else { self.linked(before) };
-        while after < triangle.number {
+        while after < number {
             before = after;
             after = self.linked(after);
         }
-        self.link(triangle.number, after);
+        self.link(number, after);
         if before == NONE {
-            self.set(strip, list & 0xFFFF_0000 | u32::from(triangle.number));
+            self.set(strip, list & 0xFFFF_0000 | u32::from(number));
         } else {
-            self.link(before, triangle.number);
+            self.link(before, number);
         }
-        self.layout.moved = triangle.number;
+        self.layout.moved = number;
     }
 }

@@ -272,7 +272,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     fn varyings(&self, index: u16) -> S::Varyings {
         if self.scene.records.has_vertices() {
-            return self.scene.records.corner::<S>(index).1;
+            return self.scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.vertex(usize::from(index)))
     }

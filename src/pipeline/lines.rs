@@ -245,7 +245,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
 
     fn varyings(&self, index: u16) -> S::Varyings {
         if self.scene.records.has_vertices() {
-            return self.scene.records.corner::<S>(index).1;
+            return self.scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.shader.vertex(&Corner::new(self.vertices, usize::from(index))))
     }
