@@ -4,7 +4,7 @@ use super::{State, Target};
 use crate::fragment::{AnyDepth, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
 use crate::geometry::{Correction, ScreenVertex, Varyings, signed_area};
 use crate::output::Framebuffer;
-use crate::raster::{Gradients, PixelRect, PlaneEquation, Trapezoids, homogenize, widen};
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, homogenize, widen};
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F, S> {
@@ -33,7 +33,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle, whose signed area is given and not 0.
     #[inline(never)]
-    pub(super) fn triangle_of_area(&mut self, v: &[ScreenVertex; 3], area: i64, varyings: &[S::Varyings; 3], face: u32) {
+    pub(super) fn triangle_of_area(
+        &mut self,
+        v: &[ScreenVertex; 3],
+        area: i64,
+        varyings: &[S::Varyings; 3],
+        face: u32,
+    ) {
         // 8. Plane equations of depth and varyings; from here on, values are those at the screen's corner.
         let gradients = Gradients::new(v, area, self.screen);
         let mut depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
@@ -80,59 +86,59 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let framebuffer = &mut *self.target.framebuffer;
         let together = framebuffer.rows(first as u32, width).is_some();
         let mut nothing = [(); usize::MAX];
-        let mut parts = Trapezoids::new(v, *area, &self.clip.y);
-        while let Some(rows) = parts.next() {
-            let (mut left, mut right) = (parts.left, parts.right);
-            let mut y = rows.start;
-            // What is at column 0 of the row; depth with the half that rounds.
-            let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
-            let mut values = *corner;
-            for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
-                *value = value.wrapping_add(dy.wrapping_mul(y));
+        let outline = Outline::new(v, *area, &self.clip.y);
+        let (mut left, mut right) = (outline.left, outline.right);
+        // What is at column 0 of the row; depth with the half that rounds.
+        let mut y = outline.top;
+        let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
+        let mut values = *corner;
+        for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
+            *value = value.wrapping_add(dy.wrapping_mul(y));
+        }
+        while y < outline.end {
+            if y == outline.bend {
+                (left, right) = outline.below(left, right);
             }
-            while y < rows.end {
-                // All rows where they lie one after the other in memory, as their depths do, otherwise one.
-                let mut row = width.wrapping_mul((y - first) as usize);
-                let mut depths = D::whole(self.target.depth, &mut nothing);
-                let mut end = rows.end;
-                let colors = if together {
-                    framebuffer.rows(first as u32, width).unwrap_or_default()
-                } else {
-                    depths = depths.get_mut(row..).unwrap_or_default();
-                    (row, end) = (0, y + 1);
-                    framebuffer.row(y as u32)
-                };
-                // Of one length, so that a span in one of them is known to be in the other.
-                let length = colors.len().min(depths.len());
-                let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else { return };
-                while y < end {
-                    let start = left.pixel().max(columns.start);
-                    let past = right.pixel().min(columns.end);
-                    if start < past {
-                        let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
-                        let (Some(color), Some(depth)) = (part(colors, at, length), part(depths, at, length)) else {
-                            return;
-                        };
-                        let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
-                        let mut varyings = values;
-                        for (value, dx) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-                            *value = value.wrapping_add(dx.wrapping_mul(start));
-                        }
-                        // 10, 11. Depth test and fragments.
-                        let span = Fragments { color, depth, z, varyings, steps, position: (start, y) };
-                        self.shader.span(*face, span, test);
+            // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
+            let mut row = width.wrapping_mul((y - first) as usize);
+            let mut depths = D::whole(self.target.depth, &mut nothing);
+            let mut end = if y < outline.bend { outline.bend.min(outline.end) } else { outline.end };
+            let colors = if together {
+                framebuffer.rows(first as u32, width).unwrap_or_default()
+            } else {
+                depths = depths.get_mut(row..).unwrap_or_default();
+                (row, end) = (0, y + 1);
+                framebuffer.row(y as u32)
+            };
+            // Of one length, so that a span in one of them is known to be in the other.
+            let length = colors.len().min(depths.len());
+            let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else { return };
+            while y < end {
+                let start = left.pixel().max(columns.start);
+                let past = right.pixel().min(columns.end);
+                if start < past {
+                    let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
+                    let (Some(color), Some(depth)) = (part(colors, at, length), part(depths, at, length)) else {
+                        return;
+                    };
+                    let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
+                    let mut varyings = values;
+                    for (value, dx) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                        *value = value.wrapping_add(dx.wrapping_mul(start));
                     }
-                    left.step();
-                    right.step();
-                    y += 1;
-                    row = row.wrapping_add(width);
-                    z = z.wrapping_add_signed(depth.dy);
-                    for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
-                        *value = value.wrapping_add(*dy);
-                    }
+                    // 10, 11. Depth test and fragments.
+                    let span = Fragments { color, depth, z, varyings, steps, position: (start, y) };
+                    self.shader.span(*face, span, test);
+                }
+                left.step();
+                right.step();
+                y += 1;
+                row = row.wrapping_add(width);
+                z = z.wrapping_add_signed(depth.dy);
+                for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
+                    *value = value.wrapping_add(*dy);
                 }
             }
-            (parts.left, parts.right) = (left, right);
         }
     }
 }

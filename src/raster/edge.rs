@@ -220,10 +220,7 @@ mod tests {
             let far = (1 << 23) - 1;
             let near = next(1, 24);
             let a = (snap(next(-far >> near, far >> near)), snap(next(-far >> near, far >> near)));
-            let b = (
-                snap((a.0 + next(-size, size)).clamp(-far, far)),
-                snap((a.1 + next(1, height + 1)).min(far)),
-            );
+            let b = (snap((a.0 + next(-size, size)).clamp(-far, far)), snap((a.1 + next(1, height + 1)).min(far)));
             let (first, end) = ((a.1 + 127) >> 8, (b.1 + 127) >> 8);
             if first >= end {
                 continue;

@@ -70,41 +70,43 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 /// ```
 #[inline]
 pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl FnMut(i32, Range<i32>)) {
-    let mut parts = Trapezoids::new(v, area, &clip.y);
-    while let Some(rows) = parts.next() {
-        for y in rows {
-            let x = parts.left.pixel().max(clip.x.start)..parts.right.pixel().min(clip.x.end);
-            if x.start < x.end {
-                span(y, x);
-            }
-            parts.left.step();
-            parts.right.step();
+    let outline = Outline::new(v, area, &clip.y);
+    let (mut left, mut right) = (outline.left, outline.right);
+    for y in outline.top..outline.end {
+        if y == outline.bend {
+            (left, right) = outline.below(left, right);
         }
+        let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
+        if x.start < x.end {
+            span(y, x);
+        }
+        left.step();
+        right.step();
     }
 }
 
-/// A triangle, taken apart into the rows above and below its bend.
+/// A triangle between its edges: those of the first row, and the one that takes the place of one of them at the bend.
 #[derive(Debug)]
-pub struct Trapezoids {
-    /// The edges, at the first row of the part at hand; both have to be stepped once a row.
+pub struct Outline {
+    /// The first row.
+    pub top: i32,
+    /// The first row below the bend; not above `top`, where there is no row above the bend.
+    pub bend: i32,
+    /// The row behind the last.
+    pub end: i32,
+    /// The edges at the first row; both have to be stepped once a row.
     pub left: Edge,
     /// See `left`.
     pub right: Edge,
-    /// Vertices by height.
-    a: (i32, i32),
-    b: (i32, i32),
-    c: (i32, i32),
+    /// The edge below the bend.
+    short: Edge,
     /// Whether the bend is to the right of the long edge.
     bend_right: bool,
-    /// The first row that is not done, the first below the bend, and that behind the last.
-    row: i32,
-    bend: i32,
-    end: i32,
 }
 
-impl Trapezoids {
+impl Outline {
     /// The rows of a triangle that are in `clip`. Other parameters are those of [`spans`].
-    #[inline]
+    #[inline(never)]
     pub fn new(v: &[ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
         let [a, b, c] = v;
         let (mut a, mut b, mut c) = ((a.x, a.y), (b.x, b.y), (c.x, c.y));
@@ -122,29 +124,22 @@ impl Trapezoids {
                 bend_right = !bend_right;
             }
         }
-        let row = first_centre(a.1).max(clip.start);
-        let end = if area == 0 { row } else { first_centre(c.1).min(clip.end) };
-        let bend = first_centre(b.1).min(end);
-        let long = if row < end { Edge::new(a, c, row) } else { Edge::EMPTY };
-        Self { left: long, right: long, a, b, c, bend_right, row, bend, end }
+        let top = first_centre(a.1).max(clip.start);
+        let end = if area == 0 { top } else { first_centre(c.1).min(clip.end) };
+        let bend = first_centre(b.1);
+        if top >= end {
+            return Self { top, bend, end, left: Edge::EMPTY, right: Edge::EMPTY, short: Edge::EMPTY, bend_right };
+        }
+        let long = Edge::new(a, c, top);
+        let short = if bend < end { Edge::new(b, c, bend.max(top)) } else { Edge::EMPTY };
+        let first = if bend > top { Edge::new(a, b, top) } else { short };
+        let (left, right) = if bend_right { (long, first) } else { (first, long) };
+        Self { top, bend, end, left, right, short, bend_right }
     }
 
-    /// The next part that has rows.
-    #[inline]
-    #[expect(clippy::should_implement_trait, reason = "the edges are read and stepped between the calls")]
-    pub fn next(&mut self) -> Option<Range<i32>> {
-        let row = self.row;
-        if row >= self.end {
-            return None;
-        }
-        let (from, to, end) = if row < self.bend { (self.a, self.b, self.bend) } else { (self.b, self.c, self.end) };
-        let short = Edge::new(from, to, row);
-        if self.bend_right {
-            self.right = short;
-        } else {
-            self.left = short;
-        }
-        self.row = end;
-        Some(row..end)
+    /// The edges at the bend, from those that have been stepped down to it.
+    #[inline(always)]
+    pub fn below(&self, left: Edge, right: Edge) -> (Edge, Edge) {
+        if self.bend_right { (left, self.short) } else { (self.short, right) }
     }
 }
