@@ -195,18 +195,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
     fn fan(&mut self, fan: &[FanCorner<S>], corners: [u16; 3], number: usize) {
+        let [i, j, k] = corners;
         let recording = self.scene.phase == Phase::Record;
         let mut indices = [0; 2];
-        for (k, (slot, varyings)) in fan.iter().enumerate() {
+        for (number_in_fan, (slot, varyings)) in fan.iter().enumerate() {
             let mut index = 0;
             if recording {
                 index = self.scene.records.push_vertex();
                 self.scene.records.keep::<S>(usize::from(index), *slot, varyings);
             }
-            if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k.wrapping_sub(1))) {
+            if let (2.., Some(first), Some(last)) = (number_in_fan, fan.first(), fan.get(number_in_fan.wrapping_sub(1)))
+            {
                 let v = [first.0.screen(), last.0.screen(), slot.screen()];
                 if let Some((row, side)) = self.visible(&v) {
-                    let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
+                    let word = self.shader.face(&Face::new(self.mesh, number, [i, j, k], side));
                     if recording {
                         self.record(row, [indices[0], indices[1], index], word);
                     } else {
@@ -214,7 +216,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                     }
                 }
             }
-            indices[usize::from(k > 0)] = index;
+            indices[usize::from(number_in_fan > 0)] = index;
         }
     }
 
