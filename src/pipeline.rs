@@ -153,7 +153,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         stride: usize,
     ) {
         // 1. Culling of whole meshes.
-        if let Some(transform) = self.begin_draw(state, mesh, mvp, stride, S::DISPLACES) {
+        let mut transform = Transform::default();
+        if self.begin_draw(state, mesh, mvp, stride, S::DISPLACES, &mut transform) {
             let clip = self.clip_rect(&self.band);
             let mut assembly = Assembly { scene: self, state, mesh, shader, transform: &transform, clip };
             match mesh.data().hierarchy {
@@ -203,7 +204,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         view.sees(&bounds.aabb, &rect.x, &rect.y, range.clamped())
     }
 
-    /// Starts recording a draw, or drawing it directly: the vertex transform, if there is anything to do.
+    /// Starts recording a draw, or drawing it directly: makes the vertex transform, if there is anything to do.
     #[inline(never)]
     fn begin_draw(
         &mut self,
@@ -212,11 +213,12 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         mvp: &Projective,
         stride: usize,
         displaced: bool,
-    ) -> Option<Transform> {
+        transform: &mut Transform,
+    ) -> bool {
         self.count_draw();
         let recording = self.phase == Phase::Record;
         if recording && self.records.overflowed() {
-            return None;
+            return false;
         }
         let view = View::new(mvp, &self.viewport);
         let bounded = !displaced && !matches!(mesh.data().positions, Positions::Homogeneous(_));
@@ -226,20 +228,20 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             let vertices = if culled { 0 } else { mesh.vertex_count() };
             self.records.begin_draw(fingerprint(state, mesh, mvp, &self.viewport, stride), vertices, stride);
             if self.records.overflowed() {
-                return None;
+                return false;
             }
         }
         if culled {
             self.stats.culled = self.stats.culled.wrapping_add(1);
             self.end_draw();
-            return None;
+            return false;
         }
         if !recording {
             self.records.begin_direct(mesh.vertex_count(), stride);
         }
-        let mut transform = Transform::of(view, mesh, displaced);
+        transform.fold(&view, mesh, displaced);
         transform.set_depth_scale(state.depth_scale);
-        Some(transform)
+        true
     }
 
     fn end_draw(&mut self) {
@@ -308,7 +310,7 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
         },
     ];
     // FNV-1a over words instead of bytes.
-    let matrix = mvp.to_rows();
+    let matrix = mvp.rows();
     let words = bytemuck::cast_slice::<i64, u32>(matrix.as_flattened()).iter().chain(&rest);
     words.fold(0x811C_9DC5, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(11))
 }

@@ -5,7 +5,7 @@
 //! no planes here: the rasterizer is exact to ±32,767 px, and only at that guard band anything is cut.
 
 use super::Varyings;
-use heapless::Deque;
+use core::cell::Cell;
 
 /// A vertex in clip space, in any common scale: x / w, y / w in units of 512 px from the screen's corner, z / w depth.
 ///
@@ -61,11 +61,11 @@ impl Outcode {
     /// The planes `vertex` lies outside of.
     #[inline]
     pub fn of(vertex: &ClipVertex) -> Self {
-        let mut code = 0;
-        for plane in 0..PLANES {
-            code |= u8::from(distance(plane, vertex) < 0) << plane;
-        }
-        Self(code)
+        let ClipVertex { x, y, z, w } = *vertex;
+        let band = band(w);
+        let depth = u8::from(w < ClipVertex::MIN_W) | u8::from(z < 0) << 1 | u8::from(z > w) << 2;
+        let sides = u8::from(x < -band) | u8::from(x > band) << 1 | u8::from(y < -band) << 2 | u8::from(y > band) << 3;
+        Self(depth | sides << 3)
     }
 }
 
@@ -74,22 +74,28 @@ pub(super) const PLANES: usize = 7;
 pub(super) const NEAR: usize = 1;
 pub(super) const FAR: usize = 2;
 
-/// Signed distance from a plane, not negative inside, in a scale of its own.
+/// The guard band: (64 - 2⁻¹⁶) · 512 px, or 2²³ - 2 in 24.8.
+#[inline]
+const fn band(w: i64) -> i64 {
+    64 * w - (w >> 16)
+}
+
+/// Signed distance of x, y, z, w from a plane, not negative inside, in a scale of its own.
 ///
 /// # Format
-/// Below 2⁵⁶ · 65 < 2⁶³. The guard band is (64 - 2⁻¹⁶) · 512 px, or 2²³ - 2 in 24.8.
-#[inline]
-pub(super) fn distance(plane: usize, v: &ClipVertex) -> i64 {
-    let band = 64 * v.w - (v.w >> 16);
-    match plane {
-        0 => v.w - ClipVertex::MIN_W,
-        NEAR => v.z,
-        FAR => v.w - v.z,
-        3 => band + v.x,
-        4 => band - v.x,
-        5 => band + v.y,
-        _ => band - v.y,
-    }
+/// Below 2⁵⁶ · 65 < 2⁶³.
+#[inline(never)]
+pub(super) fn distance(plane: usize, [x, y, z, w]: &[Cell<i64>; 4]) -> i64 {
+    let w = w.get();
+    let band = band(w);
+    let (border, value) = match plane {
+        0 => return w - ClipVertex::MIN_W,
+        NEAR => (0, z),
+        FAR => (w, z),
+        3 | 4 => (band, x),
+        _ => (band, y),
+    };
+    if plane & 1 == 0 { border - value.get() } else { border + value.get() }
 }
 
 /// A corner of what is clipped: where it is, and how much of the triangle's corners is in it.
@@ -138,9 +144,109 @@ pub fn weighted<V: Varyings>(weights: &[i32; 3], corners: &[V; 3]) -> V {
     mixed
 }
 
-/// A triangle cut by seven planes has at most ten corners, and one more is in its place twice while a plane cuts.
-const CORNERS: usize = 11;
-type Polygon = Deque<ClipCorner, CORNERS>;
+/// Most corners of a triangle that is cut by seven planes.
+pub const CLIPPED_CORNERS: usize = 3 + PLANES;
+
+/// A corner of a [`Polygon`].
+#[derive(Clone, Debug, Default)]
+pub struct PolygonCorner {
+    /// x, y, z, w in clip space.
+    pub(super) place: [Cell<i64>; 4],
+    /// See [`ClipCorner::weights`].
+    weights: [Cell<i32>; 3],
+    /// The place of the next corner.
+    next: Cell<u8>,
+}
+
+impl PolygonCorner {
+    const fn new() -> Self {
+        Self { place: [const { Cell::new(0) }; 4], weights: [const { Cell::new(0) }; 3], next: Cell::new(0) }
+    }
+
+    /// Corner `k` of a triangle.
+    pub(super) fn set(&self, vertex: &ClipVertex, k: usize) {
+        let [x, y, z, w] = &self.place;
+        x.set(vertex.x);
+        y.set(vertex.y);
+        z.set(vertex.z);
+        w.set(vertex.w);
+        for (own, weight) in self.weights.iter().enumerate() {
+            weight.set(if own == k { ClipCorner::WHOLE } else { 0 });
+        }
+    }
+
+    /// Where it is.
+    #[inline]
+    pub fn vertex(&self) -> ClipVertex {
+        let [x, y, z, w] = &self.place;
+        ClipVertex { x: x.get(), y: y.get(), z: z.get(), w: w.get() }
+    }
+
+    /// How much of the triangle's corners is in it.
+    #[inline]
+    pub fn weights(&self) -> [i32; 3] {
+        let [a, b, c] = &self.weights;
+        [a.get(), b.get(), c.get()]
+    }
+}
+
+/// A convex polygon that is being cut: a ring of corners, in places of which there are at least as many as corners.
+///
+/// ```text
+/// ring.last ─→ corner ─→ corner ─→ ... ─→ back to the last        ring.free ─→ place ─→ place ─→ ... ─→ none
+/// ```
+/// Corners stay where they are; a cut moves links.
+#[derive(Clone, Debug)]
+pub struct Polygon<C: ?Sized = [PolygonCorner]> {
+    ring: Ring,
+    corners: C,
+}
+
+#[derive(Clone, Debug, Default)]
+struct Ring {
+    len: usize,
+    /// The place of the last corner; the first one is the next of it.
+    last: usize,
+    /// The first place without a corner.
+    free: usize,
+}
+
+impl Ring {
+    /// A place for a new corner.
+    #[inline]
+    fn take<'c>(&mut self, corners: &'c [PolygonCorner]) -> Option<(usize, &'c PolygonCorner)> {
+        let place = self.free;
+        let corner = corners.get(place)?;
+        self.free = usize::from(corner.next.get());
+        Some((place, corner))
+    }
+
+    /// Puts a corner behind the last one.
+    #[inline]
+    fn append(&mut self, corners: &[PolygonCorner], place: usize, corner: &PolygonCorner) {
+        let mut first = place as u8;
+        if let (1.., Some(last)) = (self.len, corners.get(self.last)) {
+            first = last.next.replace(first);
+        }
+        corner.next.set(first);
+        self.last = place;
+        self.len += 1;
+    }
+}
+
+impl<const N: usize> Polygon<[PolygonCorner; N]> {
+    /// Without corners, with room for `N`.
+    #[inline]
+    pub fn new() -> Self {
+        Self { ring: Ring::default(), corners: [const { PolygonCorner::new() }; N] }
+    }
+}
+
+impl<const N: usize> Default for Polygon<[PolygonCorner; N]> {
+    fn default() -> Self {
+        Self::new()
+    }
+}
 
 /// A part of a triangle, by depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -174,107 +280,146 @@ impl DepthRange {
 
 /// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on the corners of what is
 /// left in one part of it: a convex polygon, or nothing.
-#[inline]
-pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: Part, emit: impl FnMut(&ClipCorner)) {
-    let mut polygon = Polygon::new();
-    clip(&mut polygon, &triangle, codes, part);
-    polygon.iter().for_each(emit);
+pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: Part, mut emit: impl FnMut(&ClipCorner)) {
+    let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; CLIPPED_CORNERS]>::new();
+    polygon.clip(&triangle, codes, part);
+    for corner in polygon.corners() {
+        emit(&ClipCorner { vertex: corner.vertex(), weights: corner.weights() });
+    }
 }
 
-/// [`clip_triangle`] into an empty polygon.
-#[inline(never)]
-fn clip(polygon: &mut Polygon, triangle: &[ClipVertex; 3], codes: Outcode, part: Part) {
-    for (k, vertex) in triangle.iter().enumerate() {
-        // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
-        if *vertex == ClipVertex::default() {
-            polygon.clear();
-            return;
+impl Polygon {
+    /// The part of a triangle that is inside of the planes in `codes` (the outcodes of its vertices, united), or nothing.
+    #[inline(never)]
+    pub fn clip(&mut self, triangle: &[ClipVertex; 3], codes: Outcode, part: Part) {
+        self.ring = Ring::default();
+        for (k, corner) in self.corners.iter().enumerate() {
+            corner.next.set(k as u8 + 1);
         }
-        // Three fit eleven; the same holds for every push below.
-        let _ = polygon.push_back(ClipCorner::new(*vertex, k));
-    }
-    for plane in 0..PLANES {
-        if codes.0 & (1 << plane) != 0 {
-            let outside = (plane == NEAR && part == Part::Before) || (plane == FAR && part == Part::Beyond);
-            cut(polygon, plane, !outside);
+        for (k, vertex) in triangle.iter().enumerate() {
+            // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
+            if *vertex == ClipVertex::default() {
+                self.ring.len = 0;
+                return;
+            }
+            if let Some((place, corner)) = self.ring.take(&self.corners) {
+                corner.set(vertex, k);
+                self.ring.append(&self.corners, place, corner);
+            }
+        }
+        for plane in 0..PLANES {
+            if codes.0 & (1 << plane) != 0 {
+                self.cut(plane, part.is_inside(plane), |corner| distance(plane, &corner.place));
+            }
+        }
+        for corner in self.corners() {
+            part.clamp(&corner.place);
         }
     }
-    if polygon.len() < 3 {
-        polygon.clear();
+
+    /// Leaves the part of it that is on one side of a plane: inside, where distances are not negative, or outside.
+    ///
+    /// A corner that is cut away leaves its place to the next that is found, even if that is on the edge from it: a crossing may
+    /// be written over either end. So there are never more places in use than one more than corners before.
+    ///
+    /// # Source
+    /// Sutherland and Hodgman 1974, "Reentrant polygon clipping".
+    #[inline]
+    pub(super) fn cut(&mut self, plane: usize, inside: bool, distance: impl Fn(&PolygonCorner) -> i64) {
+        let Self { ring, corners } = self;
+        let Some(mut from) = corners.get(ring.last) else { return };
+        let mut df = distance(from);
+        let mut next = usize::from(from.next.get());
+        for _ in 0..core::mem::take(&mut ring.len) {
+            let place = next;
+            let Some(to) = corners.get(place) else { return };
+            next = usize::from(to.next.get());
+            let dt = distance(to);
+            if (df >= 0) != (dt >= 0) {
+                // There are as many places as corners.
+                if let Some((place, new)) = ring.take(corners) {
+                    crossing(plane, [from, to, new], df, dt);
+                    ring.append(corners, place, new);
+                }
+            }
+            if (dt >= 0) == inside {
+                ring.append(corners, place, to);
+            } else {
+                to.next.set(ring.free as u8);
+                ring.free = place;
+            }
+            (from, df) = (to, dt);
+        }
+        if ring.len < 3 {
+            ring.len = 0;
+        }
     }
-    polygon.iter_mut().for_each(|corner| part.clamp(&mut corner.vertex));
+
+    /// Its corners, in order.
+    #[inline]
+    pub fn corners(&self) -> Corners<'_> {
+        Corners { corners: &self.corners, last: self.ring.last, left: self.ring.len }
+    }
+}
+
+/// The corners of a polygon, in order.
+#[derive(Clone, Debug)]
+pub struct Corners<'p> {
+    corners: &'p [PolygonCorner],
+    /// The place of the last one that was given, and how many are left.
+    last: usize,
+    left: usize,
+}
+
+impl<'p> Iterator for Corners<'p> {
+    type Item = &'p PolygonCorner;
+
+    #[inline]
+    fn next(&mut self) -> Option<&'p PolygonCorner> {
+        self.left = self.left.checked_sub(1)?;
+        self.last = usize::from(self.corners.get(self.last)?.next.get());
+        self.corners.get(self.last)
+    }
 }
 
 impl Part {
+    /// Whether it is inside of a plane.
+    pub(super) fn is_inside(self, plane: usize) -> bool {
+        !((plane == NEAR && self == Self::Before) || (plane == FAR && self == Self::Beyond))
+    }
+
     /// Brings what is before or beyond to its plane.
-    pub(super) fn clamp(self, vertex: &mut ClipVertex) {
+    pub(super) fn clamp(self, [_, _, z, w]: &[Cell<i64>; 4]) {
         match self {
-            Self::Before => vertex.z = 0,
+            Self::Before => z.set(0),
             Self::Between => {}
-            Self::Beyond => vertex.z = vertex.w,
+            Self::Beyond => z.set(w.get()),
         }
     }
 }
 
-/// Leaves the part of a convex polygon that is on one side of a plane: inside, or outside.
-///
-/// Corners are taken from the front and put back behind, in place.
-///
-/// # Source
-/// Sutherland and Hodgman 1974, "Reentrant polygon clipping".
-#[inline(never)]
-fn cut(polygon: &mut Polygon, plane: usize, inside: bool) {
-    let Some(mut from) = polygon.back().copied() else { return };
-    for _ in 0..polygon.len() {
-        let Some(to) = polygon.pop_front() else { return };
-        if let Some(crossing) = intersection(&from, &to, plane) {
-            let _ = polygon.push_back(crossing);
-        }
-        if (distance(plane, &to.vertex) >= 0) == inside {
-            let _ = polygon.push_back(to);
-        }
-        from = to;
-    }
-}
-
-/// Where an edge meets the plane, if its ends are on different sides of it.
+/// Where the edge between two corners on different sides of a plane meets it; that is written to the third, which may be either
+/// of them. Distances from the plane are given; on the near and the far plane, depth is exact.
 ///
 /// # Format
 /// t = da / (da - db) as 0.64, rounded down, with a inside and b outside, so that AB is cut like BA; coordinates are off by
 /// less than 1 + 2⁻⁷ of their unit.
 #[inline(never)]
-pub(super) fn intersection(from: &ClipCorner, to: &ClipCorner, plane: usize) -> Option<ClipCorner> {
-    let (mut a, mut b) = (from, to);
-    let (mut da, mut db) = (distance(plane, &a.vertex), distance(plane, &b.vertex));
-    if (da >= 0) == (db >= 0) {
-        return None;
+pub(super) fn crossing(plane: usize, [from, to, new]: [&PolygonCorner; 3], df: i64, dt: i64) {
+    let (a, b, da) = if df >= 0 { (from, to, df) } else { (to, from, dt) };
+    let t = fraction(da as u64, df.abs_diff(dt));
+    for ((new, a), b) in new.place.iter().zip(&a.place).zip(&b.place) {
+        new.set(along(a.get(), b.get(), t));
     }
-    if da < 0 {
-        (a, b, da, db) = (b, a, db, da);
+    for ((new, a), b) in new.weights.iter().zip(&a.weights).zip(&b.weights) {
+        new.set(along(a.get().into(), b.get().into(), t) as i32);
     }
-    let mut crossing = crossing(a, da, b, db);
+    let [_, _, z, w] = &new.place;
     match plane {
-        NEAR => crossing.vertex.z = 0,
-        FAR => crossing.vertex.z = crossing.vertex.w,
+        NEAR => z.set(0),
+        FAR => z.set(w.get()),
         _ => {}
     }
-    Some(crossing)
-}
-
-/// Where the edge from `a`, at the distance `da` inside of a plane, to `b`, outside, meets it.
-#[inline]
-pub(super) fn crossing(a: &ClipCorner, da: i64, b: &ClipCorner, db: i64) -> ClipCorner {
-    let t = fraction(da as u64, da.abs_diff(db));
-    let mut crossing = *a;
-    let ClipVertex { x, y, z, w } = &mut crossing.vertex;
-    let end = b.vertex;
-    for (value, end) in [x, y, z, w].into_iter().zip([end.x, end.y, end.z, end.w]) {
-        *value = along(*value, end, t);
-    }
-    for (value, end) in crossing.weights.iter_mut().zip(b.weights) {
-        *value = along(i64::from(*value), i64::from(end), t) as i32;
-    }
-    crossing
 }
 
 /// `a + (b - a) t` with t as 0.64, rounded towards `a`.
@@ -310,6 +455,7 @@ fn fraction(num: u64, den: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::vec::Vec;
 
     fn corners(triangle: [[i64; 4]; 3]) -> usize {
         let triangle = triangle.map(|[x, y, z, w]| ClipVertex { x, y, z, w });
@@ -317,6 +463,82 @@ mod tests {
         let mut corners = 0;
         clip_triangle(triangle, Outcode(codes), Part::Between, |_| corners += 1);
         corners
+    }
+
+    /// Corners copied from polygon to polygon, plane by plane.
+    fn plainly_clipped(triangle: [ClipVertex; 3], codes: Outcode, part: Part) -> Vec<(ClipVertex, [i32; 3])> {
+        let corner = |vertex: &ClipVertex, weights: [i32; 3]| {
+            let corner = PolygonCorner::default();
+            corner.set(vertex, 0);
+            corner.weights.iter().zip(weights).for_each(|(own, weight)| own.set(weight));
+            corner
+        };
+        let mut polygon: Vec<_> = (0..3).map(|k| (triangle[k], ClipCorner::new(triangle[k], k).weights)).collect();
+        for plane in (0..PLANES).filter(|plane| codes.0 & 1 << plane != 0) {
+            let mut left = Vec::new();
+            for (k, to) in polygon.iter().enumerate() {
+                let from = &polygon[(k + polygon.len() - 1) % polygon.len()];
+                let (from, to) = (corner(&from.0, from.1), corner(&to.0, to.1));
+                let (df, dt) = (distance(plane, &from.place), distance(plane, &to.place));
+                if (df >= 0) != (dt >= 0) {
+                    let new = PolygonCorner::default();
+                    crossing(plane, [&from, &to, &new], df, dt);
+                    left.push((new.vertex(), new.weights()));
+                }
+                if (dt >= 0) == part.is_inside(plane) {
+                    left.push((to.vertex(), to.weights()));
+                }
+            }
+            polygon = left;
+        }
+        if polygon.len() < 3 {
+            polygon.clear();
+        }
+        for (vertex, _) in &mut polygon {
+            match part {
+                Part::Before => vertex.z = 0,
+                Part::Between => {}
+                Part::Beyond => vertex.z = vertex.w,
+            }
+        }
+        polygon
+    }
+
+    #[test]
+    fn corners_in_a_ring_are_those_of_polygon_after_polygon() {
+        let mut state = 11_u64;
+        let mut next = |bits: u32| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state ^ state >> 29) as i64 >> (64 - bits)
+        };
+        let mut most = 0;
+        for case in 0..20_000 {
+            // Some with small w, which cross most of the guard band's planes.
+            let w = [40, 47, 50][case % 3];
+            let mut vertex = || ClipVertex { x: next(54), y: next(54), z: next(w), w: next(w) + (1 << (w - 2)) };
+            let triangle = [vertex(), vertex(), vertex()];
+            let codes = Outcode(triangle.iter().fold(0, |codes, v| codes | Outcode::of(v).0));
+            for part in [Part::Before, Part::Between, Part::Beyond] {
+                let mut found = Vec::new();
+                clip_triangle(triangle, codes, part, |corner| found.push((corner.vertex, corner.weights)));
+                assert_eq!(found, plainly_clipped(triangle, codes, part), "case {case}: {triangle:?}");
+                most = most.max(found.len());
+            }
+        }
+        assert!(most >= 8, "{most}");
+    }
+
+    #[test]
+    fn outcodes_are_the_signs_of_distances() {
+        let values = [-(1 << 54), -64 << 20, -1, 0, 1, 1 << 20, (64 << 20) - 16, (64 << 20) - 15, 64 << 20, 1 << 54];
+        for (x, y) in values.into_iter().flat_map(|x| values.map(|y| (x, y))) {
+            for (z, w) in values.into_iter().flat_map(|z| values.map(|w| (z, w))) {
+                let (vertex, corner) = (ClipVertex { x, y, z, w }, PolygonCorner::default());
+                corner.set(&vertex, 0);
+                let code = (0..PLANES).fold(0, |code, k| code | u8::from(distance(k, &corner.place) < 0) << k);
+                assert_eq!(Outcode::of(&vertex), Outcode(code), "{vertex:?}");
+            }
+        }
     }
 
     #[test]

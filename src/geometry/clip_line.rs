@@ -1,6 +1,6 @@
 //! Clipping of lines: by the planes of [`clip_triangle`](super::clip_triangle), in the same order, with the same cuts.
 
-use super::clip::{FAR, NEAR, PLANES, distance, intersection};
+use super::clip::{PLANES, PolygonCorner, crossing, distance};
 use super::{ClipCorner, ClipVertex, Outcode, Part};
 
 /// Cuts a line by the planes in `codes` (the outcodes of its ends, united): the ends of what is left in one part of it, if
@@ -8,24 +8,26 @@ use super::{ClipCorner, ClipVertex, Outcode, Part};
 ///
 /// An end that is visible passes unchanged, bit by bit; AB is cut like BA.
 pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: Part) -> Option<[ClipCorner; 2]> {
-    let [a, b] = ends;
-    let (mut a, mut b) = (ClipCorner::new(a, 0), ClipCorner::new(b, 1));
+    let (a, b) = (PolygonCorner::default(), PolygonCorner::default());
+    a.set(&ends[0], 0);
+    b.set(&ends[1], 1);
     for plane in 0..PLANES {
         if codes.0 & (1 << plane) == 0 {
             continue;
         }
-        let outside = (plane == NEAR && part == Part::Before) || (plane == FAR && part == Part::Beyond);
-        let keeps_a = (distance(plane, &a.vertex) >= 0) != outside;
-        match intersection(&a, &b, plane) {
-            Some(crossing) if keeps_a => b = crossing,
-            Some(crossing) => a = crossing,
-            None if keeps_a => {}
-            None => return None,
+        let (da, db) = (distance(plane, &a.place), distance(plane, &b.place));
+        let [keeps_a, keeps_b] = [da, db].map(|d| (d >= 0) == part.is_inside(plane));
+        match (keeps_a, keeps_b) {
+            (true, true) => {}
+            (true, false) => crossing(plane, [&a, &b, &b], da, db),
+            (false, true) => crossing(plane, [&a, &b, &a], da, db),
+            (false, false) => return None,
         }
     }
-    part.clamp(&mut a.vertex);
-    part.clamp(&mut b.vertex);
-    Some([a, b])
+    Some([a, b].map(|corner| {
+        part.clamp(&corner.place);
+        ClipCorner { vertex: corner.vertex(), weights: corner.weights() }
+    }))
 }
 
 #[cfg(test)]
@@ -62,8 +64,10 @@ mod tests {
             left += 1;
             for (end, original) in cut.iter().zip(&line) {
                 // The cuts' rounding: a few units of 2⁵⁰, and 65 times that at the guard band.
+                let corner = PolygonCorner::default();
+                corner.set(&end.vertex, 0);
                 for plane in 0..PLANES {
-                    assert!(distance(plane, &end.vertex) >= -400, "plane {plane}: {end:?}");
+                    assert!(distance(plane, &corner.place) >= -400, "plane {plane}: {end:?}");
                 }
                 if Outcode::of(original) == Outcode(0) {
                     assert_eq!(end.vertex, *original);

@@ -23,8 +23,10 @@ mod vertex;
 mod viewport;
 
 pub use bounds::{BoundingBox, BoundingSphere, Bounds, BoundsNode};
-pub use clip::{ClipCorner, ClipVertex, DepthRange, Outcode, Part, clip_triangle, weighted};
-pub use clip_distance::{DISTANCE_CORNERS, DistancePolygon, MAX_DISTANCES, cut_by_distance};
+pub use clip::{
+    CLIPPED_CORNERS, ClipCorner, ClipVertex, DepthRange, Outcode, Part, Polygon, PolygonCorner, clip_triangle, weighted,
+};
+pub use clip_distance::{DISTANCE_CORNERS, MAX_DISTANCES};
 pub use clip_line::clip_line;
 pub use edges::{EdgesError, edges};
 pub use frustum::{Containment, Frustum, Plane};
@@ -40,6 +42,6 @@ pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
 pub(crate) use project::{area_of, small};
 pub use sort::{Order, SortError, Sortable, far_to_near, painters_order};
 pub use transform::{Placed, Transform, View, place};
-pub use varyings::{Correction, InverseW, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
+pub use varyings::{Correction, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
 pub use vertex::{Corner, Face, Side, VertexShader};
 pub use viewport::{Viewport, ViewportError};

@@ -20,7 +20,7 @@ pub struct View {
 }
 
 /// A vertex transform, made once a draw.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Transform {
     /// Rows x, y, z, w.
     rows: [Row; 4],
@@ -87,42 +87,39 @@ fn excess(values: &[i64], bits: i32) -> i32 {
     64 - all.leading_zeros() as i32 - bits
 }
 
-/// The least value in a box that a row takes, or the largest for `sign` -1, on the scale of the row's last entry.
-///
-/// # Format
-/// Entries below 2⁴⁵: six products of at most 2⁶⁰.
-#[inline(never)]
-fn extreme(row: &[i64; 4], aabb: &BoundingBox, sign: i64) -> i64 {
-    let mut value = row[3];
-    for ((r, center), half) in row.iter().zip(aabb.center.to_bits()).zip(aabb.half.to_bits()) {
-        value += times(*r, i64::from(center)) - sign * times(r.abs(), i64::from(half));
-    }
-    value
-}
-
 impl View {
     /// Folds a viewport into the matrix that takes object space to clip space.
-    #[inline(never)]
+    #[inline]
     pub fn new(mvp: &Projective, viewport: &Viewport) -> Self {
-        let mut rows = mvp.to_rows();
+        let mut view = Self { rows: [[0; 4]; 4], scale: 0 };
+        view.fold(mvp, viewport);
+        view
+    }
+
+    #[inline(never)]
+    fn fold(&mut self, mvp: &Projective, viewport: &Viewport) {
+        let entries = mvp.rows();
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
-        let shift = excess(rows.as_flattened(), 44).max(0);
+        let shift = excess(entries.as_flattened(), 44).max(0);
         // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
+        let [rx, ry, rz, rw] = &mut self.rows;
+        let [mx, my, mz, mw] = entries;
+        let axis = |x: i64, w: i64, size: i64, corner: i16| size * x + (2 * i64::from(corner) + size.abs()) * w;
         let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
-        let (cx2, cy2) = (2 * i64::from(viewport.x()) + width, 2 * i64::from(viewport.y()) + height);
-        let [rx, ry, rz, rw] = &mut rows;
-        for (((rx, ry), rz), rw) in rx.iter_mut().zip(ry).zip(rz).zip(rw) {
-            let w = scale(*rw, shift);
-            *rx = width * scale(*rx, shift) + cx2 * w;
-            *ry = cy2 * w - height * scale(*ry, shift);
-            *rz = scale(*rz, shift) << 10;
+        for ((((rx, ry), rz), rw), (((mx, my), mz), mw)) in
+            rx.iter_mut().zip(ry).zip(rz).zip(rw).zip(mx.iter().zip(my).zip(mz).zip(mw))
+        {
+            let w = scale(*mw, shift);
+            *rx = axis(scale(*mx, shift), w, width, viewport.x());
+            *ry = axis(scale(*my, shift), w, -height, viewport.y());
+            *rz = scale(*mz, shift) << 10;
             *rw = w << 10;
         }
-        let more = excess(rows.as_flattened(), 45);
-        for entry in rows.as_flattened_mut() {
+        let more = excess(self.rows.as_flattened(), 45);
+        for entry in self.rows.as_flattened_mut() {
             *entry = scale(*entry, more);
         }
-        Self { rows, scale: 10 - shift - more }
+        self.scale = 10 - shift - more;
     }
 
     /// Whether any of a box may be seen in a rectangle of the screen, in pixels at most 2¹⁴ from its corner. The depth
@@ -133,17 +130,43 @@ impl View {
     /// units, over 2¹⁵ in three directions by less than 2¹⁸.
     #[inline(never)]
     pub fn sees(&self, aabb: &BoundingBox, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
-        let [x, y, z, w] = &self.rows;
-        let near = if clamped.0 & Outcode::NEAR != 0 { None } else { Some((z, 512, 0)) };
-        let far = if clamped.0 & Outcode::FAR != 0 { None } else { Some((z, -512, 512)) };
-        let sides = [(x, 512, -columns.start), (x, -512, columns.end), (y, 512, -lines.start), (y, -512, lines.end)];
-        sides.into_iter().chain(near).chain(far).all(|(row, a, b)| {
-            let mut plane = [0; 4];
-            for ((plane, r), w) in plane.iter_mut().zip(row).zip(w) {
-                *plane = (r * a + w * i64::from(b)) >> 18;
+        let [x, y, z, _] = &self.rows;
+        for plane in 0..6 {
+            let (row, a, b) = match plane {
+                0 => (x, 512, -columns.start),
+                1 => (x, -512, columns.end),
+                2 => (y, 512, -lines.start),
+                3 => (y, -512, lines.end),
+                4 if clamped.0 & Outcode::NEAR == 0 => (z, 512, 0),
+                5 if clamped.0 & Outcode::FAR == 0 => (z, -512, 512),
+                _ => continue,
+            };
+            if self.extreme(row, (a, b, 18), aabb, -1) < -(1 << 18) {
+                return false;
             }
-            extreme(&plane, aabb, -1) >= -(1 << 18)
-        })
+        }
+        true
+    }
+
+    /// The least value that (`a` times a row + `b` times w) / 2^`cut` takes in a box, or the largest for `sign` -1, on the scale
+    /// of the sum's last entry.
+    ///
+    /// # Format
+    /// Entries of the sum below 2⁴⁵: six products of at most 2⁶⁰.
+    #[inline(never)]
+    fn extreme(&self, row: &[i64; 4], (a, b, cut): (i32, i32, u32), aabb: &BoundingBox, sign: i32) -> i64 {
+        let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
+        let mut value = 0;
+        for (k, (r, w)) in row.iter().zip(&self.rows[3]).enumerate() {
+            let entry = (r * i64::from(a) + w * i64::from(b)) >> cut;
+            value += match (center.get(k), half.get(k)) {
+                (Some(center), Some(half)) => {
+                    times(entry, i64::from(*center)) - i64::from(sign) * times(entry.abs(), i64::from(*half))
+                }
+                _ => entry,
+            };
+        }
+        value
     }
 }
 
@@ -153,71 +176,76 @@ impl Transform {
     /// `displaced` asks for a transform of 16.16 positions whatever the mesh's own format is, for vertex shaders that
     /// move vertices.
     pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
-        Self::of(View::new(mvp, viewport), mesh, displaced)
+        let mut transform = Self::default();
+        transform.fold(&View::new(mvp, viewport), mesh, displaced);
+        transform
     }
 
-    /// [`new`](Self::new) from a matrix that has the viewport in it.
+    /// Becomes the transform of a mesh, from a matrix that has the viewport in it.
     ///
     /// # Format
     /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
-    pub fn of(view: View, mesh: &Mesh<'_>, displaced: bool) -> Self {
-        let View { rows: mut r, scale: view_scale } = view;
+    pub fn fold(&mut self, view: &View, mesh: &Mesh<'_>, displaced: bool) {
         let aabb = &mesh.bounds().aabb;
         // 1. What the mesh makes of its numbers. Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats
         //    written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
-        let (scaled, offset, quantized) = match mesh.data().positions {
-            Positions::Quantized { scale, offset, .. } if !displaced => {
-                (i64::from(scale.to_bits()), offset.to_bits(), true)
+        let (mut factor, mut offset, mut quantized, mut homogeneous) = (1 << 31, [0; 3], false, false);
+        if !displaced {
+            match &mesh.data().positions {
+                Positions::Quantized { scale, offset: middle, .. } => {
+                    (factor, offset, quantized) = (i64::from(scale.to_bits()), middle.to_bits(), true);
+                }
+                Positions::Homogeneous(_) => homogeneous = true,
+                Positions::Exact(_) => {}
             }
-            _ => (1 << 31, [0; 3], false),
-        };
-        let homogeneous = !displaced && matches!(mesh.data().positions, Positions::Homogeneous(_));
-        let least_w = extreme(&r[3], aabb, 1);
-        let mut t = [0; 4];
-        // A quarter of the largest value that each row can reach.
-        let mut reach = [0; 4];
-        for ((r, t), reach) in r.iter_mut().zip(&mut t).zip(&mut reach) {
-            if !homogeneous {
-                *t = r[3];
-                r[3] = 0;
-            }
+        }
+        // A quarter of the largest value that any row can reach.
+        let mut reach = 0;
+        for (row, r) in self.rows.iter_mut().zip(&view.rows) {
+            let [.., last] = r;
+            let mut t = if homogeneous { 0 } else { *last };
             for (r, offset) in r.iter().zip(offset) {
-                *t += times(*r, i64::from(offset));
+                t += times(*r, i64::from(offset));
             }
-            *reach = t.unsigned_abs() as i64 >> 2;
-            for r in r {
-                *r = times(*r, scaled);
-                *reach += (r.abs() >> 2) + 2;
+            row.translation = t;
+            let mut sum = t.unsigned_abs() as i64 >> 2;
+            for (k, ((high, low), r)) in row.high.iter_mut().zip(&mut row.low).zip(r).enumerate() {
+                let e = if k == 3 && !homogeneous { 0 } else { times(*r, factor) };
+                // As it is, for now.
+                (*high, *low) = ((e >> 32) as i32, e as i32);
+                sum += (e.abs() >> 2) + 2;
             }
+            reach |= sum;
         }
 
         // 2. One shift for all, so that the largest reachable value is just below 2⁵⁵.
-        let shift = excess(&reach, 53);
-        let short = quantized && scale(least_w, shift) >= Self::SHORT_W;
-        let mut rows = [Row::default(); 4];
-        for ((row, r), t) in rows.iter_mut().zip(&r).zip(&t) {
-            row.translation = scale(*t, shift);
-            for ((high, low), r) in row.high.iter_mut().zip(&mut row.low).zip(r) {
+        let shift = excess(&[reach], 53);
+        let least_w = view.extreme(&view.rows[3], (1, 0, 0), aabb, 1);
+        self.short = quantized && scale(least_w, shift) >= Self::SHORT_W;
+        for row in &mut self.rows {
+            row.translation = scale(row.translation, shift);
+            for (high, low) in row.high.iter_mut().zip(&mut row.low) {
                 // 16 fractional bits: e / 2³¹ · 2¹⁶.
-                let e = scale(*r, shift + 15);
+                let e = scale(i64::from(*high) << 32 | i64::from(*low as u32), shift + 15);
                 (*high, *low) = ((e >> 16) as i32, (e & 0xFFFF) as i32);
-                if short {
+                if self.short {
                     // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
                     let m = ((e + (1 << 9)) >> 10) as i32;
                     *low = if SMALL_CORE { ((m & 0x7FFF) ^ 0x4000) - 0x4000 } else { 0 };
                     *high = if SMALL_CORE { (m - *low) >> 15 } else { m };
                 }
             }
-            if short {
+            if self.short {
                 let t = (row.translation + (1 << 9)) >> 10;
                 row.high[3] = (t >> 15) as i32;
                 row.low[3] = (t & 0x7FFF) as i32 + (1 << 14);
                 row.translation = t + (1 << 14);
             }
         }
-        Self { rows, short, scale: view_scale - shift, uniform: None }
+        self.scale = view.scale - shift;
+        self.uniform = None;
     }
 
     /// Sets how depth grows with distance.

@@ -7,7 +7,6 @@
 //! Plain arrays are interpolated the first way. [`Perspective`] divides a part of itself; what it takes to do so is kept
 //! in its [`Correction`], which for arrays is nothing at all.
 
-use super::DISTANCE_CORNERS;
 use core::fmt::Debug;
 
 /// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes, or
@@ -157,9 +156,6 @@ pub trait Correction: Copy + Debug {
     /// Of a triangle without perspective.
     const NONE: Self;
 
-    /// 1 / w at the corners of a clipped polygon.
-    type Corners: InverseW;
-
     /// How much there is to correct.
     fn class(&self) -> PerspectiveClass;
 
@@ -173,42 +169,8 @@ pub trait Correction: Copy + Debug {
     fn wide_w(&self) -> WidePlane;
 }
 
-/// Words of 1 / w at the corners of a clipped polygon, of which there are not more than places.
-pub trait InverseW: Default {
-    /// Adds a corner's.
-    fn push(&mut self, inverse_w: impl FnOnce() -> u32);
-
-    /// That of corner `k`.
-    fn get(&self, k: usize) -> u32;
-}
-
-/// Where they are not needed.
-impl InverseW for () {
-    #[inline(always)]
-    fn push(&mut self, _: impl FnOnce() -> u32) {}
-
-    #[inline(always)]
-    fn get(&self, _: usize) -> u32 {
-        0
-    }
-}
-
-impl InverseW for heapless::Vec<u32, DISTANCE_CORNERS> {
-    #[inline]
-    fn push(&mut self, inverse_w: impl FnOnce() -> u32) {
-        let _ = heapless::Vec::push(self, inverse_w());
-    }
-
-    #[inline]
-    fn get(&self, k: usize) -> u32 {
-        <[u32]>::get(self, k).copied().unwrap_or(0)
-    }
-}
-
 impl Correction for () {
     const NONE: Self = ();
-
-    type Corners = ();
 
     #[inline(always)]
     fn class(&self) -> PerspectiveClass {
@@ -279,8 +241,6 @@ pub struct Lanes<const P: usize> {
 }
 
 impl<const P: usize> Correction for Lanes<P> {
-    type Corners = heapless::Vec<u32, DISTANCE_CORNERS>;
-
     const NONE: Self = Self {
         class: PerspectiveClass::Affine,
         wide_w: WidePlane::ZERO,

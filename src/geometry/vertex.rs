@@ -107,14 +107,14 @@ impl<'a> Face<'a> {
     /// The normal of the corners' positions.
     ///
     /// # Format
-    /// Edges are scaled to 15 bits, which a normal of 2.14 does not tell; its components, below 2³¹, to 15 bits again, so
-    /// that the sum of their squares fits 32: within 2⁻¹² of the exact normal unless the edges are nearly parallel.
+    /// Edges are scaled to 15 bits, which a normal of 2.14 does not tell; its components, at most 2³¹ - 2¹⁵, to 15 bits again,
+    /// so that the sum of their squares fits 32: within 2⁻¹² of the exact normal unless the edges are nearly parallel.
     #[inline(never)]
     fn computed_normal(&self) -> [i16; 3] {
         let [a, b, c] = self.corners;
-        let (ab, ac) = (self.edge(a, b), self.edge(a, c));
-        let minor = |j: usize, k: usize| i64::from(ab[j] * ac[k]) - i64::from(ab[k] * ac[j]);
-        let n = fifteen_bits([minor(1, 2), minor(2, 0), minor(0, 1)]);
+        let (a, b, c) = (self.raw(a), self.raw(b), self.raw(c));
+        let ([ax, ay, az], [bx, by, bz]) = (edge(&a, &b), edge(&a, &c));
+        let mut n = fifteen_bits([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]);
         let length = isqrt(n.iter().fold(0, |sum, v| sum.wrapping_add((v * v) as u32)));
         // v 2¹⁴ / length = v 2¹⁶ (2⁶³ / (length 2^shift)) / 2³² / 2^(33 - shift), with 15 or 16 bits of length.
         let shift = length.leading_zeros();
@@ -122,38 +122,53 @@ impl<'a> Face<'a> {
             return [0; 3];
         }
         let inverse = reciprocal(length << shift);
-        n.map(|v| ((mul_high_signed(v << 16, inverse) + (1 << (32 - shift))) >> (33 - shift)) as i16)
+        for v in &mut n {
+            *v = (mul_high_signed(*v << 16, inverse) + (1 << (32 - shift))) >> (33 - shift);
+        }
+        let [x, y, z] = n;
+        [x as i16, y as i16, z as i16]
     }
 
-    /// The direction from a corner to another, scaled to 15 bits; homogeneous positions have none.
+    /// A corner's coordinates as the mesh has them; of homogeneous positions, there is no normal.
     #[inline(never)]
-    fn edge(&self, from: u16, to: u16) -> [i32; 3] {
-        let (from, to) = (usize::from(from), usize::from(to));
-        fifteen_bits(match self.mesh.data().positions {
-            Positions::Quantized { points, .. } => match (points.get(from), points.get(to)) {
-                (Some([ax, ay, az]), Some([bx, by, bz])) => {
-                    [i64::from(*bx) - i64::from(*ax), i64::from(*by) - i64::from(*ay), i64::from(*bz) - i64::from(*az)]
-                }
-                _ => [0; 3],
-            },
-            Positions::Exact(points) => match (points.get(from), points.get(to)) {
-                (Some(a), Some(b)) => {
-                    let ([ax, ay, az], [bx, by, bz]) = (a.to_bits().map(i64::from), b.to_bits().map(i64::from));
-                    [bx - ax, by - ay, bz - az]
-                }
-                _ => [0; 3],
-            },
+    fn raw(&self, index: u16) -> [i32; 3] {
+        let index = usize::from(index);
+        match self.mesh.data().positions {
+            Positions::Quantized { points, .. } => points.get(index).copied().unwrap_or_default().map(i32::from),
+            Positions::Exact(points) => points.get(index).copied().unwrap_or_default().to_bits(),
             Positions::Homogeneous(_) => [0; 3],
-        })
+        }
     }
 }
 
-/// A vector scaled so that its largest component has 15 bits.
+/// The direction from a corner to another, scaled to 15 bits.
+///
+/// # Format
+/// Differences of 33 bits are halved, all three: that far they are to be shifted in any case.
 #[inline(never)]
-fn fifteen_bits(v: [i64; 3]) -> [i32; 3] {
+fn edge(from: &[i32; 3], to: &[i32; 3]) -> [i32; 3] {
+    let mut difference = [0; 3];
+    let mut overflow = false;
+    for ((difference, a), b) in difference.iter_mut().zip(from).zip(to) {
+        let overflows;
+        (*difference, overflows) = b.overflowing_sub(*a);
+        overflow |= overflows;
+    }
+    if overflow {
+        for ((difference, a), b) in difference.iter_mut().zip(from).zip(to) {
+            *difference = ((i64::from(*b) - i64::from(*a)) >> 1) as i32;
+        }
+    }
+    fifteen_bits(difference)
+}
+
+/// A vector scaled so that its largest component has 15 bits; rounded down, to -2¹⁵ at least.
+#[inline(never)]
+fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
     let widest = v.iter().fold(0, |all, c| all | c.unsigned_abs());
-    let zeros = widest.leading_zeros() as i32 - 49;
-    v.map(|c| if zeros >= 0 { c << zeros.min(63) } else { c >> -zeros } as i32)
+    let zeros = widest.leading_zeros() as i32 - 17;
+    // Zero has 32 leading zeros.
+    v.map(|c| if zeros >= 0 { c << zeros } else { c >> -zeros })
 }
 
 /// The programmable vertex stage: computes what is interpolated over triangles, and what is constant on them.

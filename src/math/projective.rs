@@ -103,6 +103,11 @@ impl Projective {
         self.rows
     }
 
+    /// The same, where they are.
+    pub(crate) const fn rows(&self) -> &[[i64; 4]; 4] {
+        &self.rows
+    }
+
     /// The entry in `row` and `column`; `None` outside the matrix.
     pub fn entry(&self, row: usize, column: usize) -> Option<Wide> {
         self.rows.get(row)?.get(column).map(|&bits| Wide::from_bits(bits))

@@ -180,7 +180,7 @@ impl Engine<'_> {
         &mut self,
         progress: &mut Progress,
         framebuffer: &mut F,
-        draw: &mut impl FnMut(&mut Scene<'_, F>),
+        draw: &mut dyn FnMut(&mut Scene<'_, F>),
     ) -> Result<(), u16> {
         let row = progress.row;
         let grid = self.grid;
@@ -410,12 +410,15 @@ impl<P: PixelFormat> Frame<'_, '_, P> {
 }
 
 /// Draws the next strip of a frame into `color`.
+///
+/// The closure is called through a pointer, once a strip or so: whatever many frames draw, this is linked once.
+#[inline(never)]
 fn strip_into<'c, P: PixelFormat>(
     engine: &mut Engine<'_>,
     progress: &mut Progress,
     color: &'c mut [P::Raw],
     background: P::Raw,
-    draw: &mut impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P>>),
 ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
     let ((width, height), row) = (engine.grid.screen(), progress.row);
     if row >= height {

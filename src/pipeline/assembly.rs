@@ -4,20 +4,17 @@ use super::scan::{Culling, Scan, Seen, Stop};
 use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
-    BoundsNode, ClipCorner, ClipVertex, Corner, Correction, DISTANCE_CORNERS, DistancePolygon, Face, InverseW,
-    MAX_DISTANCES, Mesh, Outcode, Part, Placed, ScreenVertex, Transform, Varyings, VertexShader, View, clip_triangle,
-    cut_by_distance, inverse_w, weighted,
+    BoundsNode, CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, Face, MAX_DISTANCES, Mesh, Outcode, Part,
+    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, View, inverse_w, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
 use crate::raster::PixelRect;
 use core::ops::Range;
 
-/// The corners of a clipped polygon on the screen, with their weights.
-type Fan<const N: usize> = heapless::Vec<(ScreenVertex, [i32; 3]), N>;
-
-/// 1 / w at these corners, if varyings take it.
-type InverseWs<S> = <<<S as VertexShader>::Varyings as Varyings>::Correction as Correction>::Corners;
+/// The corners of a clipped polygon on the screen, with their varyings.
+type Fan<S, const N: usize> = heapless::Vec<FanCorner<S>, N>;
+type FanCorner<S> = (Slot, <S as VertexShader>::Varyings);
 
 /// One draw.
 pub(super) struct Assembly<'s, 'a, F, S> {
@@ -170,16 +167,16 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if S::CLIP_DISTANCES > 0 {
                 self.part::<DISTANCE_CORNERS>(corners, all, part, number);
             } else {
-                self.part::<10>(corners, all, part, number);
+                self.part::<CLIPPED_CORNERS>(corners, all, part, number);
             }
         }
     }
 
     /// A part of a triangle, which has up to `N` corners when it has been clipped.
     fn part<const N: usize>(&mut self, corners: [u16; 3], codes: Outcode, part: Part, number: usize) {
-        let (mut fan, mut inverse_ws) = (Fan::<N>::new(), InverseWs::<S>::default());
-        self.cut(corners, codes, part, &mut fan, &mut inverse_ws);
-        self.fan(&fan, &inverse_ws, corners, number);
+        let mut fan = Fan::<S, N>::new();
+        self.cut(corners, codes, part, &mut fan);
+        self.fan(&fan, corners, number);
     }
 
     /// Whether one of the cull distances is negative at all corners.
@@ -193,74 +190,60 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
     /// has left the stack when it is drawn.
     #[inline(never)]
-    fn cut<const N: usize>(
-        &self,
-        [i, j, k]: [u16; 3],
-        codes: Outcode,
-        part: Part,
-        fan: &mut Fan<N>,
-        inverse_ws: &mut InverseWs<S>,
-    ) {
-        let vertex = |index: u16| self.transformed(usize::from(index));
-        let emit = |corner: &ClipCorner| {
-            if let Some(placed) = self.transform.project(&corner.vertex) {
-                // There are no more corners than places.
-                let _ = fan.push((placed, corner.weights));
-                inverse_ws.push(|| inverse_w(&corner.vertex));
+    fn cut<const N: usize>(&self, corners: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan<S, N>) {
+        let [i, j, k] = corners.map(usize::from);
+        let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; N]>::new();
+        polygon.clip(&[self.transformed(i), self.transformed(j), self.transformed(k)], codes, part);
+        if S::CLIP_DISTANCES > 0 {
+            let [i, j, k] = [self.stage().distances(i), self.stage().distances(j), self.stage().distances(k)];
+            for ((i, j), k) in i.into_iter().zip(j).zip(k).take(S::CLIP_DISTANCES) {
+                polygon.cut_by_distance([i, j, k]);
             }
-        };
-        let triangle = [vertex(i), vertex(j), vertex(k)];
-        if S::CLIP_DISTANCES == 0 {
-            return clip_triangle(triangle, codes, part, emit);
         }
-        let mut polygon = DistancePolygon::new();
-        clip_triangle(triangle, codes, part, |corner| {
-            let _ = polygon.push_back(*corner);
-        });
-        let [i, j, k] = [i, j, k].map(|index| self.stage().distances(usize::from(index)));
-        for ((i, j), k) in i.into_iter().zip(j).zip(k).take(S::CLIP_DISTANCES) {
-            cut_by_distance(&mut polygon, [i, j, k]);
+        let vertex = |index| self.shader.vertex(&Corner::new(self.mesh, index));
+        let varyings = [vertex(i), vertex(j), vertex(k)];
+        for corner in polygon.corners() {
+            let vertex = corner.vertex();
+            let Some(placed) = self.transform.project(&vertex) else { continue };
+            let mut varyings: S::Varyings = weighted(&corner.weights(), &varyings);
+            if S::Varyings::PERSPECTIVE > 0 {
+                varyings.set_inverse_w(inverse_w(&vertex));
+            }
+            if self.scene.phase != Phase::Record {
+                // What the records would keep of them, so that the picture is the same without.
+                varyings = rounded::<S>(&varyings);
+            }
+            // There are no more corners than places.
+            let _ = fan.push((Slot::new(&Placed::Screen(placed)), varyings));
         }
-        polygon.iter().for_each(emit);
     }
 
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
-    fn fan<const N: usize>(&mut self, fan: &Fan<N>, inverse_ws: &InverseWs<S>, corners: [u16; 3], number: usize) {
+    fn fan(&mut self, fan: &[FanCorner<S>], corners: [u16; 3], number: usize) {
         let [i, j, k] = corners;
-        let vertex = |index: u16| self.vertex(usize::from(index));
-        let varyings = [vertex(i), vertex(j), vertex(k)];
-        let at = |k: usize, weights: &[i32; 3]| {
-            let mut varyings: S::Varyings = weighted(weights, &varyings);
-            if S::Varyings::PERSPECTIVE > 0 {
-                varyings.set_inverse_w(inverse_ws.get(k));
-            }
-            varyings
-        };
         let recording = self.scene.phase == Phase::Record;
         let mut indices = [0; 2];
-        for (k, (placed, weights)) in fan.iter().enumerate() {
+        for (number_in_fan, (slot, varyings)) in fan.iter().enumerate() {
             let mut index = 0;
             if recording {
                 index = self.scene.records.push_vertex();
-                let slot = Slot::new(&Placed::Screen(*placed));
-                self.scene.records.keep::<S>(usize::from(index), slot, &at(k, weights));
+                self.scene.records.keep::<S>(usize::from(index), *slot, varyings);
             }
-            if let (2.., Some(first), Some(last)) = (k, fan.first(), fan.get(k.wrapping_sub(1))) {
-                let v = [first.0, last.0, *placed];
+            if let (2.., Some(first), Some(last)) = (number_in_fan, fan.first(), fan.get(number_in_fan.wrapping_sub(1)))
+            {
+                let v = [first.0.screen(), last.0.screen(), slot.screen()];
                 if let Some(seen) = Seen::new(v, self.state.culling(), &self.clip, self.scene.stats) {
                     let side = self.state.side(seen.area);
-                    let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
+                    let word = self.shader.face(&Face::new(self.mesh, number, [i, j, k], side));
                     if recording {
                         self.record(seen.row, [indices[0], indices[1], index], word);
                     } else {
-                        // What the records would keep of the varyings, so that the picture is the same without them.
-                        let at = |k, weights| rounded::<S>(&at(k, weights));
-                        self.draw(&seen, &[at(0, &first.1), at(k - 1, &last.1), at(k, weights)], word);
+                        self.draw(&seen, &[first.1, last.1, *varyings], word);
                     }
                 }
             }
-            indices[usize::from(k > 0)] = index;
+            indices[usize::from(number_in_fan > 0)] = index;
         }
     }
 

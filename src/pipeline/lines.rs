@@ -234,9 +234,8 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     #[inline(never)]
     fn assembly(&mut self) -> Assembly<'_, 'a, F, S> {
         let Self { scene, state, vertices, mvp, shader, clip, transform } = self;
-        let view = || View::new(mvp, &scene.viewport);
         let transform = transform.get_or_insert_with(|| {
-            let mut transform = Transform::of(view(), vertices, S::DISPLACES);
+            let mut transform = Transform::new(mvp, &scene.viewport, vertices, S::DISPLACES);
             transform.set_depth_scale(state.depth_scale);
             transform
         });

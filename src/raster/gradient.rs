@@ -121,74 +121,80 @@ impl Gradients {
         PlaneEquation { dx, dy, base: base.wrapping_add(offset as u32) }
     }
 
-    /// [`plane`](Self::plane) for any triangle and any values, in 64 bits.
+    /// [`plane`](Self::plane) for any triangle and any values.
+    #[inline(never)]
+    fn long(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
+        let (a, b) = self.numerators(values);
+        if self.reciprocal != 0 {
+            if let (Some(dx), Some(dy)) = (self.gentle(a, scale), self.gentle(b, scale)) {
+                return self.near((values[0] as u32) << scale, dx, dy);
+            }
+        }
+        // Bits cut from what was rounded down leave what is rounded down.
+        let plane = self.exact(values[0], a, b);
+        let cut = |value: i64| (value >> (32 - scale)) as u32;
+        PlaneEquation { dx: cut(plane.dx) as i32, dy: cut(plane.dy) as i32, base: cut(plane.base) }
+    }
+
+    /// Gradients times |area| / 256.
     ///
     /// # Format
     /// Differences of 33 bits times 2²⁵, below 2⁵⁸; in sums below 2⁵⁹.
-    #[inline(never)]
-    fn long(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
+    #[inline]
+    fn numerators(&self, values: [i32; 3]) -> (i64, i64) {
         let [v0, v1, v2] = values.map(i64::from);
-        let (v1, v2) = (v1 - v0, v2 - v0);
-        let [x1, x2] = self.x.map(i64::from);
-        let [y1, y2] = self.y.map(i64::from);
-        let (a, b) = (v1 * y2 - v2 * y1, v2 * x1 - v1 * x2);
-        let base = (values[0] as u32) << scale;
-        if self.reciprocal != 0 {
-            if let (Some(dx), Some(dy)) = (self.gentle(a, scale), self.gentle(b, scale)) {
-                return self.near(base, dx, dy);
-            }
-        }
-        self.exact(base, a, b, scale)
+        let v = [v1 - v0, v2 - v0];
+        let (a, b) = (minor(&v, &self.y), minor(&v, &self.x));
+        if self.area < 0 { (-a, b) } else { (a, -b) }
     }
 
-    /// 256 2^scale n / area, if it is below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative
+    /// 256 2^scale n / |area|, if it is below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative
     /// error below 2⁻²⁸, so less than 2⁻⁵ of a unit over 512 px in both directions, and one unit of 2⁻¹⁶ a pixel.
     ///
-    /// 256 / area = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
+    /// 256 / |area| = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
     /// 2⁻³⁰).
     fn gentle(&self, n: i64, scale: u32) -> Option<i32> {
-        let n = if self.area < 0 { -n } else { n };
-        // Redundant sign bits above bit 31: how far n can move up (or must move down) to fill an i32.
-        let up = (n ^ (n >> 63)).leading_zeros() as i32 - 33;
-        let normalized = if up >= 0 { n << up } else { n >> -up } as i32;
+        // Redundant sign bits, all but the last of which can go.
+        let zeros = (n ^ (n >> 63)).leading_zeros();
+        let normalized = (n << (zeros - 1) >> 32) as i32;
         let high = mul_high_signed(normalized, self.reciprocal);
-        // high 2³² 2^(shift + scale - up) / 2⁵⁵.
-        let down = 23 + up - self.shift - scale as i32;
+        // With up = zeros - 33: high 2³² 2^(shift + scale - up) / 2⁵⁵.
+        let down = zeros as i32 - 10 - self.shift - scale as i32;
         if down < 2 { None } else { Some(high >> down.min(31)) }
     }
 
-    /// The same by exact division, for triangles that are larger or steep: rounded down, modulo 2³².
+    /// The plane by its gradients' numerators, with 32 fractional bits, modulo 2⁶⁴ and with its base at the origin, by long
+    /// division, for triangles that are larger or steep; each of its three numbers is rounded down.
+    ///
+    /// # Format
+    /// The difference to the origin is Σ n to, of up to 84 bits, from two halves of each n.
     #[inline(never)]
-    fn exact(&self, base: u32, a: i64, b: i64, scale: u32) -> PlaneEquation {
-        let area = self.area.unsigned_abs();
-        let divided = |n: Wide, bits: u32| divide_modulo(if self.area < 0 { n.negated() } else { n }, area, bits);
-        PlaneEquation {
-            dx: divided(Wide::product(a, 1), 8 + scale) as i32,
-            dy: divided(Wide::product(b, 1), 8 + scale) as i32,
-            base: base.wrapping_add(divided(Wide::product(a, self.to.0).plus(Wide::product(b, self.to.1)), scale)),
+    fn exact(&self, v0: i32, a: i64, b: i64) -> WidePlane {
+        let (x, y) = (i64::from(self.to.0), i64::from(self.to.1));
+        let low = i64::from(a as u32) * x + i64::from(b as u32) * y;
+        let high = (a >> 32) * x + (b >> 32) * y + (low >> 32);
+        WidePlane {
+            base: (i64::from(v0) << 32).wrapping_add(self.divided(high, low as u32)),
+            dx: self.divided(a >> 24, (a as u32) << 8),
+            dy: self.divided(b >> 24, (b as u32) << 8),
         }
     }
-}
 
-impl Gradients {
+    /// (`high` 2³² + `low`) 2³² / |area|, rounded down, modulo 2⁶⁴.
+    #[inline(never)]
+    fn divided(&self, high: i64, low: u32) -> i64 {
+        divide_modulo(high, low, self.area.unsigned_abs())
+    }
+
     /// The plane through the values at the three vertices with 32 fractional bits, modulo 2⁶⁴, by long division; each of its
-    /// three numbers is rounded down.
+    /// three numbers is rounded down before it is carried from the origin to the screen's corner.
     #[inline(never)]
     pub fn plane_wide(&self, values: [i32; 3]) -> WidePlane {
-        let [v0, v1, v2] = values.map(i64::from);
-        let (v1, v2) = (v1 - v0, v2 - v0);
-        let [x1, x2] = self.x.map(i64::from);
-        let [y1, y2] = self.y.map(i64::from);
-        let (a, b) = (v1 * y2 - v2 * y1, v2 * x1 - v1 * x2);
-        let area = self.area.unsigned_abs();
-        let divided = |n: Wide, bits: u32| {
-            let n = if self.area < 0 { n.negated() } else { n };
-            i64::from(divide_modulo(n, area, bits)) << 32 | i64::from(divide_modulo(n, area, bits + 32))
-        };
-        let (dx, dy) = (divided(Wide::product(a, 1), 8), divided(Wide::product(b, 1), 8));
-        let base = (v0 << 32).wrapping_add(divided(Wide::product(a, self.to.0).plus(Wide::product(b, self.to.1)), 0));
-        let (ox, oy) = (i64::from(self.origin.0), i64::from(self.origin.1));
-        WidePlane { base: base.wrapping_sub(dx.wrapping_mul(ox)).wrapping_sub(dy.wrapping_mul(oy)), dx, dy }
+        let (a, b) = self.numerators(values);
+        let plane = self.exact(values[0], a, b);
+        let along = |change: i64, origin: i32| change.wrapping_mul(origin.into());
+        let base = plane.base.wrapping_sub(along(plane.dx, self.origin.0)).wrapping_sub(along(plane.dy, self.origin.1));
+        WidePlane { base, ..plane }
     }
 }
 
@@ -204,47 +210,30 @@ fn moderate(difference: i32) -> bool {
     (difference.wrapping_add(1 << 14)) as u32 >> 15 == 0
 }
 
-/// A signed number of 96 bits: `high` 2³² + `low`.
-#[derive(Clone, Copy)]
-struct Wide {
-    high: i64,
-    low: u32,
+/// The determinant of differences of values and of coordinates.
+#[inline(never)]
+fn minor(v: &[i64; 2], c: &[i32; 2]) -> i64 {
+    v[0] * i64::from(c[1]) - v[1] * i64::from(c[0])
 }
 
-impl Wide {
-    /// |a| < 2⁶⁰, |b| < 2²⁶.
-    fn product(a: i64, b: i32) -> Self {
-        let low = i64::from(a as u32) * i64::from(b);
-        Self { high: (a >> 32) * i64::from(b) + (low >> 32), low: low as u32 }
-    }
-
-    fn plus(self, other: Self) -> Self {
-        let (low, carry) = self.low.overflowing_add(other.low);
-        Self { high: self.high + other.high + i64::from(carry), low }
-    }
-
-    /// -n = !n + 1.
-    fn negated(self) -> Self {
-        let (low, carry) = (!self.low).overflowing_add(1);
-        Self { high: !self.high + i64::from(carry), low }
-    }
-}
-
-/// ⌊n 2^bits / den⌋ modulo 2³², 0 < den < 2⁵¹, `bits` up to 64.
+/// ⌊n 2³² / den⌋ modulo 2⁶⁴ for n = `high` 2³² + `low`, 0 < den < 2⁵¹.
 ///
 /// Long division, bit by bit: it is rare, and wider divisions are code that small programs need not link.
-#[inline(never)]
-fn divide_modulo(n: Wide, den: u64, bits: u32) -> u32 {
+#[inline]
+fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
     // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
-    let flip = (n.high >> 63) as u32;
-    let words = [(n.high >> 32) as u32 ^ flip, n.high as u32 ^ flip, n.low ^ flip, flip, flip];
+    let flip = (high >> 63) as u32;
     let mut rest = 0_u64;
-    let mut quotient = 0_u32;
-    for (mut word, bits) in words.into_iter().zip([32, 32, 32, bits.min(32), bits.saturating_sub(32)]) {
-        if word == 0 && rest == 0 && quotient == 0 {
+    let mut quotient = 0_u64;
+    for word in [(high >> 32) as u32, high as u32, low, 0] {
+        let mut word = word ^ flip;
+        if rest == 0 && u64::from(word) < den {
+            // Nothing but zeros.
+            rest = word.into();
+            quotient <<= 32;
             continue;
         }
-        for _ in 0..bits {
+        for _ in 0..32 {
             rest = rest << 1 | u64::from(word >> 31);
             word <<= 1;
             quotient <<= 1;
@@ -254,7 +243,7 @@ fn divide_modulo(n: Wide, den: u64, bits: u32) -> u32 {
             }
         }
     }
-    quotient ^ flip
+    quotient as i64 ^ high >> 63
 }
 
 #[cfg(test)]
@@ -262,23 +251,18 @@ mod tests {
     use super::*;
 
     #[test]
-    fn long_division_is_exact_modulo_2_to_32() {
+    fn long_division_is_exact_modulo_2_to_64() {
         let mut state = 5_u64;
         let mut next = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             state ^ state >> 29
         };
         for case in 0..20_000 {
-            let (a, b) = (next() as i64 >> (4 + next() % 58), (next() as i64 >> (38 + next() % 24)) as i32);
-            let (c, d) = (next() as i64 >> (4 + next() % 58), (next() as i64 >> (38 + next() % 24)) as i32);
+            let (high, low) = (next() as i64 >> (next() % 64), next() as u32);
             let den = (next() >> (13 + next() % 50)).max(1);
-            let bits = (next() % 45) as u32;
-            let exact = i128::from(a) * i128::from(b) + i128::from(c) * i128::from(d);
-            let n = Wide::product(a, b).plus(Wide::product(c, d));
-            let expected = (exact << bits).div_euclid(i128::from(den)) as u32;
-            assert_eq!(divide_modulo(n, den, bits), expected, "case {case}: {exact} << {bits} / {den}");
-            let expected = (-exact << bits).div_euclid(i128::from(den)) as u32;
-            assert_eq!(divide_modulo(n.negated(), den, bits), expected, "case {case}: -{exact} << {bits} / {den}");
+            let exact = i128::from(high) << 32 | i128::from(low);
+            let expected = (exact << 32).div_euclid(i128::from(den)) as i64;
+            assert_eq!(divide_modulo(high, low, den), expected, "case {case}: {exact} << 32 / {den}");
         }
     }
 }
