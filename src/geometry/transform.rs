@@ -7,7 +7,7 @@
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
-use crate::math::{Projective, SMALL_CORE, Vec3};
+use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros};
 use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
@@ -126,11 +126,20 @@ impl View {
     /// planes in `clamped` do not count. Errs on the side of `true`.
     ///
     /// # Format
-    /// Planes are sums of rows, such as 512 x - left w ≥ 0, below 2⁶¹, and cut to 43 bits: entries are off by less than two
-    /// units, over 2¹⁵ in three directions by less than 2¹⁸.
+    /// Planes are sums of rows, such as 512 x - left w ≥ 0, below 2⁶⁰ and off by less than 2¹⁴. They are cut to 15 bits and a sign,
+    /// by a shift of at least 15, and the box to 14 bits, by a shift of at least 2. So entries are off by less than 2 units,
+    /// coordinates by less than 1. Products are below 2²⁹; all is counted in halves, so that their sum fits.
     #[inline(never)]
     pub fn sees(&self, aabb: &BoundingBox, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
-        let [x, y, z, _] = &self.rows;
+        let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
+        let reach = center.iter().zip(half).fold(0, |all, (c, h)| all | c.unsigned_abs() | h.unsigned_abs());
+        let shift = 18_u32.saturating_sub(leading_zeros(reach)).max(2);
+        // What the entries may be off by takes part in each plane: 2 units times the coordinates and 1, halved.
+        let mut off = (1 << 16 >> shift) + 8;
+        for (center, half) in center.iter().zip(half) {
+            off += (center >> shift).abs() + (half >> shift);
+        }
+        let [x, y, z, w] = &self.rows;
         for plane in 0..6 {
             let (row, a, b) = match plane {
                 0 => (x, 512, -columns.start),
@@ -141,7 +150,19 @@ impl View {
                 5 if clamped.0 & Outcode::FAR == 0 => (z, -512, 512),
                 _ => continue,
             };
-            if self.extreme(row, (a, b, 18), aabb, -1) < -(1 << 18) {
+            let mut entries = [0; 4];
+            for ((entry, r), w) in entries.iter_mut().zip(row).zip(w) {
+                *entry = r * a + w * i64::from(b);
+            }
+            let cut = excess(&entries, 15).max(15);
+            // The last entry, for a coordinate of 1, which is 2¹⁶ here.
+            let mut value = off + ((entries[3] >> cut) as i32) * (1 << 15 >> shift);
+            for (entry, (center, half)) in entries.iter().zip(center.iter().zip(half)) {
+                let entry = (entry >> cut) as i32;
+                let size = entry.abs();
+                value += ((entry * (center >> shift)) >> 1) + ((size * (half >> shift)) >> 1) + size;
+            }
+            if value < 0 {
                 return false;
             }
         }

@@ -153,7 +153,7 @@ impl<P: PixelFormat> Framebuffer for FrameSlice<'_, P> {
 
     #[inline]
     fn rows(&mut self, first_row: u32, width: usize) -> Option<&mut [P::Raw]> {
-        let start = (first_row as usize).wrapping_mul(self.stride);
-        if width == self.stride && width == self.width { self.pixels.get_mut(start..) } else { None }
+        let rows = (first_row as usize).wrapping_mul(self.stride)..(self.height as usize).wrapping_mul(self.stride);
+        if width == self.stride && width == self.width { self.pixels.get_mut(rows) } else { None }
     }
 }

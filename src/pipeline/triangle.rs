@@ -84,7 +84,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let width = usize::from(self.screen.0);
         let first = self.target.rows.start;
         let framebuffer = &mut *self.target.framebuffer;
-        let together = framebuffer.rows(first as u32, width).is_some();
         let mut nothing = [(); usize::MAX];
         let outline = Outline::new(v, *area, &self.clip.y);
         let (mut left, mut right) = (outline.left, outline.right);
@@ -101,21 +100,23 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             }
             // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
             let mut row = width.wrapping_mul((y - first) as usize);
-            let mut depths = D::whole(self.target.depth, &mut nothing);
             let mut end = if y < outline.bend { outline.bend.min(outline.end) } else { outline.end };
-            let colors = if together {
-                framebuffer.rows(first as u32, width).unwrap_or_default()
-            } else {
+            let mut depths = D::whole(self.target.depth, &mut nothing);
+            let mut colors = framebuffer.rows(first as u32, width).unwrap_or_default();
+            let mut right_end = columns.end;
+            if width.wrapping_mul((end - first) as usize) > colors.len() {
+                // Or they are fewer than the screen's, or shorter.
                 depths = depths.get_mut(row..).unwrap_or_default();
+                colors = framebuffer.row(y as u32);
                 (row, end) = (0, y + 1);
-                framebuffer.row(y as u32)
-            };
+                right_end = right_end.min(colors.len() as i32);
+            }
             // Of one length, so that a span in one of them is known to be in the other.
             let length = colors.len().min(depths.len());
             let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else { return };
             while y < end {
                 let start = left.pixel().max(columns.start);
-                let past = right.pixel().min(columns.end);
+                let past = right.pixel().min(right_end);
                 if start < past {
                     let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
                     let (Some(color), Some(depth)) = (part(colors, at, length), part(depths, at, length)) else {
