@@ -65,8 +65,9 @@ pub struct Face<'a> {
 }
 
 impl<'a> Face<'a> {
+    #[inline]
     pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3], side: Side) -> Self {
-        // Taken apart: three halfwords are else a call to copy them.
+        // One by one: three halfwords at once are copied by a call, for want of alignment.
         let [a, b, c] = corners;
         Self { mesh, triangle, corners: [a, b, c], side }
     }
