@@ -1,5 +1,7 @@
 //! The depth test.
 
+use crate::math::SMALL_CORE;
+
 /// How a fragment's depth must compare with the stored one to be drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -219,6 +221,51 @@ impl DepthTest for AnyDepth {
     fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
         Some((self, stored))
     }
+}
+
+/// Pixels that [`passing`] tests.
+pub(super) const RUN: usize = 16;
+
+/// Tests the depths of a run from `z` on, up to the first that does not pass, and writes those that do: how many they are.
+///
+/// Most runs pass, or fail, as a whole. Where all pass, two loops, this one and another for colours, are shorter than one for
+/// both, as each has all of its values in registers.
+#[inline(always)]
+pub(super) fn passing<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], z: u32, dz_dx: i32) -> usize {
+    if !D::ENABLED {
+        RUN
+    } else if SMALL_CORE {
+        passing_apart(test, depths, z, dz_dx)
+    } else {
+        passing_here(test, depths, z, dz_dx)
+    }
+}
+
+/// Out of line, where its registers are its own.
+#[inline(never)]
+fn passing_apart<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], z: u32, dz_dx: i32) -> usize {
+    passing_here(test, depths, z, dz_dx)
+}
+
+#[inline(always)]
+fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], mut z: u32, dz_dx: i32) -> usize {
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    macro_rules! test {
+        ($($count:literal $depth:ident)*) => {
+            let [$($depth),*] = depths;
+            $(
+                let near = (z >> 16) as u16;
+                if !test.passes(near, *$depth) {
+                    return $count;
+                }
+                test.write(near, $depth);
+                z = z.wrapping_add_signed(dz_dx);
+            )*
+        };
+    }
+    test!(0 a 1 b 2 c 3 d 4 e 5 f 6 g 7 h 8 i 9 j 10 k 11 l 12 m 13 n 14 o 15 p);
+    let _ = z;
+    RUN
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use super::{DepthTest, Fragments, PixelFormat, Steps};
 /// Makes room above the channels for what dithering adds.
 ///
 /// # Format
-/// Channels of 8.16, 0.5..=254.5 and at most 0.375 off. With b bits that stay, s = 2^(8 - b) and c - 1/2 in 0..=254, the result
+/// Channels of 8.16, 0.5..=254.5 and at most 0.39 off. With b bits that stay, s = 2^(8 - b) and c - 1/2 in 0..=254, the result
 /// is 1/2 + (c - 1/2) (1 - 2⁻ᵇ + 2⁻⁷), for which 254 becomes 256 - s and up to 0.6 more: white is the last level without
 /// any help, black plus the largest addend, (s - 1) 63/64, the first one, and nothing exceeds 256.
 #[inline(always)]

@@ -2,6 +2,7 @@
 
 use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
 use crate::fragment::{PixelFormat, luma};
+use crate::math::SMALL_CORE;
 use core::convert::identity;
 use embedded_graphics_core::pixelcolor::raw::RawU16;
 use embedded_graphics_core::pixelcolor::{
@@ -14,18 +15,26 @@ const fn rgb565(rgb: [u8; 3]) -> u16 {
     (rgb[0] as u16 & 0xF8) << 8 | (rgb[1] as u16 & 0xFC) << 3 | rgb[2] as u16 >> 3
 }
 
-/// The bits of green, hidden from the compiler: it would rather have two constants than one more exclusive or.
+/// Where green is.
+const GREEN: u32 = 0x7E0;
+
+/// The mask that [`rgb565_from_packed`] wants at hand. It is hidden from the compiler, which would make it anew for each
+/// pixel, or rather have two of them.
 #[inline(always)]
-fn green_mask() -> u32 {
-    core::hint::black_box(0x7E0)
+fn packed_mask() -> u32 {
+    core::hint::black_box(if SMALL_CORE { GREEN } else { !GREEN & 0xFFFF })
 }
 
 /// The same from channels in one word: red and blue lie as far apart there as here; green is exchanged for what lies
-/// between them, which takes one mask.
+/// between them. Where registers are few, that takes one mask and no other constant.
 #[inline(always)]
-const fn rgb565_from_packed(word: u32, green: u32) -> u16 {
+const fn rgb565_from_packed(word: u32, mask: u32) -> u16 {
     let red_blue = word >> 16;
-    (red_blue ^ (red_blue ^ word << 1) & green) as u16
+    if SMALL_CORE {
+        (red_blue ^ (red_blue ^ word << 1) & mask) as u16
+    } else {
+        (red_blue & mask | word << 1 & GREEN) as u16
+    }
 }
 
 /// 5, 6, 5 bits to 8, the upper ones repeated below.
@@ -83,8 +92,8 @@ const fn from_bgr565(raw: u16) -> [u8; 3] {
 
 /// [`rgb565_from_packed`] with red and blue exchanged.
 #[inline(always)]
-const fn bgr565_from_packed(word: u32, green: u32) -> u16 {
-    (word >> 27 | word >> 16 << 11 | word << 1 & green) as u16
+const fn bgr565_from_packed(word: u32, _: u32) -> u16 {
+    (word >> 27 | word >> 16 << 11 | word << 1 & GREEN) as u16
 }
 
 /// BGR565 from RGB565.
@@ -131,7 +140,7 @@ macro_rules! sixteen_bits {
 
             #[inline(always)]
             fn packed_mask() -> u32 {
-                green_mask()
+                packed_mask()
             }
 
             #[inline(always)]
@@ -344,7 +353,7 @@ mod tests {
     fn packing_is_the_inverse_of_unpacking() {
         check::<Rgb565>(0..=u16::MAX, Rgb888::from);
         check::<Rgb565Be>(0..=u16::MAX, Rgb888::from);
-        assert_eq!(Bgr565::from_packed(0x89AB_CDEF, green_mask()), Bgr565::pack([0x89, 0x7B, 0x5E]));
+        assert_eq!(Bgr565::from_packed(0x89AB_CDEF, packed_mask()), Bgr565::pack([0x89, 0x7B, 0x5E]));
         check::<Bgr565>(0..=u16::MAX, Rgb888::from);
         check::<Bgr565Be>(0..=u16::MAX, Rgb888::from);
         check::<Rgb332>(0..=u8::MAX, |color| color);
