@@ -119,9 +119,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 let past = right.pixel().min(right_end);
                 if start < past {
                     let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
-                    let (Some(color), Some(depth)) = (part(colors, at, length), part(depths, at, length)) else {
-                        return;
-                    };
+                    let Some(color) = part(colors, at, length) else { return };
+                    let Some(depth) = part(depths, at, length) else { return };
                     let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
                     let mut varyings = values;
                     for (value, dx) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
