@@ -17,17 +17,17 @@
 //!
 //! | instructions a pixel | Cortex-M0+ | Cortex-M4 |
 //! |---|--:|--:|
-//! | `Flat`; `Shaded` per face | 14 | 13 |
-//! | `Gouraud`; `Shaded` per vertex | 25 | 19 |
+//! | `Flat`; `Shaded` per face | 10 | 10 |
+//! | `Gouraud`; `Shaded` per vertex | 19 | 15 |
 //! | `Matcap` | 42 | 25 |
-//! | `Textured`, nearest, repeated, w constant | 27 | 18 |
-//! | the same in perspective | 31 | 20 |
+//! | `Textured`, nearest, repeated, w constant | 25 | 18 |
+//! | the same in perspective | 29 | 20 |
 //! | mirrored | 79 | 57 |
 //! | clamped | 82 | 58 |
 //! | bilinear | 195 | 126 |
-//! | nearest, RGB888 | 64 | 42 |
+//! | nearest, RGB888 | 66 | 42 |
 //! | bilinear, RGB888 | 333 | 203 |
-//! | nearest, palette of 8 bits | 63 | 46 |
+//! | nearest, palette of 8 bits | 65 | 46 |
 //! | nearest, lit | 187 | 97 |
 //! | bilinear, lit | 414 | 227 |
 //! | `Blend` of it, nearest, `Opacity` | 94 | 71 |
