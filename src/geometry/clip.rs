@@ -202,7 +202,7 @@ pub struct Polygon<C: ?Sized = [PolygonCorner]> {
     corners: C,
 }
 
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 struct Ring {
     len: usize,
     /// The place of the last corner; the first one is the next of it.
@@ -222,7 +222,7 @@ impl Ring {
     }
 
     /// Puts a corner behind the last one.
-    #[inline]
+    #[inline(never)]
     fn append(&mut self, corners: &[PolygonCorner], place: usize, corner: &PolygonCorner) {
         let mut first = place as u8;
         if let (1.., Some(last)) = (self.len, corners.get(self.last)) {
@@ -238,7 +238,7 @@ impl<const N: usize> Polygon<[PolygonCorner; N]> {
     /// Without corners, with room for `N`.
     #[inline]
     pub fn new() -> Self {
-        Self { ring: Ring::default(), corners: [const { PolygonCorner::new() }; N] }
+        Self { ring: Ring { len: 0, last: 0, free: 0 }, corners: [const { PolygonCorner::new() }; N] }
     }
 }
 
@@ -272,9 +272,9 @@ impl DepthRange {
     /// The parts to draw of a triangle whose vertices' outcodes are `codes`, united.
     pub fn parts(self, codes: Outcode) -> impl Iterator<Item = Part> {
         let outside = codes.0 & self.clamped().0;
-        let before = (outside & Outcode::NEAR != 0).then_some(Part::Before);
-        let beyond = (outside & Outcode::FAR != 0).then_some(Part::Beyond);
-        [before, Some(Part::Between), beyond].into_iter().flatten()
+        // The bit of the plane it lies behind; the part between has none.
+        let parts = [(Part::Before, Outcode::NEAR), (Part::Between, 0), (Part::Beyond, Outcode::FAR)];
+        parts.into_iter().filter(move |(_, plane)| *plane == 0 || outside & plane != 0).map(|(part, _)| part)
     }
 }
 
@@ -292,20 +292,18 @@ impl Polygon {
     /// The part of a triangle that is inside of the planes in `codes` (the outcodes of its vertices, united), or nothing.
     #[inline(never)]
     pub fn clip(&mut self, triangle: &[ClipVertex; 3], codes: Outcode, part: Part) {
-        self.ring = Ring::default();
+        self.ring = Ring { len: 3, last: 2, free: 3 };
         for (k, corner) in self.corners.iter().enumerate() {
-            corner.next.set(k as u8 + 1);
+            corner.next.set(if k == 2 { 0 } else { k as u8 + 1 });
         }
-        for (k, vertex) in triangle.iter().enumerate() {
+        for ((k, corner), vertex) in self.corners.iter().enumerate().zip(triangle) {
+            let ClipVertex { x, y, z, w } = *vertex;
             // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
-            if *vertex == ClipVertex::default() {
+            if x | y | z | w == 0 {
                 self.ring.len = 0;
                 return;
             }
-            if let Some((place, corner)) = self.ring.take(&self.corners) {
-                corner.set(vertex, k);
-                self.ring.append(&self.corners, place, corner);
-            }
+            corner.set(vertex, k);
         }
         for plane in 0..PLANES {
             if codes.0 & (1 << plane) != 0 {

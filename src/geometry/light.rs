@@ -16,6 +16,8 @@ pub const NORMAL_ONE: i16 = 1 << 14;
 /// # let _ = light;
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// Copied word by word, instead of by a call.
+#[repr(align(4))]
 pub struct Light {
     /// Unit vector to the light, 2.14; zero for no directional light.
     direction: [i16; 3],

@@ -65,8 +65,11 @@ pub struct Face<'a> {
 }
 
 impl<'a> Face<'a> {
+    #[inline]
     pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3], side: Side) -> Self {
-        Self { mesh, triangle, corners, side }
+        // One by one: three halfwords at once are copied by a call, for want of alignment.
+        let [a, b, c] = corners;
+        Self { mesh, triangle, corners: [a, b, c], side }
     }
 
     /// Which side is seen: faces that show their back are drawn if [`State::cull`](crate::State::cull) lets them, and may

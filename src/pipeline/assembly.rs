@@ -195,28 +195,26 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
     fn fan(&mut self, fan: &[FanCorner<S>], corners: [u16; 3], number: usize) {
-        let [i, j, k] = corners;
         let recording = self.scene.phase == Phase::Record;
-        let mut indices = [0; 2];
-        for (number_in_fan, (slot, varyings)) in fan.iter().enumerate() {
-            let mut index = 0;
+        let (mut v, mut indices) = ([ScreenVertex::default(); 3], [0; 3]);
+        for (place, (slot, varyings)) in fan.iter().enumerate() {
             if recording {
-                index = self.scene.records.push_vertex();
-                self.scene.records.keep::<S>(usize::from(index), *slot, varyings);
+                indices[2] = self.scene.records.push_vertex();
+                self.scene.records.keep::<S>(usize::from(indices[2]), *slot, varyings);
             }
-            if let (2.., Some(first), Some(last)) = (number_in_fan, fan.first(), fan.get(number_in_fan.wrapping_sub(1)))
-            {
-                let v = [first.0.screen(), last.0.screen(), slot.screen()];
+            v[2] = slot.screen();
+            if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
                 if let Some((row, side)) = self.visible(&v) {
-                    let word = self.shader.face(&Face::new(self.mesh, number, [i, j, k], side));
+                    let word = self.shader.face(&Face::new(self.mesh, number, corners, side));
                     if recording {
-                        self.record(row, [indices[0], indices[1], index], word);
+                        self.record(row, indices, word);
                     } else {
                         self.draw(&v, &[first.1, last.1, *varyings], word);
                     }
                 }
             }
-            indices[usize::from(number_in_fan > 0)] = index;
+            let place = usize::from(place > 0);
+            (v[place], indices[place]) = (v[2], indices[2]);
         }
     }
 
