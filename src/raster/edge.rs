@@ -5,6 +5,8 @@
 //! exactly on the edge belongs to the span to its right, which is the top-left rule for edges that are not horizontal.
 
 use crate::geometry::small;
+use crate::math::divided;
+use core::hint::black_box;
 use core::num::NonZeroU32;
 
 /// The state of an edge at a row.
@@ -27,7 +29,7 @@ pub struct Edge {
 #[inline]
 pub(super) fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
     match u32::try_from(num) {
-        Ok(num) => (num / den, num % den),
+        Ok(num) => divided(num, den),
         Err(_) => long_divide((num >> 32) as u32, num as u32, den),
     }
 }
@@ -48,6 +50,24 @@ fn long_divide(high: u32, low: u32, den: NonZeroU32) -> (u32, u32) {
         }
     }
     (low, rest)
+}
+
+/// `num / den`, rounded down, and the remainder, for small quotients: mostly -1 and 0.
+///
+/// The compiler takes loops that add or subtract the same once a round for a division, and makes one of them, unless it does
+/// not know what they do.
+#[inline]
+fn few(num: i32, den: i32) -> (i32, i32) {
+    let (mut quotient, mut rest) = (0, num);
+    while rest < 0 {
+        rest = black_box(rest + den);
+        quotient -= 1;
+    }
+    while rest >= den {
+        rest = black_box(rest - den);
+        quotient += 1;
+    }
+    (quotient, rest)
 }
 
 impl Edge {
@@ -74,29 +94,13 @@ impl Edge {
     /// [`new`](Self::new) without a division, for quotients of -4..=4.
     ///
     /// # Format
-    /// |dx|, dy < 2¹⁵, so D < 2²³; p < 2⁸. N is taken from the pixel of `x`: (-128..128) dy + p dx, below 2²³ + 2²².
+    /// |dx|, dy < 2¹⁵, so D < 2²³; p < 2⁸. N is taken from the pixel of `x`: (-128..128) dy + p dx, below 9/2 D.
     #[inline]
     fn walked(x: i32, dx: i32, dy: i32, p: i32) -> Self {
-        let (mut quotient, mut r) = (0, dx);
-        while r < 0 {
-            r += dy;
-            quotient -= 1;
-        }
-        while r >= dy {
-            r -= dy;
-            quotient += 1;
-        }
         let d = dy << 8;
-        let mut pixel = x >> 8;
-        let mut error = (128 - (x & 0xFF)) * dy - p * dx;
-        while error < 0 {
-            error += d;
-            pixel += 1;
-        }
-        while error >= d {
-            error -= d;
-            pixel -= 1;
-        }
+        let (quotient, r) = few(dx, dy);
+        let (pixels, error) = few((128 - (x & 0xFF)) * dy - p * dx, d);
+        let pixel = (x >> 8) - pixels;
         Self { pixel, error: error as u32, quotient, remainder: (r << 8) as u32, denominator: d as u32 }
     }
 
@@ -113,7 +117,7 @@ impl Edge {
         // Floor division of a signed number: for dx < 0, ⌊dx / dy⌋ = -⌊(-dx - 1) / dy⌋ - 1 = !⌊!dx / dy⌋.
         let sign = dx >> 31;
         let magnitude = (dx ^ sign) as u32;
-        let (quotient, rest) = (magnitude / dy, magnitude % dy);
+        let (quotient, rest) = divided(magnitude, dy);
         let quotient = quotient as i32 ^ sign;
         let r = if sign < 0 { dy.get() - 1 - rest } else { rest };
 
