@@ -115,10 +115,17 @@ pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments
     if !D::ENABLED {
         return fill(color, value);
     }
-    tested_span(color, depth, z, steps.dz_dx, value, test);
+    if color.len() >= RUN {
+        return tested_span(color, depth, z, steps.dz_dx, value, test);
+    }
+    let mut z = z;
+    for (color, depth) in color.iter_mut().zip(depth) {
+        draw(test, &mut z, steps.dz_dx, value, color, depth);
+    }
 }
 
-/// One value where the depth test passes. Out of line: amid others, the loops would not get the registers that they need.
+/// One value where the depth test passes, in a long span. Out of line: amid others, the loops would not get the registers that
+/// they need.
 #[inline(never)]
 fn tested_span<R: Copy, D: DepthTest>(
     mut color: &mut [R],

@@ -4,6 +4,7 @@
 
 mod affine;
 mod angle;
+mod division;
 mod exponential;
 mod format;
 mod inverse_sqrt;
@@ -17,6 +18,7 @@ mod vector;
 
 pub use affine::Affine;
 pub use angle::Angle;
+pub(crate) use division::divided;
 pub use exponential::exp_negative;
 pub use format::{Scalar, Wide};
 pub use inverse_sqrt::{inverse_sqrt, unit_vector};

@@ -5,8 +5,10 @@ use super::sink::{OnDisplay, StripPixels, StripSink};
 use super::{Framebuffer, Stats, Strip};
 use crate::fragment::{PixelFormat, fill};
 use crate::geometry::{Viewport, ViewportError};
+use crate::math::divided;
 use crate::pipeline::{Phase, Scene, Target};
 use core::fmt;
+use core::num::NonZeroU32;
 use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::primitives::Rectangle;
@@ -83,7 +85,7 @@ impl StripRows {
     fn new(rows: u16) -> Self {
         let rows = rows.max(1);
         let shift = 12 + (u32::from(rows) - 1).checked_ilog2().map_or(0, |bits| bits + 1);
-        Self { rows, factor: (1_u32 << shift).div_ceil(u32::from(rows)), shift }
+        Self { rows, factor: (whole_rows((1 << shift) - 1, rows) + 1) as u32, shift }
     }
 
     /// The strip that a row is in.
@@ -91,6 +93,12 @@ impl StripRows {
     pub(crate) const fn of(&self, row: u32) -> usize {
         (row.wrapping_mul(self.factor) >> self.shift) as usize
     }
+}
+
+/// Rows of `width` pixels that `length` of them fill; 1 for a screen without width, which is an error of its own.
+fn whole_rows(length: usize, width: u16) -> usize {
+    let length = u32::try_from(length).unwrap_or(u32::MAX);
+    NonZeroU32::new(width.into()).map_or(1, |width| divided(length, width).0 as usize)
 }
 
 /// The screen and its strips.
@@ -140,9 +148,9 @@ impl<'b> Engine<'b> {
         let viewport = Viewport::full(screen.0, screen.1).map_err(RendererError::Screen)?;
         let depth_rows = match depth.len() {
             0 => usize::MAX,
-            length => match length.checked_div(usize::from(screen.0)) {
-                None | Some(0) => return Err(RendererError::DepthTooShort(length, screen.0)),
-                Some(rows) => rows,
+            length => match whole_rows(length, screen.0) {
+                0 => return Err(RendererError::DepthTooShort(length, screen.0)),
+                rows => rows,
             },
         };
         let strip_rows = rows.min(depth_rows).min(usize::from(screen.1)) as u16;
@@ -280,7 +288,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or a buffer does not hold one row.
     pub fn new(screen: (u16, u16), buffers: Buffers<'b, P>) -> Result<Self, RendererError> {
         let Buffers { color, depth, records } = buffers;
-        let rows = color.len().checked_div(usize::from(screen.0)).unwrap_or(1);
+        let rows = whole_rows(color.len(), screen.0);
         if rows == 0 {
             return Err(RendererError::ColorTooShort(color.len(), screen.0));
         }

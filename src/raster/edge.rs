@@ -8,7 +8,7 @@
 //! than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the exact one. D is below 2³², and 45
 //! bits behind the point leave room for the rounding of a step in each of 4,096 rows.
 
-use crate::math::{ShortDivisor, mul_high_signed, reciprocal};
+use crate::math::{ShortDivisor, divided, mul_high_signed, reciprocal};
 use core::num::NonZeroU32;
 
 /// The state of an edge at a row.
@@ -27,7 +27,7 @@ const FRACTION: u32 = 45;
 #[inline]
 pub(super) fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
     match u32::try_from(num) {
-        Ok(num) => (num / den, num % den),
+        Ok(num) => divided(num, den),
         Err(_) => long_divide((num >> 32) as u32, num as u32, den),
     }
 }
