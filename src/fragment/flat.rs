@@ -115,7 +115,7 @@ pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments
     if !D::ENABLED {
         return fill(color, value);
     }
-    if color.len() >= RUN {
+    if color.len() >= 9 {
         return tested_span(color, depth, z, steps.dz_dx, value, test);
     }
     let mut z = z;
