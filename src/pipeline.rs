@@ -24,7 +24,7 @@ use assembly::Assembly;
 pub use canvas::{Canvas, ScreenPoint};
 use core::ops::Range;
 pub use stroke::{Dashed, Smooth, Stroke, Thick, Thin};
-use triangle::Painter;
+use triangle::{Painter, Spans, spans_by_state, spans_nearer};
 
 /// Which faces are not drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -119,11 +119,22 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     ///
     /// `mvp` takes object space to clip space: camera · view · model.
     pub fn draw<S: Shader<F::Format>>(&mut self, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
-        self.draw_with(State::default(), mesh, mvp, shader);
+        self.draw_by(&State::DEFAULT, spans_nearer, mesh, mvp, shader);
     }
 
     /// Draws a mesh by other rules.
     pub fn draw_with<S: Shader<F::Format>>(&mut self, state: State, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
+        self.draw_by(&state, spans_by_state, mesh, mvp, shader);
+    }
+
+    fn draw_by<S: Shader<F::Format>>(
+        &mut self,
+        state: &State,
+        spans: Spans<F, S>,
+        mesh: &Mesh<'_>,
+        mvp: &Projective,
+        shader: &S,
+    ) {
         const {
             assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
             assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
@@ -133,12 +144,12 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         };
         let stride = S::WORDS + VERTEX_WORDS;
         if self.phase == Phase::Replay {
-            let print = fingerprint(&state, mesh, mvp, &self.viewport, stride);
+            let print = fingerprint(state, mesh, mvp, &self.viewport, stride);
             if self.find_draw(print, mesh.vertex_count(), stride) {
-                self.replay(&state, shader);
+                self.replay(state, spans, shader);
             }
         } else {
-            self.assemble(&state, mesh, mvp, shader, stride);
+            self.assemble(state, spans, mesh, mvp, shader, stride);
         }
     }
 
@@ -147,6 +158,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     fn assemble<S: Shader<F::Format>>(
         &mut self,
         state: &State,
+        spans: Spans<F, S>,
         mesh: &Mesh<'_>,
         mvp: &Projective,
         shader: &S,
@@ -156,7 +168,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let mut transform = Transform::default();
         if self.begin_draw(state, mesh, mvp, stride, S::DISPLACES, &mut transform) {
             let clip = self.clip_rect(&self.band);
-            let mut assembly = Assembly { scene: self, state, mesh, shader, transform: &transform, clip };
+            let mut assembly = Assembly { scene: self, state, spans, mesh, shader, transform: &transform, clip };
             match mesh.data().hierarchy {
                 Some(nodes) if !S::DISPLACES => assembly.parts(nodes, mvp),
                 _ => {
@@ -270,20 +282,26 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Draws the recorded triangles of this draw in the current strip.
     #[inline(never)]
-    fn replay<S: Shader<F::Format>>(&mut self, state: &State, shader: &S) {
+    fn replay<S: Shader<F::Format>>(&mut self, state: &State, spans: Spans<F, S>, shader: &S) {
         let end = self.target.rows.end;
         let clip = self.clip_rect(&self.target.rows);
         while let Some(TriangleRecord { v, corners, face }) = self.records.replay_triangle(end) {
             let [i, j, k] = corners;
             let varyings = |index| self.records.varyings::<S>(index);
             let varyings = [varyings(i), varyings(j), varyings(k)];
-            self.painter(&clip, state, shader).triangle(&v, &varyings, face);
+            self.painter(&clip, state, spans, shader).triangle(&v, &varyings, face);
         }
     }
 
     /// What to draw triangles with, in the phases that draw.
-    fn painter<'p, S>(&'p mut self, clip: &'p PixelRect, state: &'p State, shader: &'p S) -> Painter<'p, 'a, F, S> {
-        Painter { target: &mut self.target, screen: self.screen, clip, state, shader }
+    fn painter<'p, S: Shader<F::Format>>(
+        &'p mut self,
+        clip: &'p PixelRect,
+        state: &'p State,
+        spans: Spans<F, S>,
+        shader: &'p S,
+    ) -> Painter<'p, 'a, F, S> {
+        Painter { target: &mut self.target, screen: self.screen, clip, state, spans, shader }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
 
 use super::scan::{Culling, Scan, Seen, Stop};
+use super::triangle::Spans;
 use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
@@ -17,9 +18,10 @@ type Fan<S, const N: usize> = heapless::Vec<FanCorner<S>, N>;
 type FanCorner<S> = (Slot, <S as VertexShader>::Varyings);
 
 /// One draw.
-pub(super) struct Assembly<'s, 'a, F, S> {
+pub(super) struct Assembly<'s, 'a, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) scene: &'s mut Scene<'a, F>,
     pub(super) state: &'s State,
+    pub(super) spans: Spans<F, S>,
     pub(super) mesh: &'s Mesh<'s>,
     pub(super) shader: &'s S,
     pub(super) transform: &'s Transform,
@@ -265,7 +267,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     fn draw(&mut self, seen: &Seen, varyings: &[S::Varyings; 3], face: u32) {
-        self.scene.painter(&self.clip, self.state, self.shader).triangle_of_area(&seen.v, seen.area, varyings, face);
+        self.scene
+            .painter(&self.clip, self.state, self.spans, self.shader)
+            .triangle_of_area(&seen.v, seen.area, varyings, face);
     }
 }
 

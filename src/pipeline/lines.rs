@@ -7,6 +7,7 @@
 use super::assembly::{Assembly, rounded};
 use super::stroke::block;
 use super::triangle::Painter;
+use super::triangle::spans_by_state;
 use super::{Phase, Scene, State, Stroke, Thin, fingerprint};
 use crate::fragment::Shader;
 use crate::geometry::{
@@ -239,7 +240,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
             transform.set_depth_scale(state.depth_scale);
             transform
         });
-        Assembly { scene, state, mesh: vertices, shader, transform, clip: clip.clone() }
+        Assembly { scene, state, spans: spans_by_state, mesh: vertices, shader, transform, clip: clip.clone() }
     }
 
     fn varyings(&self, index: u16) -> S::Varyings {
@@ -254,7 +255,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     }
 
     fn painter(&mut self) -> Painter<'_, 'a, F, S> {
-        self.scene.painter(&self.clip, self.state, self.shader)
+        self.scene.painter(&self.clip, self.state, spans_by_state, self.shader)
     }
 
     #[inline(never)]

@@ -1,6 +1,6 @@
 //! Strokes: a line on the screen → pixels. What is not used is not linked, as each is a type.
 
-use super::triangle::Painter;
+use super::triangle::{Painter, spans_by_state};
 use crate::fragment::{
     AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, MAX_SPAN, NoDepth,
     PixelFormat, Shader, Steps,
@@ -172,7 +172,7 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     draw_run::<F, S, DASHED>(painter, &run);
 }
 
-impl<F, S> Painter<'_, '_, F, S> {
+impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// What is to be added to depths between two, in 16.16, that change by so much from pixel to pixel: the bias, and the half
     /// that rounds.
     #[inline]
@@ -372,7 +372,12 @@ impl Draw for Smooth {
         let coverage = Coverage::new(a, b, unit, self.0, painter.screen);
         let shader = Covered { shader: painter.shader, coverage };
         let Painter { target, screen, clip, state, .. } = painter;
-        fill(&mut Painter { target, screen: *screen, clip, state, shader: &shader }, &corners, [from, to], face);
+        fill(
+            &mut Painter { target, screen: *screen, clip, state, shader: &shader, spans: spans_by_state },
+            &corners,
+            [from, to],
+            face,
+        );
     }
 }
 

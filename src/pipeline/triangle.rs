@@ -2,18 +2,42 @@
 
 use super::{State, Target};
 use crate::fragment::{AnyDepth, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
-use crate::geometry::{Correction, ScreenVertex, Varyings, signed_area};
+use crate::geometry::{Correction, ScreenVertex, Varyings, VertexShader, signed_area};
 use crate::output::Framebuffer;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, homogenize, widen};
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
-pub struct Painter<'p, 't, F, S> {
+pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) target: &'p mut Target<'t, F>,
     pub(super) screen: (u16, u16),
     /// Pixels that may be drawn: on the screen, and in the strip.
     pub(super) clip: &'p PixelRect,
     pub(super) state: &'p State,
     pub(super) shader: &'p S,
+    pub(super) spans: Spans<F, S>,
+}
+
+/// How the spans of a triangle are drawn: a value, so that a program links the loops for the depth tests that it uses.
+pub(super) type Spans<F, S> = fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, <S as VertexShader>::Varyings>);
+
+/// 9. The spans of a triangle, by any depth test.
+pub(super) fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    set_up: &SetUp<'_, S::Varyings>,
+) {
+    match painter.test() {
+        DepthState::LESS => painter.spans(set_up, LessWrite),
+        DepthState::OFF => painter.spans(set_up, NoDepth),
+        other => painter.spans(set_up, AnyDepth::new(other)),
+    }
+}
+
+/// The same for [`DepthState::LESS`] alone.
+pub(super) fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    set_up: &SetUp<'_, S::Varyings>,
+) {
+    if painter.target.depth.is_empty() { painter.spans(set_up, NoDepth) } else { painter.spans(set_up, LessWrite) }
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
@@ -68,12 +92,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let steps = Steps { dz_dx: depth.dx, d_dx, words, side: self.state.side(area), level, correction };
 
         // 9. Spans, in a loop of its own for each kind of depth test.
-        let set_up = SetUp { v, area, face, depth, corner, d_dy, steps };
-        match self.test() {
-            DepthState::LESS => self.spans(&set_up, LessWrite),
-            DepthState::OFF => self.spans(&set_up, NoDepth),
-            other => self.spans(&set_up, AnyDepth::new(other)),
-        }
+        (self.spans)(self, &SetUp { v, area, face, depth, corner, d_dy, steps });
     }
 
     /// 9. Spans, between two edges from row to row.
@@ -144,7 +163,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 }
 
 /// A triangle, set up.
-struct SetUp<'a, V: Varyings> {
+pub(super) struct SetUp<'a, V: Varyings> {
     v: &'a [ScreenVertex; 3],
     area: i64,
     face: u32,
