@@ -307,8 +307,7 @@ impl Transform {
             Positions::Quantized { points, .. } => {
                 let q = points.get(index).copied().unwrap_or_default();
                 if self.short {
-                    let [x, y, z, w] = self.apply_short(q);
-                    return ClipVertex { x: x.into(), y: y.into(), z: z.into(), w: w.into() };
+                    return self.short_vertex(&q);
                 }
                 self.apply([i32::from(q[0]) << 16, i32::from(q[1]) << 16, i32::from(q[2]) << 16, 0])
             }
@@ -370,6 +369,22 @@ impl Transform {
                 fraction += i64::from(*low) * i64::from(p);
             }
             *value += fraction >> 16;
+        }
+        let [x, y, z, w] = clip;
+        ClipVertex { x, y, z, w }
+    }
+
+    /// [`apply_short`](Self::apply_short) for the few vertices that are clipped: a loop.
+    #[inline(never)]
+    fn short_vertex(&self, q: &[i16; 3]) -> ClipVertex {
+        let mut clip = [0; 4];
+        for (value, row) in clip.iter_mut().zip(&self.rows) {
+            let mut sum = row.translation;
+            for ((high, low), q) in row.high.iter().zip(&row.low).zip(q) {
+                let m = if SMALL_CORE { (high << 15) + low } else { *high };
+                sum += i64::from(m) * i64::from(*q);
+            }
+            *value = sum >> 15;
         }
         let [x, y, z, w] = clip;
         ClipVertex { x, y, z, w }

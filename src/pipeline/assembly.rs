@@ -86,9 +86,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn unplaced(&mut self, culling: Culling, corners: [u16; 3], number: usize) {
         // 3. Vertex stage, once a vertex where there are records to keep the result.
-        // Arrays are spelled out here: at `opt-level = "s"`, `map` is a loop through memory.
-        let [i, j, k] = corners;
-        let (a, b, c) = (self.slot(i), self.slot(j), self.slot(k));
+        let mut slots = [Slot::NONE; 3];
+        for (slot, index) in slots.iter_mut().zip(&corners) {
+            *slot = self.slot(*index);
+        }
+        let [a, b, c] = slots;
         if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
             return self.clip([a.outcode(), b.outcode(), c.outcode()], corners, number);
         }
@@ -111,7 +113,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
-    #[inline]
+    #[inline(never)]
     fn slot(&mut self, index: u16) -> Slot {
         let slot = self.scene.records.slot(index.into());
         if slot.is_unshaded() { self.shade(index.into()) } else { slot }

@@ -93,7 +93,7 @@ impl Seen {
     }
 
     /// Whether it may have pixels in `clip`, and in which row the first.
-    #[inline]
+    #[inline(never)]
     fn has_pixels(&mut self, clip: &PixelRect, stats: &mut Stats) -> bool {
         if self.area == 0 {
             stats.degenerate = stats.degenerate.wrapping_add(1);
