@@ -58,16 +58,24 @@ pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Sha
     };
 
     draw_backdrop(scene, &NIGHT);
-    let table = view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0));
-    let wood =
-        Material { vertex_colors: true, ..Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32) };
-    let mvp = camera * table;
-    scene.draw(&tiles::MESH, &mvp, &Shaded::new(PerFragmentNear, lighting.on(&wood, &table, tiles::MESH.bounds())));
+    let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
+    table(scene, &camera, &view, &lighting, &wood);
+    glazed_pot(scene, turn, &camera, &view, lighting, shading);
+}
 
-    let model = view * Affine::rotation_y(turn + Angle::from_degrees(-25));
+#[inline(never)]
+fn glazed_pot<F: Framebuffer>(
+    scene: &mut Scene<'_, F>,
+    turn: Angle,
+    camera: &Projective,
+    view: &Affine,
+    lighting: Lighting<1, 2>,
+    shading: Shading,
+) {
+    let model = *view * Affine::rotation_y(turn + Angle::from_degrees(-25));
     let glaze =
         Material { two_sided: true, ..Material::glossy(Rgb888::new(200, 60, 50), Rgb888::new(230, 220, 210), 64) };
-    let (mvp, bounds) = (camera * model, pot::MESH.bounds());
+    let (mvp, bounds) = (camera.compose_affine(&model), pot::MESH.bounds());
     let lit = lighting.on(&glaze, &model, bounds);
     match shading {
         Shading::PerFace => scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerFace, lit)),
@@ -242,46 +250,78 @@ pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 
     // 1. What is opaque.
     draw_backdrop(scene, &STUDIO);
-    let table = view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0));
-    let wood = Material { vertex_colors: true, ..Material::matte(Rgb888::new(215, 210, 200)) };
-    let mvp = camera * table;
-    scene.draw(&tiles::MESH, &mvp, &Shaded::new(PerFragmentNear, lighting.on(&wood, &table, tiles::MESH.bounds())));
-
-    // 2. What is transparent, from back to front: the panes around the pot, and the pot, the last number.
-    let pot_model = view * Affine::rotation_y(turn);
-    let models = core::array::from_fn::<_, 5, _>(|k| {
-        if k == PANES.len() {
-            return pot_model;
-        }
-        let angle = turn + Angle((k * 16_384) as u16);
-        view * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle(0x4000) - angle)
-    });
-    let mut order = [0, 1, 2, 3, 4];
-    let depth = |k: u16| {
-        let model = models.get(usize::from(k)).unwrap_or(&pot_model);
-        view_depth(&(camera * *model), PANE.bounds())
-    };
-    sort_back_to_front(&mut order, depth);
-    for k in order.map(usize::from) {
-        if let (Some(color), Some(model)) = (PANES.get(k), models.get(k)) {
-            scene.draw_with(GLASS, &PANE, &(camera * *model), &Blend::new(Flat::unlit(*color), Multiply));
-        } else {
-            glass_pot(scene, &(camera * pot_model), &pot_model, &lighting);
-        }
-    }
-
+    table(scene, &camera, &view, &lighting, &Material::matte(Rgb888::new(215, 210, 200)));
+    // 2. What is transparent, from back to front.
+    panes_and_pot(scene, turn, &camera, &view, &lighting);
     // 3. What is added.
-    for k in 0..SPARKS {
-        let age = (turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16)) >> 6;
-        let spark = view * spark(k, i32::from(age));
-        let [x, y, z] = spark.to_bits();
-        let ember = Ember { left: 1023 - i32::from(age) };
-        let billboard = Affine::translation(Vec3::from_bits([x, y, z]));
-        scene.draw_with(GLASS, &GLOW, &(camera * billboard), &Blend::new(ember, AddAlpha));
+    sparks(scene, turn, &camera, &view);
+}
+
+// Each in a function of its own: what it is made of is on the stack only while it is drawn.
+
+/// The table, of a material whose colours are the tiles' own.
+#[inline(never)]
+fn table<F: Framebuffer, const P: usize>(
+    scene: &mut Scene<'_, F>,
+    camera: &Projective,
+    view: &Affine,
+    lighting: &Lighting<1, P>,
+    wood: &Material,
+) {
+    let model = *view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0));
+    let wood = Material { vertex_colors: true, ..*wood };
+    let shader = Shaded::new(PerFragmentNear, lighting.on(&wood, &model, tiles::MESH.bounds()));
+    scene.draw(&tiles::MESH, &camera.compose_affine(&model), &shader);
+}
+
+/// The panes around the pot, and the pot, the last number.
+#[inline(never)]
+fn panes_and_pot<F: Framebuffer>(
+    scene: &mut Scene<'_, F>,
+    turn: Angle,
+    camera: &Projective,
+    view: &Affine,
+    lighting: &Lighting<1, 1>,
+) {
+    let model = |k: u16| {
+        if usize::from(k) == PANES.len() {
+            return *view * Affine::rotation_y(turn);
+        }
+        let angle = turn + Angle(k * 16_384);
+        *view * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle(0x4000) - angle)
+    };
+    let mut order = [0, 1, 2, 3, 4];
+    sort_back_to_front(&mut order, |k| view_depth(&camera.compose_affine(&model(k)), PANE.bounds()));
+    for k in order {
+        let model = model(k);
+        match PANES.get(usize::from(k)) {
+            Some(color) => pane(scene, &camera.compose_affine(&model), *color),
+            None => {
+                let mvp = camera.compose_affine(&model);
+                glass_pot(scene, &mvp, &model, lighting);
+                shine(scene, &mvp, &model, lighting);
+            }
+        }
     }
 }
 
-/// A pot of glass: its inner side, its outer side, and highlights that no transparency dims.
+#[inline(never)]
+fn pane<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, color: Rgb888) {
+    scene.draw_with(GLASS, &PANE, mvp, &Blend::new(Flat::unlit(color), Multiply));
+}
+
+#[inline(never)]
+fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, camera: &Projective, view: &Affine) {
+    for k in 0..SPARKS {
+        let age = (turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16)) >> 6;
+        let billboard = Affine::translation(*view * spark(k, i32::from(age)));
+        let ember = Ember { left: 1023 - i32::from(age) };
+        scene.draw_with(GLASS, &GLOW, &camera.compose_affine(&billboard), &Blend::new(ember, AddAlpha));
+    }
+}
+
+/// A pot of glass: its inner side and its outer side.
+#[inline(never)]
 fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, model: &Affine, lighting: &Lighting<1, 1>) {
     let bounds = pot::MESH.bounds();
     let body = Material { two_sided: true, ..Material::matte(Rgb888::new(150, 205, 200)) };
@@ -289,12 +329,17 @@ fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, model: 
     for cull in [Cull::Front, Cull::Back] {
         scene.draw_with(State { cull, ..GLASS }, &pot::MESH, mvp, &shader);
     }
+}
+
+/// Highlights that no transparency dims.
+#[inline(never)]
+fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, model: &Affine, lighting: &Lighting<1, 1>) {
     let gloss = Material {
         ambient: [0; 3],
         diffuse: [0; 3],
         ..Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48)
     };
-    let shine = Shaded::new(PerFragmentNear, lighting.on(&gloss, model, bounds));
+    let shine = Shaded::new(PerFragmentNear, lighting.on(&gloss, model, pot::MESH.bounds()));
     scene.draw_with(State { cull: Cull::Back, ..GLASS }, &pot::MESH, mvp, &Blend::new(shine, zstrip::fragment::Add));
 }
 

@@ -120,6 +120,7 @@ impl Projective {
     ///
     /// # Errors
     /// When `near ≤ 0`, `near ≥ far`, the angle is not in 0..180°, or the aspect has a zero.
+    #[inline(never)]
     pub const fn perspective(
         field_of_view: Angle,
         aspect: (u16, u16),
@@ -203,6 +204,7 @@ impl Projective {
     }
 
     /// `self` after an affine transform: `const` version of `self * model`.
+    #[inline(never)]
     pub const fn compose_affine(&self, model: &Affine) -> Self {
         self.compose(&Self::from_affine(model))
     }
