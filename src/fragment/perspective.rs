@@ -102,8 +102,8 @@ pub(super) fn nth(difference: i32, n: usize) -> i32 {
     if n == 1 { difference } else { mul_high_signed(difference, part) }
 }
 
-/// Draws a span fragment by fragment.
-#[inline]
+/// Draws a span fragment by fragment. Out of line, for its stack is not needed where a shader has a faster loop.
+#[inline(never)]
 pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,

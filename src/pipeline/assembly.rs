@@ -6,7 +6,7 @@ use super::{Phase, Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, Face, MAX_DISTANCES, Mesh, Outcode, Part,
-    Placed, Polygon, PolygonCorner, ScreenVertex, Transform, Varyings, VertexShader, View, inverse_w, weighted,
+    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, View, inverse_w, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -59,7 +59,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         while !self.scene.records.overflowed() {
             match scan.next(&self.scene.records, culling, &self.clip, self.scene.stats) {
                 Stop::Seen => self.shade_face(&scan.seen, scan.corners, scan.number),
-                Stop::Unplaced => self.unplaced(culling, scan.corners, scan.number),
+                Stop::Unplaced => self.unplaced(&mut scan.seen, culling, scan.corners, scan.number),
                 Stop::End => break,
             }
         }
@@ -68,6 +68,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     /// [`triangles`](Self::triangles) for shaders with cull distances, which come before all else.
     fn triangles_by_distance(&mut self, numbers: Range<usize>, culling: Culling) {
+        let mut seen = Seen::NONE;
         for number in numbers {
             let Some(corners) = self.mesh.triangle(number) else { return };
             if self.scene.records.overflowed() {
@@ -77,14 +78,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if self.is_culled_by_distance(corners) {
                 self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             } else {
-                self.unplaced(culling, corners, number);
+                self.unplaced(&mut seen, culling, corners, number);
             }
         }
     }
 
     /// A triangle that has a vertex which is not shaded yet, or not on the screen.
     #[inline(never)]
-    fn unplaced(&mut self, culling: Culling, corners: [u16; 3], number: usize) {
+    fn unplaced(&mut self, seen: &mut Seen, culling: Culling, corners: [u16; 3], number: usize) {
         // 3. Vertex stage, once a vertex where there are records to keep the result.
         let mut slots = [Slot::NONE; 3];
         for (slot, index) in slots.iter_mut().zip(&corners) {
@@ -92,11 +93,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
         let [a, b, c] = slots;
         if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
-            return self.clip([a.outcode(), b.outcode(), c.outcode()], corners, number);
+            return self.clip(seen, [a.outcode(), b.outcode(), c.outcode()], corners, number);
         }
-        let v = [a.screen(), b.screen(), c.screen()];
-        if let Some(seen) = Seen::new(v, culling, &self.clip, self.scene.stats) {
-            self.shade_face(&seen, corners, number);
+        if seen.set(slots, culling, &self.clip, self.scene.stats) {
+            self.shade_face(seen, corners, number);
         }
     }
 
@@ -159,7 +159,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     /// 4. Clipping, of a triangle with a vertex outside.
     #[inline(never)]
-    fn clip(&mut self, codes: [u8; 3], corners: [u16; 3], number: usize) {
+    fn clip(&mut self, seen: &mut Seen, codes: [u8; 3], corners: [u16; 3], number: usize) {
         let clamped = self.state.range.clamped().0;
         if codes[0] & codes[1] & codes[2] & !clamped != 0 {
             self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
@@ -169,18 +169,18 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let all = Outcode(codes[0] | codes[1] | codes[2]);
         for part in self.state.range.parts(all) {
             if S::CLIP_DISTANCES > 0 {
-                self.part::<DISTANCE_CORNERS>(corners, all, part, number);
+                self.part::<DISTANCE_CORNERS>(seen, corners, all, part, number);
             } else {
-                self.part::<CLIPPED_CORNERS>(corners, all, part, number);
+                self.part::<CLIPPED_CORNERS>(seen, corners, all, part, number);
             }
         }
     }
 
     /// A part of a triangle, which has up to `N` corners when it has been clipped.
-    fn part<const N: usize>(&mut self, corners: [u16; 3], codes: Outcode, part: Part, number: usize) {
+    fn part<const N: usize>(&mut self, seen: &mut Seen, corners: [u16; 3], codes: Outcode, part: Part, number: usize) {
         let mut fan = Fan::<S, N>::new();
         self.cut(corners, codes, part, &mut fan);
-        self.fan(&fan, corners, number);
+        self.fan(seen, &fan, corners, number);
     }
 
     /// Whether one of the cull distances is negative at all corners.
@@ -224,22 +224,22 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
-    fn fan(&mut self, fan: &[FanCorner<S>], corners: [u16; 3], number: usize) {
+    fn fan(&mut self, seen: &mut Seen, fan: &[FanCorner<S>], corners: [u16; 3], number: usize) {
         let recording = self.scene.phase == Phase::Record;
-        let (mut v, mut indices) = ([ScreenVertex::default(); 3], [0; 3]);
+        let (mut v, mut indices) = ([Slot::NONE; 3], [0; 3]);
         for (place, (slot, varyings)) in fan.iter().enumerate() {
             if recording {
                 indices[2] = self.scene.records.push_vertex();
                 self.scene.records.keep::<S>(usize::from(indices[2]), *slot, varyings);
             }
-            v[2] = slot.screen();
+            v[2] = *slot;
             if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
-                if let Some(seen) = Seen::new(v, self.state.culling(), &self.clip, self.scene.stats) {
+                if seen.set(v, self.state.culling(), &self.clip, self.scene.stats) {
                     let word = self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)));
                     if recording {
                         self.record(seen.row, indices, word);
                     } else {
-                        self.draw(&seen, &[first.1, last.1, *varyings], word);
+                        self.draw(seen, &[first.1, last.1, *varyings], word);
                     }
                 }
             }

@@ -79,17 +79,18 @@ impl Seen {
     /// Nothing yet.
     pub(super) const NONE: Self = Self { v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
 
-    /// 5. Culling by winding, and of what covers no pixel of `clip`.
+    /// 5. Culling by winding, and of what covers no pixel of `clip`: becomes a triangle with these vertices, and tells whether it may
+    /// be seen.
     #[inline(never)]
-    pub(super) fn new(v: [ScreenVertex; 3], culling: Culling, clip: &PixelRect, stats: &mut Stats) -> Option<Self> {
-        let [a, b, c] = &v;
-        let area = area_of((a.x, a.y), (b.x, b.y), (c.x, c.y));
-        if culling.leaves_out(area) {
+    pub(super) fn set(&mut self, v: [Slot; 3], culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
+        let [a, b, c] = v;
+        self.area = area_of(a.xy(), b.xy(), c.xy());
+        if culling.leaves_out(self.area) {
             stats.back_facing = stats.back_facing.wrapping_add(1);
-            return None;
+            return false;
         }
-        let mut seen = Self { v, area, row: 0 };
-        if seen.has_pixels(clip, stats) { Some(seen) } else { None }
+        self.v = [a.screen(), b.screen(), c.screen()];
+        self.has_pixels(clip, stats)
     }
 
     /// Whether it may have pixels in `clip`, and in which row the first.
