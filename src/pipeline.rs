@@ -288,8 +288,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         while let Some(TriangleRecord { v, corners, face }) = self.records.replay_triangle(end) {
             let [i, j, k] = corners;
             let varyings = |index| self.records.varyings::<S>(index);
-            let varyings = [varyings(i), varyings(j), varyings(k)];
-            self.painter(&clip, state, spans, shader).triangle(&v, &varyings, face);
+            let mut varyings = [varyings(i), varyings(j), varyings(k)];
+            self.painter(&clip, state, spans, shader).triangle(&v, &mut varyings, face);
         }
     }
 

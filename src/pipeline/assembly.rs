@@ -108,7 +108,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             self.record(seen.row, corners, word);
         } else {
             let [i, j, k] = corners;
-            self.draw(seen, &[self.varyings(i), self.varyings(j), self.varyings(k)], word);
+            self.draw(seen, &mut [self.varyings(i), self.varyings(j), self.varyings(k)], word);
         }
     }
 
@@ -239,7 +239,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                     if recording {
                         self.record(seen.row, indices, word);
                     } else {
-                        self.draw(seen, &[first.1, last.1, *varyings], word);
+                        self.draw(seen, &mut [first.1, last.1, *varyings], word);
                     }
                 }
             }
@@ -268,7 +268,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene.records.push_triangle(corners, face, strip);
     }
 
-    fn draw(&mut self, seen: &Seen, varyings: &[S::Varyings; 3], face: u32) {
+    #[inline]
+    fn draw(&mut self, seen: &Seen, varyings: &mut [S::Varyings; 3], face: u32) {
         self.scene
             .painter(&self.clip, self.state, self.spans, self.shader)
             .triangle_of_area(&seen.v, seen.area, varyings, face);

@@ -175,7 +175,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         for next in corners {
             let v = [first.0, last.0, next.0];
             if !pixel_rect(&v).intersection(clip).is_empty() {
-                scene.painter(clip, state, spans_by_state, shader).triangle(&v, &[first.1, last.1, next.1], face);
+                scene.painter(clip, state, spans_by_state, shader).triangle(&v, &mut [first.1, last.1, next.1], face);
             }
             last = next;
         }

@@ -331,8 +331,8 @@ fn fill<F: Framebuffer, S: Shader<F::Format>>(
     [from, to]: [&S::Varyings; 2],
     face: u32,
 ) {
-    painter.triangle(&[*a, *b, *c], &[*from, *to, *to], face);
-    painter.triangle(&[*a, *c, *d], &[*from, *to, *from], face);
+    painter.triangle(&[*a, *b, *c], &mut [*from, *to, *to], face);
+    painter.triangle(&[*a, *c, *d], &mut [*from, *to, *from], face);
 }
 
 impl Draw for Thick {

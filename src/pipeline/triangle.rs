@@ -48,7 +48,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle.
     #[inline]
-    pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], face: u32) {
+    pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &mut [S::Varyings; 3], face: u32) {
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area != 0 {
             self.triangle_of_area(v, area, varyings, face);
@@ -61,38 +61,55 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         &mut self,
         v: &[ScreenVertex; 3],
         area: i64,
-        varyings: &[S::Varyings; 3],
+        varyings: &mut [S::Varyings; 3],
         face: u32,
     ) {
-        // 8. Plane equations of depth and varyings; from here on, values are those at the screen's corner.
-        let gradients = Gradients::new(v, area, self.screen);
-        let mut depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+        let mut set_up = SetUp {
+            v,
+            area,
+            face,
+            depth: PlaneEquation::default(),
+            corner: S::Varyings::ZERO,
+            d_dy: S::Varyings::ZERO,
+            steps: Steps {
+                dz_dx: 0,
+                d_dx: S::Varyings::ZERO,
+                words: [0; 2],
+                side: self.state.side(area),
+                level: self.shader.level(varyings, area.unsigned_abs()),
+                correction: <S::Varyings as Varyings>::Correction::NONE,
+            },
+        };
+        self.set_up(&mut set_up, varyings);
+        // 9. Spans, in a loop of its own for each kind of depth test.
+        (self.spans)(self, &set_up);
+    }
+
+    /// 8. Plane equations of depth and varyings; from here on, values are those at the screen's corner. In a function of its own,
+    /// and in place, for the stack that it takes.
+    #[inline(never)]
+    fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings>, varyings: &mut [S::Varyings; 3]) {
+        let SetUp { v, area, depth, corner, d_dy, steps, .. } = set_up;
+        let gradients = Gradients::new(v, *area, self.screen);
+        *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+        steps.dz_dx = depth.dx;
         if !self.state.bias.is_none() {
             let depths = v[0].z.min(v[1].z).min(v[2].z)..v[0].z.max(v[1].z).max(v[2].z);
-            let steps = self.state.bias.steps(depths, depth.dx, depth.dy);
-            depth.base = depth.base.wrapping_add((steps as u32) << 16);
+            let bias = self.state.bias.steps(depths, depth.dx, depth.dy);
+            depth.base = depth.base.wrapping_add((bias as u32) << 16);
         }
-        let (mut corner, mut d_dx, mut d_dy) = (S::Varyings::ZERO, S::Varyings::ZERO, S::Varyings::ZERO);
-        let level = self.shader.level(varyings, area.unsigned_abs());
-        let mut correction = <S::Varyings as Varyings>::Correction::NONE;
-        let (mut homogeneous, mut varyings) = (None, varyings);
         if S::Varyings::PERSPECTIVE > 0 {
-            let (values, found) = homogenize(varyings, v, self.screen);
-            correction = found;
-            varyings = homogeneous.insert(values);
+            homogenize(varyings, v, self.screen, &mut steps.correction);
         }
         let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
-        widen(&gradients, &values, &mut correction);
-        for (k, ((corner, dx), dy)) in corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut()).enumerate() {
+        widen(&gradients, &values, &mut steps.correction);
+        let planes = corner.as_mut().iter_mut().zip(steps.d_dx.as_mut()).zip(d_dy.as_mut());
+        for (k, ((corner, dx), dy)) in planes.enumerate() {
             let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
             let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
             (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
         }
-        let words = self.shader.prepare(&mut corner, &d_dx);
-        let steps = Steps { dz_dx: depth.dx, d_dx, words, side: self.state.side(area), level, correction };
-
-        // 9. Spans, in a loop of its own for each kind of depth test.
-        (self.spans)(self, &SetUp { v, area, face, depth, corner, d_dy, steps });
+        steps.words = self.shader.prepare(corner, &steps.d_dx);
     }
 
     /// 9. Spans, between two edges from row to row.

@@ -17,17 +17,15 @@ use crate::math::mul_high_signed;
 /// `screen` is the screen's size.
 #[inline]
 pub fn homogenize<V: Varyings>(
-    varyings: &[V; 3],
+    varyings: &mut [V; 3],
     v: &[ScreenVertex; 3],
     screen: (u16, u16),
-) -> ([V; 3], V::Correction) {
-    let mut varyings = *varyings;
-    let mut correction = V::Correction::NONE;
+    correction: &mut V::Correction,
+) {
     if let Some((class, _, lanes)) = correction.lanes() {
-        let [a, b, c] = &mut varyings;
+        let [a, b, c] = varyings;
         *class = convert([a.as_mut(), b.as_mut(), c.as_mut()], lanes, reach(v, screen));
     }
-    (varyings, correction)
 }
 
 /// The planes of d q and q in 64 bits, where 32 are too few.
