@@ -5,8 +5,8 @@ use core::fmt;
 
 /// Rows of pixels to draw into.
 ///
-/// The rasterizer asks for a row once a span, draws into what it gets, and skips what lies behind its end. A row outside
-/// of the buffer is an empty slice.
+/// The rasterizer asks for a row before it draws into it, draws into what it gets, and skips what lies behind its end. A row
+/// outside of the buffer is an empty slice.
 pub trait Framebuffer {
     /// The format of the pixels.
     type Format: PixelFormat;
@@ -14,14 +14,14 @@ pub trait Framebuffer {
     /// Row `y` of the screen, from column 0.
     fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
 
-    /// Up to `length` pixels of row `y` from `column` on: those that there are. What the rasterizer calls.
+    /// Up to `length` pixels of row `y` from `column` on: those that there are.
     #[inline]
     fn span(&mut self, y: u32, column: usize, length: usize) -> &mut [<Self::Format as PixelFormat>::Raw] {
         first(self.row(y).get_mut(column..).unwrap_or_default(), length)
     }
 
-    /// The rows from `first_row` on, one after the other, if they lie in memory so, `width` pixels each. Lines, which mostly
-    /// have a pixel in each row, are drawn faster then.
+    /// The rows from `first_row` on, one after the other, if they lie in memory so, `width` pixels each, and no more than there
+    /// are. Triangles and lines are drawn faster then.
     #[inline]
     fn rows(&mut self, first_row: u32, width: usize) -> Option<&mut [<Self::Format as PixelFormat>::Raw]> {
         let _ = (first_row, width);
