@@ -118,9 +118,14 @@ pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments
     if color.len() >= 9 {
         return tested_span(color, depth, z, steps.dz_dx, value, test);
     }
-    let mut z = z;
+    let (mut z, dz_dx) = (z, steps.dz_dx);
     for (color, depth) in color.iter_mut().zip(depth) {
-        draw(test, &mut z, steps.dz_dx, value, color, depth);
+        let near = (z >> 16) as u16;
+        if test.passes(near, *depth) {
+            test.write(near, depth);
+            *color = value;
+        }
+        z = z.wrapping_add_signed(dz_dx);
     }
 }
 
