@@ -114,9 +114,7 @@ pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
 fn divide(x: i32, y: i32, z: u32, w: u32) -> ScreenVertex {
     let divisor = Divisor::of_normalized(w);
     let position = |c: i32| (divisor.divide_normalized(c) + 64) >> 7;
-    // Of half of z, so that it is not above half of w; the 2 is in the middle of what the quotient may be off by.
-    let half = divisor.divide_normalized((z >> 1) as i32);
-    ScreenVertex { x: position(x), y: position(y), z: sixteen_bits(2 * (half + 2).max(0) as u32) }
+    ScreenVertex { x: position(x), y: position(y), z: sixteen_bits(divisor.fraction_normalized(z)) }
 }
 
 /// How depth grows with distance.
@@ -188,9 +186,9 @@ impl UniformDepth {
 /// 65,535 times a fraction in 1.31, at most 1, rounded to nearest.
 #[inline]
 fn sixteen_bits(fraction: u32) -> u16 {
-    // As 16.15: 2¹⁶ f - f.
+    // As 16.15: 2¹⁶ f - f, and a half; rounded down, so what is taken away is rounded up.
     let fraction = fraction.min(1 << 31);
-    ((fraction - (fraction >> 16) + (1 << 14)) >> 15) as u16
+    (fraction + (1 << 14) - ((fraction + 0xFFFF) >> 16) >> 15) as u16
 }
 
 /// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.

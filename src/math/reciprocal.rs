@@ -153,6 +153,22 @@ impl Divisor {
         h.wrapping_add(((h.wrapping_add(1 << 15)) >> 16).wrapping_mul(self.defect) >> 15)
     }
 
+    /// `n` / x as 1.31 for an `x` with its top bit set and `n` ≤ x; exact for an `x` of one bit.
+    ///
+    /// # Format
+    /// Off by -7..=3 units: less than 1 each for two cuts, 2.2 for the rounding of the correction's factor, 1 for the defect's,
+    /// and the second of two steps' 2⁻²⁹·⁸.
+    #[inline(always)]
+    pub const fn fraction_normalized(&self, n: u32) -> u32 {
+        let r = self.reciprocal as u32;
+        let h = if SMALL_CORE {
+            (n >> 16).wrapping_mul(r).wrapping_add((n & 0xFFFF).wrapping_mul(r) >> 16)
+        } else {
+            ((n as u64 * r as u64) >> 16) as u32
+        };
+        h.wrapping_add_signed((((h + (1 << 16)) >> 17) as i32).wrapping_mul(self.defect) >> 14)
+    }
+
     /// `n` / q as 1.31.
     ///
     /// # Format
@@ -285,6 +301,12 @@ mod tests {
                     if x >> 31 != 0 {
                         let off = f64::from(Divisor::of_normalized(x).divide_normalized(n)) - exact;
                         assert!(off > -5.0 && off < 3.0, "{n} / {x}: {off} units");
+                        let exact = f64::from(n.unsigned_abs()) / f64::from(x) * 2f64.powi(32);
+                        let divisor = Divisor::of_normalized(x);
+                        let off = f64::from(divisor.fraction_normalized(2 * n.unsigned_abs())) - exact;
+                        assert!(off > -7.0 && off < 3.0, "2 {n} / {x}: {off} units");
+                        let n = n.unsigned_abs();
+                        assert_eq!(Divisor::of_normalized(1 << 31).fraction_normalized(n), n);
                     }
                     let coarse = CoarseDivisor::near(x, &mut (random() % 32)).divide(n / 2);
                     let exact = f64::from(n / 2) / f64::from(x) * 2f64.powi(31);
