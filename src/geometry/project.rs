@@ -188,7 +188,7 @@ impl UniformDepth {
 fn sixteen_bits(fraction: u32) -> u16 {
     // As 16.15: 2¹⁶ f - f, and a half; rounded down, so what is taken away is rounded up.
     let fraction = fraction.min(1 << 31);
-    (fraction + (1 << 14) - ((fraction + 0xFFFF) >> 16) >> 15) as u16
+    ((fraction + (1 << 14) - ((fraction + 0xFFFF) >> 16)) >> 15) as u16
 }
 
 /// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.

@@ -246,10 +246,7 @@ impl CoarseDivisor {
     #[inline(always)]
     pub fn near(q: u32, shift: &mut u32) -> Self {
         let mut x = q << (*shift & 31);
-        if !SMALL_CORE {
-            *shift = leading_zeros(q);
-            x = q << (*shift & 31);
-        } else if x >> (*shift & 31) != q || x >> 31 == 0 {
+        if !SMALL_CORE || x >> (*shift & 31) != q || x >> 31 == 0 {
             *shift = leading_zeros(q);
             x = q << (*shift & 31);
         }

@@ -79,8 +79,8 @@ impl Seen {
     /// Nothing yet.
     pub(super) const NONE: Self = Self { v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
 
-    /// 5. Culling by winding, and of what covers no pixel of `clip`: becomes a triangle with these vertices, and tells whether it may
-    /// be seen.
+    /// Becomes a triangle with these vertices, and tells whether it may be seen: stage 5, culling by winding, and of what covers
+    /// no pixel of `clip`.
     #[inline(never)]
     pub(super) fn set(&mut self, v: [Slot; 3], culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
         let [a, b, c] = v;

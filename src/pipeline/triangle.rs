@@ -85,8 +85,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         (self.spans)(self, &set_up);
     }
 
-    /// 8. Plane equations of depth and varyings; from here on, values are those at the screen's corner. In a function of its own,
-    /// and in place, for the stack that it takes.
+    /// Stage 8, plane equations of depth and varyings; from here on, values are those at the screen's corner. In a function of
+    /// its own, and in place, for the stack that it takes.
     #[inline(never)]
     fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings>, varyings: &mut [S::Varyings; 3]) {
         let SetUp { v, area, depth, corner, d_dy, steps, .. } = set_up;
