@@ -52,8 +52,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     pub(super) fn triangles(&mut self, numbers: Range<usize>) {
         let first = numbers.start;
         let culling = self.state.culling();
-        if S::CULL_DISTANCES > 0 {
-            return self.triangles_by_distance(numbers, culling);
+        if S::CULL_DISTANCES > 0 || !self.scene.records.has_vertices() {
+            return self.each_triangle(numbers, culling);
         }
         let mut scan = Scan::new(self.mesh, numbers);
         while !self.scene.records.overflowed() {
@@ -66,8 +66,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add((scan.next_number() - first) as u32);
     }
 
-    /// [`triangles`](Self::triangles) for shaders with cull distances, which come before all else.
-    fn triangles_by_distance(&mut self, numbers: Range<usize>, culling: Culling) {
+    /// [`triangles`](Self::triangles) where there is nothing to scan: places are not kept, or cull distances come before them.
+    #[inline(never)]
+    fn each_triangle(&mut self, numbers: Range<usize>, culling: Culling) {
         let mut seen = Seen::NONE;
         for number in numbers {
             let Some(corners) = self.mesh.triangle(number) else { return };
@@ -75,7 +76,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                 return;
             }
             self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
-            if self.is_culled_by_distance(corners) {
+            if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
                 self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             } else {
                 self.unplaced(&mut seen, culling, corners, number);
@@ -113,8 +114,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
-    #[inline(never)]
+    #[inline]
     fn slot(&mut self, index: u16) -> Slot {
+        if !self.scene.records.has_vertices() {
+            return self.shade(index.into());
+        }
         let slot = self.scene.records.slot(index.into());
         if slot.is_unshaded() { self.shade(index.into()) } else { slot }
     }
