@@ -12,8 +12,8 @@ use std::cell::Cell;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::fragment::{Compare, DepthState, Flat, Fragment, Gouraud, Shader};
 use zstrip::geometry::{
-    BoundingBox, BoundingSphere, Bounds, Corner, DepthRange, Face, Mesh, MeshData, MeshError, Positions, Topology,
-    VertexShader,
+    BoundingBox, BoundingSphere, Bounds, Corner, DepthRange, Face, Mesh, MeshData, MeshError, Placed, Positions,
+    Topology, Transform, VertexShader, Viewport,
 };
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::output::{Buffers, FrameError, FrameSlice, FramebufferRenderer, Renderer, Stats, Strip, StripPixels};
@@ -248,4 +248,27 @@ fn short_buffer_for_a_strip_gets_the_pixels_it_holds() {
     let strip = strip.expect("the same scene").expect("a strip");
     assert_eq!(strip.pixels().len(), 502);
     assert!(strip.pixels().iter().all(|p| *p == 0xFFFF));
+}
+
+/// w on the border of the range that the short path is made for: its own rounding must not lead out of it.
+#[test]
+fn short_path_is_not_taken_where_rounding_leaves_its_range() {
+    let points = [[-32_768; 3], [32_766; 3], [-32_768, 32_766, -32_768]];
+    let positions = Positions::Quantized { points: &points, scale: Scalar::ONE, offset: Vec3::ZERO };
+    let mesh = Mesh::new(MeshData::new(positions)).expect("a mesh");
+    let viewport = Viewport::full(4096, 4096).expect("a viewport");
+    let mut short = 0;
+    for nudge in -3000..3000_i64 {
+        let w = [1_431_655_800, 858_993_514, 613_566_821, 7_199_183_431 + 40 * nudge];
+        let mvp = Projective::from_rows([[0, 0, 0, 1 << 30], [0, 1 << 32, 0, 0], [0, 0, 0, 1 << 31], w]);
+        let transform = Transform::new(&mvp, &viewport, &mesh, false);
+        short += usize::from(transform.is_short());
+        for index in 0..points.len() {
+            if let Placed::Screen(vertex) = transform.place(&positions, index) {
+                let clip = transform.vertex(&positions, index);
+                assert_eq!(transform.project(&clip), Some(vertex), "nudge {nudge}, vertex {index}");
+            }
+        }
+    }
+    assert!(short > 1000 && short < 6000, "{short} short transforms of 6000");
 }

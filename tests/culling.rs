@@ -359,3 +359,26 @@ fn scenes_may_leave_out_what_is_not_visible() {
         assert!(left_out >= 3 * 6, "{records} records: {left_out}");
     }
 }
+
+/// Boxes as far out as coordinates go, of objects that are seen.
+#[test]
+fn far_corners_of_a_large_world_are_seen() {
+    let lens = Projective::perspective(Angle::from_degrees(60), (512, 512), Scalar::ONE, Scalar::from_num(1000));
+    let lens = lens.expect("a camera");
+    let mut rng = Rng::new(8);
+    for case in 0..300 {
+        let [x, y, z] = [(); 3].map(|()| (rng.between(-31_000, 31_000) >> rng.below(12)) as i16);
+        let corners = [(-60, -50), (60, -50), (0, 50)].map(|(i, j)| Vec3::from_ints(x + i, y + j, z));
+        let mesh = Mesh::new(MeshData::new(Positions::Exact(&corners))).expect("a mesh");
+        // Somewhere on the screen, if not in its middle.
+        let (aside, up) = (rng.between(-120, 120) as i16, rng.between(-120, 120) as i16);
+        let eye = Vec3::from_ints(x + aside, y + up, z + 290);
+        let [ex, ey, ez] = eye.to_bits().map(Scalar::from_bits);
+        let mvp = lens * Affine::translation(Vec3::new(-ex, -ey, -ez));
+        let (picture, stats) = strips::<Rgb565>((512, 512), 512, 100, Rgb565::BLACK, |scene| {
+            scene.draw_with(State { cull: Cull::None, ..State::default() }, &mesh, &mvp, &Gouraud::colors_unlit());
+        });
+        let lit = picture.iter().filter(|pixel| **pixel != 0).count();
+        assert!(lit > 5000 && stats.culled == 0, "case {case}: ({x}, {y}, {z}) from {eye:?}: {lit} pixels, {stats:?}");
+    }
+}

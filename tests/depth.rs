@@ -255,6 +255,9 @@ fn uniform_depth_of_vertices_is_within_half_a_step() {
             let exact = (65_535.0 * z / far.to_num::<f64>()).clamp(0.0, 65_535.0);
             worst = worst.max((f64::from(vertex.z) - exact).abs());
             placed += 1;
+            // As the corner of a clipped triangle.
+            let clip = transform.vertex(&mesh.data().positions, index);
+            assert_eq!(transform.project(&clip), Some(vertex), "case {case}: {point:?}, clipped");
             assert!(worst <= 0.51, "case {case}: depth {} of {point:?}, exactly {exact}", vertex.z);
         }
     }

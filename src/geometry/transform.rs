@@ -156,7 +156,7 @@ impl View {
             }
             let cut = excess(&entries, 15).max(15);
             // The last entry, for a coordinate of 1, which is 2¹⁶ here.
-            let mut value = off + ((entries[3] >> cut) as i32) * (1 << 15 >> shift);
+            let mut value = off + (((entries[3] >> cut) as i32) << 15 >> shift);
             for (entry, (center, half)) in entries.iter().zip(center.iter().zip(half)) {
                 let entry = (entry >> cut) as i32;
                 let size = entry.abs();
@@ -169,25 +169,18 @@ impl View {
         true
     }
 
-    /// The least value that (`a` times a row + `b` times w) / 2^`cut` takes in a box, or the largest for `sign` -1, on the scale
-    /// of the sum's last entry.
+    /// The least w in a box.
     ///
     /// # Format
-    /// Entries of the sum below 2⁴⁵: six products of at most 2⁶⁰.
+    /// Entries below 2⁴⁵: six products of at most 2⁶⁰.
     #[inline(never)]
-    fn extreme(&self, row: &[i64; 4], (a, b, cut): (i32, i32, u32), aabb: &BoundingBox, sign: i32) -> i64 {
-        let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
-        let mut value = 0;
-        for (k, (r, w)) in row.iter().zip(&self.rows[3]).enumerate() {
-            let entry = (r * i64::from(a) + w * i64::from(b)) >> cut;
-            value += match (center.get(k), half.get(k)) {
-                (Some(center), Some(half)) => {
-                    times(entry, i64::from(*center)) - i64::from(sign) * times(entry.abs(), i64::from(*half))
-                }
-                _ => entry,
-            };
+    fn least_w(&self, aabb: &BoundingBox) -> i64 {
+        let [.., row] = &self.rows;
+        let [.., mut least] = *row;
+        for ((entry, center), half) in row.iter().zip(aabb.center.to_bits()).zip(aabb.half.to_bits()) {
+            least += times(*entry, i64::from(center)) - times(entry.abs(), i64::from(half));
         }
-        value
+        least
     }
 }
 
@@ -243,7 +236,7 @@ impl Transform {
 
         // 2. One shift for all, so that the largest reachable value is just below 2⁵⁵.
         let shift = excess(&[reach], 53);
-        let least_w = view.extreme(&view.rows[3], (1, 0, 0), aabb, 1);
+        let least_w = view.least_w(aabb);
         self.short = quantized && scale(least_w, shift) >= Self::SHORT_W;
         for row in &mut self.rows {
             row.translation = scale(row.translation, shift);
@@ -279,7 +272,8 @@ impl Transform {
 
     /// Divides by w and snaps; `None` unless w > 0.
     pub fn project(&self, vertex: &ClipVertex) -> Option<ScreenVertex> {
-        project(vertex).map(|placed| self.with_depth(placed, vertex.z))
+        // Clip coordinates of the short path are 2²⁵ units of the long one's.
+        project(vertex).map(|placed| self.with_depth(placed, if self.short { vertex.z << 25 } else { vertex.z }))
     }
 
     /// A vertex on the screen with its depth, from z of the long path.
@@ -295,10 +289,10 @@ impl Transform {
     ///
     /// # Format
     /// Values of the short path are those of the long one / 2²⁵, below 2³⁰, off by at most 3: half a unit from each of three
-    /// entries, half from the constant and one from the cut. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is
+    /// entries, half from the constant and one from the cut; 4 are added, so that w is not below 2²⁶ for that. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is
     /// off by at most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it
     /// be, which is well inside the guard band.
-    const SHORT_W: i64 = 1 << 51;
+    const SHORT_W: i64 = (1 << 51) + (4 << 25);
 
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
     #[inline(never)]
