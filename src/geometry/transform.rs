@@ -122,12 +122,12 @@ impl View {
         self.scale = 10 - shift - more;
     }
 
-    /// Whether any of a box may be seen in a rectangle of the screen, in pixels at most 2¹⁴ from its corner. The depth
+    /// Whether any of a box may be seen in a rectangle of the screen, in pixels at most 2¹⁶ from its corner. The depth
     /// planes in `clamped` do not count. Errs on the side of `true`.
     ///
     /// # Format
-    /// Planes are sums of rows, such as 512 x - left w ≥ 0, below 2⁶⁰ and off by less than 2¹⁴. They are cut to 15 bits and a sign,
-    /// by a shift of at least 15, and the box to 14 bits, by a shift of at least 2. So entries are off by less than 2 units,
+    /// Planes are sums of rows, such as 512 x - left w ≥ 0, below 2⁶² and off by less than 2¹⁶. They are cut to 15 bits and a sign,
+    /// by a shift of at least 17, and the box to 14 bits, by a shift of at least 2. So entries are off by less than 2 units,
     /// coordinates by less than 1. Products are below 2²⁹; all is counted in halves, so that their sum fits.
     #[inline(never)]
     pub fn sees(&self, aabb: &BoundingBox, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
@@ -154,7 +154,7 @@ impl View {
             for ((entry, r), w) in entries.iter_mut().zip(row).zip(w) {
                 *entry = r * a + w * i64::from(b);
             }
-            let cut = excess(&entries, 15).max(15);
+            let cut = excess(&entries, 15).max(17);
             // The last entry, for a coordinate of 1, which is 2¹⁶ here.
             let mut value = off + (((entries[3] >> cut) as i32) << 15 >> shift);
             for (entry, (center, half)) in entries.iter().zip(center.iter().zip(half)) {

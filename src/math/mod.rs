@@ -18,7 +18,7 @@ mod vector;
 
 pub use affine::Affine;
 pub use angle::Angle;
-pub(crate) use division::divided;
+pub(crate) use division::{divide, divide_modulo, divided};
 pub use exponential::exp_negative;
 pub use format::{Scalar, Wide};
 pub use inverse_sqrt::{inverse_sqrt, unit_vector};

@@ -8,8 +8,7 @@
 //! than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the exact one. D is below 2³², and 45
 //! bits behind the point leave room for the rounding of a step in each of 4,096 rows.
 
-use crate::math::{ShortDivisor, divided, mul_high_signed, reciprocal};
-use core::num::NonZeroU32;
+use crate::math::{ShortDivisor, divide_modulo, mul_high_signed, reciprocal};
 
 /// The state of an edge at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,56 +21,6 @@ pub struct Edge {
 
 /// Fractional bits of positions.
 const FRACTION: u32 = 45;
-
-/// `num / den` and the remainder, for quotients below 2³².
-#[inline]
-pub(super) fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
-    match u32::try_from(num) {
-        Ok(num) => divided(num, den),
-        Err(_) => long_divide((num >> 32) as u32, num as u32, den),
-    }
-}
-
-/// The same bit by bit, `high` being below `den`: rare, and no 64-bit division to link.
-#[cold]
-#[inline(never)]
-fn long_divide(high: u32, low: u32, den: NonZeroU32) -> (u32, u32) {
-    let (mut rest, mut low) = (high, low);
-    for _ in 0..32 {
-        // The bit that leaves `rest` at the top makes it larger than any divisor.
-        let carry = rest >> 31;
-        rest = rest << 1 | low >> 31;
-        low <<= 1;
-        if carry != 0 || rest >= den.get() {
-            rest = rest.wrapping_sub(den.get());
-            low |= 1;
-        }
-    }
-    (low, rest)
-}
-
-/// ⌊num 2^`bits` / den⌋ modulo 2⁶⁴, |num| < 2⁴⁹, 0 < den < 2²⁵, bit by bit.
-#[cold]
-#[inline(never)]
-fn quotient(num: i64, den: u32, bits: u32) -> i64 {
-    // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
-    let flip = num >> 63;
-    let mut word = ((num ^ flip) as u64) << 14;
-    let (mut rest, mut quotient) = (0_u32, 0_i64);
-    for bit in 0..50 + bits {
-        if bit == 50 {
-            word = flip as u64;
-        }
-        rest = rest << 1 | (word >> 63) as u32;
-        word = word << 1 | (flip & 1) as u64;
-        quotient <<= 1;
-        if rest >= den {
-            rest -= den;
-            quotient |= 1;
-        }
-    }
-    quotient ^ flip
-}
 
 /// `value` 2^`by`, 0 < `by` < 32, in two words.
 #[inline(always)]
@@ -153,8 +102,11 @@ impl Edge {
     #[cold]
     #[inline(never)]
     fn huge(x: i32, dx: i32, dy: i32, p: i32) -> Self {
-        let step = quotient(dx.into(), dy as u32, FRACTION);
-        let along = quotient(i64::from(p) * i64::from(dx), dy as u32, FRACTION - 8);
+        // n 2^bits = (n 2^(bits - 32)) 2³², and the 96 bits of the factor in two parts.
+        let quotient =
+            |n: i64, bits: u32| divide_modulo(n >> (64 - bits), (n << (bits - 32)) as u32, dy.unsigned_abs().into());
+        let step = quotient(dx.into(), FRACTION);
+        let along = quotient(i64::from(p) * i64::from(dx), FRACTION - 8);
         Self { x: Self::start(x).wrapping_add(along) - 1, step }
     }
 
@@ -174,26 +126,6 @@ impl Edge {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn long_division_is_division() {
-        let mut state = 9_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            state ^ state >> 31
-        };
-        for _ in 0..20_000 {
-            let den = NonZeroU32::new((next() >> (32 + next() % 31)) as u32 | 1).expect("odd");
-            let num = (u64::from(den.get()) * (next() >> (32 + next() % 32))) + next() % u64::from(den.get());
-            let expected = ((num / u64::from(den.get())) as u32, (num % u64::from(den.get())) as u32);
-            assert_eq!(long_divide((num >> 32) as u32, num as u32, den), expected, "{num} / {den}");
-            let (num, den) = (next() as i64 >> (15 + next() % 48), (next() >> (39 + next() % 24)) as u32 | 1);
-            for bits in [37, 45] {
-                let expected = ((i128::from(num) << bits).div_euclid(i128::from(den))) as i64;
-                assert_eq!(quotient(num, den, bits), expected, "{num} << {bits} / {den}");
-            }
-        }
-    }
 
     /// ⌈N / D⌉ in exact arithmetic.
     fn exact(a: (i32, i32), b: (i32, i32), row: i32) -> i32 {

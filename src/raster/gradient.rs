@@ -12,7 +12,7 @@
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{leading_zeros, mul_high_signed};
+use crate::math::{divide_modulo, leading_zeros, mul_high_signed};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -214,55 +214,4 @@ fn moderate(difference: i32) -> bool {
 #[inline(never)]
 fn minor(v: &[i64; 2], c: &[i32; 2]) -> i64 {
     v[0] * i64::from(c[1]) - v[1] * i64::from(c[0])
-}
-
-/// ⌊n 2³² / den⌋ modulo 2⁶⁴ for n = `high` 2³² + `low`, 0 < den < 2⁵¹.
-///
-/// Long division, bit by bit: it is rare, and wider divisions are code that small programs need not link.
-#[inline]
-fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
-    // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
-    let flip = (high >> 63) as u32;
-    let mut rest = 0_u64;
-    let mut quotient = 0_u64;
-    for word in [(high >> 32) as u32, high as u32, low, 0] {
-        let mut word = word ^ flip;
-        if rest == 0 && u64::from(word) < den {
-            // Nothing but zeros.
-            rest = word.into();
-            quotient <<= 32;
-            continue;
-        }
-        for _ in 0..32 {
-            rest = rest << 1 | u64::from(word >> 31);
-            word <<= 1;
-            quotient <<= 1;
-            if rest >= den {
-                rest -= den;
-                quotient |= 1;
-            }
-        }
-    }
-    quotient as i64 ^ high >> 63
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn long_division_is_exact_modulo_2_to_64() {
-        let mut state = 5_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            state ^ state >> 29
-        };
-        for case in 0..20_000 {
-            let (high, low) = (next() as i64 >> (next() % 64), next() as u32);
-            let den = (next() >> (13 + next() % 50)).max(1);
-            let exact = i128::from(high) << 32 | i128::from(low);
-            let expected = (exact << 32).div_euclid(i128::from(den)) as i64;
-            assert_eq!(divide_modulo(high, low, den), expected, "case {case}: {exact} << 32 / {den}");
-        }
-    }
 }
