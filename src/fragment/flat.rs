@@ -104,6 +104,9 @@ impl<P: PixelFormat> Shader<P> for Flat {
     }
 }
 
+/// Pixels from which on a call is worth it.
+const LONG: usize = 9;
+
 /// Draws a span in the colour of a face's word.
 #[inline]
 pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
@@ -115,7 +118,7 @@ pub(super) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments
     if !D::ENABLED {
         return fill(color, value);
     }
-    if color.len() >= 9 {
+    if color.len() >= LONG {
         return tested_span(color, depth, z, steps.dz_dx, value, test);
     }
     let (mut z, dz_dx) = (z, steps.dz_dx);
