@@ -1,5 +1,6 @@
-//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7, in `triangle` the rest;
-//! `lines` and `stroke` do the same for lines and points, `canvas` for what is given on the screen.
+//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7 (2 and 5 in `scan`, for
+//! all shaders alike), in `triangle` the rest; `lines` and `stroke` do the same for lines and points, `canvas` for what is given
+//! on the screen.
 //!
 //! A frame is drawn by a closure that calls [`Scene::draw`]. The closure runs in one of three phases: it *records* a band
 //! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too

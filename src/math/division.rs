@@ -9,7 +9,7 @@ pub(crate) fn divided(num: u32, den: NonZeroU32) -> (u32, u32) {
     if SMALL_CORE { divided_bit_by_bit(num, den) } else { (num / den, num % den) }
 }
 
-/// As many rounds as the quotient has bits: what edges and strips divide gives few, and a small program need not link the
+/// As many rounds as the quotient has bits: what lines and strips divide gives few, and a small program need not link the
 /// compiler's longer routine.
 #[inline(never)]
 fn divided_bit_by_bit(num: u32, den: NonZeroU32) -> (u32, u32) {

@@ -197,9 +197,8 @@ impl<'a> Records<'a> {
         self.layout.added = 0;
         self.layout.stride = stride;
         self.layout.front = start + needs;
-        for place in self.positions_mut() {
-            *place = Slot::NONE.0;
-        }
+        let (places, _) = self.vertices_mut();
+        places.fill(Slot::NONE.0);
         true
     }
 
@@ -245,12 +244,6 @@ impl<'a> Records<'a> {
         let start = self.layout.vertices;
         let words = self.words.get(start..start + 2 * self.layout.count).unwrap_or_default();
         bytemuck::try_cast_slice(words).unwrap_or_default()
-    }
-
-    fn positions_mut(&mut self) -> &mut [[u32; 2]] {
-        let start = self.layout.vertices;
-        let words = self.words.get_mut(start..start + 2 * self.layout.count).unwrap_or_default();
-        bytemuck::try_cast_slice_mut(words).unwrap_or_default()
     }
 
     /// What is known of where a vertex of the current draw is.

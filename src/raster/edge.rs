@@ -74,7 +74,8 @@ impl Edge {
     ///
     /// # Format
     /// For |dx| < 2¹⁷, dy < 2¹⁹. dx / dy is h 2^(z - 43), h below 2²⁹ and off by less than 2; the rest, in units of 2^(z - 43), is
-    /// below 2 dy, so 32 bits hold it although its terms do not fit; its quotient is cut to 2^(2z - 82), or to a unit. 2¹¹ rows
+    /// below 2 dy, so 32 bits hold it although its terms do not fit; its quotient is cut to 2^(2z - 82), or to a unit. (Edges below
+    /// 8/256 px have one row, for which the first digit is enough: theirs is not brought to its place.) 2¹¹ rows
     /// lose less than 2¹² units, or 2^(z - 12) where edges are lower: within the half of 1 / D that is taken off. |p step|
     /// is below |dx| 2⁴⁵.
     #[inline(never)]
