@@ -15,14 +15,13 @@ use zstrip::output::Strip;
 
 struct Dashboard;
 
-impl Demo for Dashboard {
+impl Demo<false> for Dashboard {
     type Format = Rgb565;
     const NAME: &'static str = "dashboard";
     const ABOUT: &'static str = "Instruments drawn with embedded-graphics, strip by strip and without a depth buffer.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
-    const DEPTH: bool = false;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, _mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, false>>, turn: Angle, _mode: usize) {
         scenes::dashboard::draw(scene, turn);
     }
 }

@@ -64,7 +64,7 @@ mod image {
         }
         if cfg!(proof = "w4") {
             // Directly, not through the table of scenes, so that no scene is linked.
-            workloads::flat_torus(Buffers { color, depth, records }, send);
+            workloads::flat_torus_without_records(color, depth, send);
             return;
         }
         if cfg!(proof = "w1-w6") {

@@ -25,7 +25,7 @@ use assembly::Assembly;
 pub use canvas::{Canvas, ScreenPoint};
 use core::ops::Range;
 pub use stroke::{Dashed, Smooth, Stroke, Thick, Thin};
-use triangle::{Painter, Spans, spans_by_state, spans_nearer};
+use triangle::{Chosen, Painter};
 
 /// Which faces are not drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -120,18 +120,21 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     ///
     /// `mvp` takes object space to clip space: camera · view · model.
     pub fn draw<S: Shader<F::Format>>(&mut self, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
-        self.draw_by(&State::DEFAULT, spans_nearer, mesh, mvp, shader);
+        self.draw_by(&State::DEFAULT, &const { Chosen::DEFAULT }, mesh, mvp, shader);
     }
 
     /// Draws a mesh by other rules.
+    ///
+    /// A program links the loops for the depth tests that may be asked for: where the state is a constant, its own.
+    #[inline]
     pub fn draw_with<S: Shader<F::Format>>(&mut self, state: State, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
-        self.draw_by(&state, spans_by_state, mesh, mvp, shader);
+        self.draw_by(&state, &Chosen::of(&state), mesh, mvp, shader);
     }
 
     fn draw_by<S: Shader<F::Format>>(
         &mut self,
         state: &State,
-        spans: Spans<F, S>,
+        chosen: &Chosen<F, S>,
         mesh: &Mesh<'_>,
         mvp: &Projective,
         shader: &S,
@@ -144,13 +147,13 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
         };
         let stride = S::WORDS + VERTEX_WORDS;
-        if self.phase == Phase::Replay {
+        if F::RECORDS && self.phase == Phase::Replay {
             let print = fingerprint(state, mesh, mvp, &self.viewport, stride);
             if self.find_draw(print, mesh.vertex_count(), stride) {
-                self.replay(state, spans, shader);
+                self.replay(state, chosen, shader);
             }
         } else {
-            self.assemble(state, spans, mesh, mvp, shader, stride);
+            self.assemble(state, chosen, mesh, mvp, shader, stride);
         }
     }
 
@@ -159,7 +162,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     fn assemble<S: Shader<F::Format>>(
         &mut self,
         state: &State,
-        spans: Spans<F, S>,
+        chosen: &Chosen<F, S>,
         mesh: &Mesh<'_>,
         mvp: &Projective,
         shader: &S,
@@ -168,12 +171,17 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         // 1. Culling of whole meshes.
         let mut transform = Transform::default();
         if self.begin_draw(state, mesh, mvp, stride, S::DISPLACES, &mut transform) {
+            if let Some(scale) = chosen.depth_scale {
+                scale(&mut transform, state.depth_scale);
+            }
             let clip = self.clip_rect(&self.band);
-            let mut assembly = Assembly { scene: self, state, spans, mesh, shader, transform: &transform, clip };
+            let mut assembly = Assembly { scene: self, state, chosen, mesh, shader, transform: &transform, clip };
             match mesh.data().hierarchy {
                 Some(nodes) if !S::DISPLACES => assembly.parts(nodes, mvp),
                 _ => {
-                    assembly.shade_all();
+                    if F::RECORDS {
+                        assembly.shade_all();
+                    }
                     assembly.triangles(0..mesh.triangle_count());
                 }
             }
@@ -229,8 +237,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         transform: &mut Transform,
     ) -> bool {
         self.count_draw();
-        let recording = self.phase == Phase::Record;
-        if recording && self.records.overflowed() {
+        let recording = self.is_recording();
+        if self.overflowed() {
             return false;
         }
         let view = View::new(mvp, &self.viewport);
@@ -240,7 +248,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             // What is out of view leaves a header without vertices.
             let vertices = if culled { 0 } else { mesh.vertex_count() };
             self.records.begin_draw(fingerprint(state, mesh, mvp, &self.viewport, stride), vertices, stride);
-            if self.records.overflowed() {
+            if self.overflowed() {
                 return false;
             }
         }
@@ -249,18 +257,31 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             self.end_draw();
             return false;
         }
-        if !recording {
+        if F::RECORDS && !recording {
             self.records.begin_direct(mesh.vertex_count(), stride);
         }
         transform.fold(&view, mesh, displaced);
-        transform.set_depth_scale(state.depth_scale);
         true
     }
 
     fn end_draw(&mut self) {
-        if self.phase == Phase::Record {
+        if self.is_recording() {
             self.records.end_draw();
         }
+    }
+
+    fn is_recording(&self) -> bool {
+        F::RECORDS && self.phase == Phase::Record
+    }
+
+    /// Whether the records are full, so that a walk is in vain.
+    pub(crate) fn overflowed(&self) -> bool {
+        F::RECORDS && self.records.overflowed()
+    }
+
+    /// Whether there is a place for each vertex of the current draw.
+    fn has_vertices(&self) -> bool {
+        F::RECORDS && self.records.has_vertices()
     }
 
     /// Finds the records of a draw; `false` if they are not those of this one.
@@ -283,14 +304,14 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Draws the recorded triangles of this draw in the current strip.
     #[inline(never)]
-    fn replay<S: Shader<F::Format>>(&mut self, state: &State, spans: Spans<F, S>, shader: &S) {
+    fn replay<S: Shader<F::Format>>(&mut self, state: &State, chosen: &Chosen<F, S>, shader: &S) {
         let end = self.target.rows.end;
         let clip = self.clip_rect(&self.target.rows);
         while let Some(TriangleRecord { v, corners, face }) = self.records.replay_triangle(end) {
             let [i, j, k] = corners;
             let varyings = |index| self.records.varyings::<S>(index);
             let mut varyings = [varyings(i), varyings(j), varyings(k)];
-            self.painter(&clip, state, spans, shader).triangle(&v, &mut varyings, face);
+            self.painter(&clip, state, chosen, shader).triangle(&v, &mut varyings, face);
         }
     }
 
@@ -299,10 +320,10 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         &'p mut self,
         clip: &'p PixelRect,
         state: &'p State,
-        spans: Spans<F, S>,
+        chosen: &'p Chosen<F, S>,
         shader: &'p S,
     ) -> Painter<'p, 'a, F, S> {
-        Painter { target: &mut self.target, screen: self.screen, clip, state, spans, shader }
+        Painter { target: &mut self.target, screen: self.screen, clip, state, chosen, shader }
     }
 }
 

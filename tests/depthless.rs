@@ -13,7 +13,7 @@ use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::fragment::{DepthState, Flat, Gouraud, PixelFormat, Shader};
 use zstrip::geometry::{Joined, Lines, Mesh, Points};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, FrameSlice, FramebufferRenderer, RamBudget, Renderer, Strip, StripPixels};
+use zstrip::output::{FrameSlice, FramebufferRenderer, RamBudget, Renderer, Strip, StripPixels, WithoutDepth};
 use zstrip::{Cull, Dashed, Framebuffer, Scene, ScreenPoint, Smooth, State, Thin};
 
 const SCREEN: (u16, u16) = (77, 50);
@@ -23,12 +23,11 @@ fn without_depth<P: PixelFormat>(
     rows: usize,
     records: usize,
     background: P::Color,
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, false>>),
 ) -> Vec<P::Raw> {
     let mut color = vec![P::pack([0x5A; 3]); usize::from(SCREEN.0) * rows];
     let mut records = vec![0; records];
-    let buffers = Buffers { color: &mut color, depth: &mut [], records: &mut records };
-    let mut renderer = Renderer::<P>::new(SCREEN, buffers).expect("depth may be empty");
+    let mut renderer = Renderer::<P, false>::without_depth(SCREEN, &mut color, &mut records).expect("a renderer");
     assert_eq!(usize::from(renderer.strip_rows()), rows.min(usize::from(SCREEN.1)), "colours alone decide");
     let mut picture = Vec::new();
     let sink = |strip: &StripPixels<'_, P>| {
@@ -84,6 +83,18 @@ where
                 let found = difference(&picture, &expected, SCREEN.0);
                 assert_eq!(found, None, "seed {seed}, {rows} rows, {records} records, {depth:?}");
             }
+            if records == 0 {
+                let mut color = vec![P::pack([0x5A; 3]); usize::from(SCREEN.0) * rows];
+                let mut renderer = Renderer::<P, false, false>::color_only(SCREEN, &mut color).expect("a renderer");
+                let mut picture = Vec::new();
+                let sink = |strip: &StripPixels<'_, P>| {
+                    picture.extend_from_slice(strip.pixels());
+                    Ok::<(), core::convert::Infallible>(())
+                };
+                renderer.frame_to(sink, background, |s| draw(s, &mesh, DepthState::LESS)).expect("a frame");
+                let found = difference(&picture, &expected, SCREEN.0);
+                assert_eq!(found, None, "seed {seed}, {rows} rows, colours only");
+            }
         }
         varied += usize::from(expected.iter().any(|p| *p != expected[0]));
     }
@@ -102,8 +113,8 @@ fn framebuffer_needs_no_depth_either() {
     let mesh = soup.mesh();
     let (expected, _) = strips::<Rgb565>(SCREEN, 50, 20_000, Rgb565::BLUE, |s| draw(s, &mesh, DepthState::OFF));
     let mut pixels = vec![0; 77 * 50];
-    let mut framebuffer = FrameSlice::<Rgb565>::new(&mut pixels, 77, 50).expect("a framebuffer");
-    let mut renderer = FramebufferRenderer::new(SCREEN, &mut [], &mut []).expect("depth may be empty");
+    let mut framebuffer = WithoutDepth(FrameSlice::<Rgb565>::new(&mut pixels, 77, 50).expect("a framebuffer"));
+    let mut renderer = FramebufferRenderer::without_depth(SCREEN, &mut []).expect("a renderer");
     let stats = renderer.frame(&mut framebuffer, Some(Rgb565::BLUE), |s| draw(s, &mesh, DepthState::LESS));
     assert_eq!(stats.expect("the same scene").strips, 1, "nothing limits the strip");
     assert_eq!(difference(&pixels, &expected, SCREEN.0), None);

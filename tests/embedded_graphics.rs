@@ -15,9 +15,7 @@ use embedded_graphics::text::{Alignment, Baseline, Text, TextStyleBuilder};
 use reference::rng::Rng;
 use support::strips;
 use zstrip::fragment::{DepthState, NoDepth, PixelFormat};
-use zstrip::output::{
-    Buffers, Dithered, FrameSlice, FramebufferRenderer, Overlay, Renderer, Rgb332, Rgb565Be, StripPixels,
-};
+use zstrip::output::{Dithered, FrameSlice, FramebufferRenderer, Overlay, Renderer, Rgb332, Rgb565Be, StripPixels};
 
 const WIDTH: usize = 96;
 const HEIGHT: usize = 70;
@@ -177,8 +175,7 @@ macro_rules! check {
             }
             // Without a depth buffer, where an overlay at a depth is an overlay.
             let mut color = vec![Default::default(); WIDTH * rows];
-            let buffers = Buffers::<$format> { color: &mut color, depth: &mut [], records: &mut [] };
-            let mut renderer = Renderer::new(SCREEN, buffers).expect("depth may be empty");
+            let mut renderer = Renderer::<$format, false, false>::color_only(SCREEN, &mut color).expect("a renderer");
             for z in [None, Some(65_535)] {
                 let mut picture = Vec::new();
                 let sink = |strip: &StripPixels<'_, $format>| {

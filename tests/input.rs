@@ -119,9 +119,19 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
     assert_eq!(build((320, 240), 320 * 16, 320 * 9 + 319), Ok(9));
     assert_eq!(build((320, 240), 320 * 7, 320 * 9), Ok(7));
     assert_eq!(build((10, 4), 1000, 1000), Ok(4));
-    // No depth at all is no mistake.
-    assert_eq!(build((320, 240), 320 * 5, 0), Ok(5));
-    assert_eq!(told(build((320, 240), 320 * 5, 1)), RendererError::DepthTooShort(1, 320));
+    // No depth at all is a renderer of its own.
+    assert_eq!(told(build((320, 240), 320 * 5, 0)), RendererError::DepthTooShort(0, 320));
+    let mut color = [0; 320 * 5];
+    let rows = |renderer: Result<u16, RendererError>| renderer.expect("a renderer");
+    assert_eq!(
+        rows(Renderer::<Rgb565, false>::without_depth((320, 240), &mut color, &mut []).map(|r| r.strip_rows())),
+        5
+    );
+    assert_eq!(rows(Renderer::<Rgb565, false, false>::color_only((320, 240), &mut color).map(|r| r.strip_rows())), 5);
+    assert_eq!(
+        told(Renderer::<Rgb565, true, false>::without_records((320, 240), &mut color, &mut [0; 319])),
+        RendererError::DepthTooShort(319, 320)
+    );
 
     let mut depth = [0; 100];
     let short = FramebufferRenderer::new((320, 240), &mut depth, &mut []);

@@ -7,7 +7,7 @@ mod support;
 
 use proptest::prelude::*;
 use reference::rng::Rng;
-use support::{Soup, difference, strips};
+use support::{Soup, difference, strips, unrecorded_strips};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::fragment::{DepthBias, DepthState, Flat, Gouraud, PixelFormat};
 use zstrip::geometry::{DepthScale, Mesh, MeshData, Positions, Viewport};
@@ -127,6 +127,9 @@ fn check_soup(seed: u64) {
     let part = Viewport::new(corner[0], corner[1], size[0], size[1]).expect("a viewport");
     let height = usize::from(screen.1);
     let (expected, _) = strips::<Rgb565>(screen, height, 20_000, Rgb565::BLUE, |s| draw_soup(s, &mesh, state, part));
+    let rows = rng.between(1, i32::from(screen.1)) as usize;
+    let (picture, _) = unrecorded_strips::<Rgb565>(screen, rows, Rgb565::BLUE, |s| draw_soup(s, &mesh, state, part));
+    assert_eq!(difference(&picture, &expected, screen.0), None, "seed {seed}: no records, strips of {rows} rows");
     for _ in 0..3 {
         let rows = rng.between(1, i32::from(screen.1)) as usize;
         let records = rng.pick(&[0, rng_capacity(seed), 20_000]);

@@ -14,7 +14,7 @@ use zstrip::output::{RamBudget, Stats, Strip, StripPixels};
 use zstrip::{Buffers, Renderer, Scene};
 
 /// What is shown.
-pub trait Demo {
+pub trait Demo<const DEPTH: bool = true> {
     /// What is drawn into.
     type Format: PixelFormat;
 
@@ -27,10 +27,8 @@ pub trait Demo {
     const MODES: &'static [&'static str] = &[];
     /// The mode to begin with.
     const FIRST: usize = 0;
-    /// Whether frames have a depth buffer.
-    const DEPTH: bool = true;
     /// Words of records where the command line says nothing: enough for most of what is shown.
-    const RECORDS: usize = if Self::DEPTH { 16 * 1024 } else { 0 };
+    const RECORDS: usize = if DEPTH { 16 * 1024 } else { 0 };
     /// What [`key`](Self::key) does, a line for each of its keys.
     const KEYS: &'static str = "";
 
@@ -41,7 +39,7 @@ pub trait Demo {
     fn prepare(&mut self, _frame: u32, _screen: (u16, u16)) {}
 
     /// Draws the frame that was prepared, for an angle that each frame adds 1/512 of a turn to. Called for each strip.
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize);
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, DEPTH>>, turn: Angle, mode: usize);
 }
 
 /// What the keys choose from; the height of the screen is the tallest strip.
@@ -51,13 +49,17 @@ const DIGITS: [Key; 9] =
     [Key::Key1, Key::Key2, Key::Key3, Key::Key4, Key::Key5, Key::Key6, Key::Key7, Key::Key8, Key::Key9];
 
 /// Draws a frame through strips, as a display would get it.
-fn render<D: Demo>(demo: &mut D, settings: &Settings, picture: &mut Picture) -> Result<Stats, Box<dyn Error>> {
+fn render<D: Demo<DEPTH>, const DEPTH: bool>(
+    demo: &mut D,
+    settings: &Settings,
+    picture: &mut Picture,
+) -> Result<Stats, Box<dyn Error>> {
     let pixels = usize::from(settings.size.0) * usize::from(settings.strip_rows.min(settings.size.1));
-    let depths = if D::DEPTH { pixels } else { 0 };
+    let depths = if DEPTH { pixels } else { 0 };
     let mut color = vec![bytemuck::Zeroable::zeroed(); pixels];
     let (mut depth, mut records) = (vec![0; depths], vec![0; settings.records]);
     let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<D::Format>::new(settings.size, buffers)?;
+    let mut renderer = Renderer::<D::Format, DEPTH>::with_buffers(settings.size, buffers)?;
     let to_picture = |strip: &StripPixels<'_, D::Format>| {
         picture.put(strip);
         Ok::<(), std::convert::Infallible>(())
@@ -68,11 +70,11 @@ fn render<D: Demo>(demo: &mut D, settings: &Settings, picture: &mut Picture) -> 
 }
 
 /// Settings and statistics in a line.
-fn describe<D: Demo>(settings: &Settings, stats: &Stats) -> String {
+fn describe<D: Demo<DEPTH>, const DEPTH: bool>(settings: &Settings, stats: &Stats) -> String {
     let (width, height) = settings.size;
     let rows = settings.strip_rows.min(height);
     let budget = RamBudget::new::<D::Format>(width, rows).with_record_words(settings.records);
-    let ram = if D::DEPTH { budget } else { budget.without_depth() };
+    let ram = if DEPTH { budget } else { budget.without_depth() };
     let mut line = D::NAME.to_string();
     line.extend(D::MODES.get(settings.mode).map(|mode| format!(" {mode}")));
     line += &format!(" {width}x{height} | {rows} rows, {} records: {} bytes |", settings.records, ram.total());
@@ -83,11 +85,15 @@ fn describe<D: Demo>(settings: &Settings, stats: &Stats) -> String {
     line + &format!(", {} walks, {} overflows", stats.walks, stats.overflows)
 }
 
-fn picture<D: Demo>(demo: &mut D, settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
+fn picture<D: Demo<DEPTH>, const DEPTH: bool>(
+    demo: &mut D,
+    settings: &Settings,
+    path: &Path,
+) -> Result<(), Box<dyn Error>> {
     let mut picture = Picture::new(settings.size);
     let stats = render(demo, settings, &mut picture)?;
     picture.write_png(path)?;
-    println!("{}", describe::<D>(settings, &stats));
+    println!("{}", describe::<D, DEPTH>(settings, &stats));
     println!("wrote {}", path.display());
     Ok(())
 }
@@ -109,7 +115,7 @@ fn neighbour<T: Copy + PartialOrd>(list: impl Iterator<Item = T> + Clone, value:
 }
 
 /// What a key does that was pressed.
-fn press<D: Demo>(key: Key, settings: &mut Settings, paused: &mut bool) {
+fn press<D: Demo<DEPTH>, const DEPTH: bool>(key: Key, settings: &mut Settings, paused: &mut bool) {
     let height = settings.size.1;
     let rows = STRIP_ROWS.into_iter().filter(|rows| *rows < height).chain([height]);
     match key {
@@ -132,7 +138,11 @@ fn press<D: Demo>(key: Key, settings: &mut Settings, paused: &mut bool) {
 }
 
 /// Runs until the window is closed.
-fn play<D: Demo>(demo: &mut D, window: &mut Window, mut settings: Settings) -> Result<(), Box<dyn Error>> {
+fn play<D: Demo<DEPTH>, const DEPTH: bool>(
+    demo: &mut D,
+    window: &mut Window,
+    mut settings: Settings,
+) -> Result<(), Box<dyn Error>> {
     window.set_target_fps(60);
     let mut picture = Picture::new(settings.size);
     let mut paused = false;
@@ -146,21 +156,21 @@ fn play<D: Demo>(demo: &mut D, window: &mut Window, mut settings: Settings) -> R
         let seconds = since.elapsed().as_secs_f64();
         if seconds > 0.5 {
             let (fps, ms) = (f64::from(frames) / seconds, drawing.as_secs_f64() * 1e3 / f64::from(frames));
-            window.set_title(&format!("{fps:.0} fps, {ms:.2} ms | {}", describe::<D>(&settings, &stats)));
+            window.set_title(&format!("{fps:.0} fps, {ms:.2} ms | {}", describe::<D, DEPTH>(&settings, &stats)));
             (since, frames, drawing) = (Instant::now(), 0, Duration::ZERO);
         }
         settings.frame = settings.frame.wrapping_add(u32::from(!paused));
         window.get_keys().into_iter().for_each(|key| demo.key(key));
         for key in window.get_keys_pressed(KeyRepeat::No) {
-            press::<D>(key, &mut settings, &mut paused);
+            press::<D, DEPTH>(key, &mut settings, &mut paused);
         }
     }
     Ok(())
 }
 
-fn run<D: Demo>(demo: &mut D) -> Result<(), Box<dyn Error>> {
-    let Some(settings) = arguments::<D>()? else {
-        println!("{}", help::<D>());
+fn run<D: Demo<DEPTH>, const DEPTH: bool>(demo: &mut D) -> Result<(), Box<dyn Error>> {
+    let Some(settings) = arguments::<D, DEPTH>()? else {
+        println!("{}", help::<D, DEPTH>());
         return Ok(());
     };
     if let Some(path) = &settings.png {
@@ -176,7 +186,7 @@ fn run<D: Demo>(demo: &mut D) -> Result<(), Box<dyn Error>> {
 }
 
 /// Runs an example.
-pub fn show<D: Demo>(mut demo: D) -> ExitCode {
+pub fn show<D: Demo<DEPTH>, const DEPTH: bool>(mut demo: D) -> ExitCode {
     match run(&mut demo) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -18,7 +18,7 @@ use zstrip::fragment::{
 };
 use zstrip::geometry::{Corner, Face, Light, Mesh, MeshData, Positions, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, Renderer, Stats, StripPixels};
+use zstrip::output::{Buffers, Renderer, RendererError, Stats, Strip, StripPixels};
 use zstrip::{Scene, State};
 
 pub const WIDTH: usize = 320;
@@ -72,15 +72,23 @@ pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&
     }
 }
 
-type Strip<'a> = zstrip::output::Strip<'a, Rgb565>;
+const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
 
-/// Buffers that do not hold a row draw nothing.
 fn frame(
     buffers: Buffers<'_, Rgb565>,
-    mut sink: impl FnMut(&[u16]),
-    draw: impl FnMut(&mut Scene<'_, Strip<'_>>),
+    sink: impl FnMut(&[u16]),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
 ) -> Stats {
-    let Ok(mut renderer) = Renderer::new((WIDTH as u16, HEIGHT as u16), buffers) else {
+    frame_by(Renderer::new(SCREEN, buffers), sink, draw)
+}
+
+/// Buffers that do not hold a row draw nothing.
+fn frame_by<const RECORDS: bool>(
+    renderer: Result<Renderer<'_, Rgb565, true, RECORDS>, RendererError>,
+    mut sink: impl FnMut(&[u16]),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, true, RECORDS>>),
+) -> Stats {
+    let Ok(mut renderer) = renderer else {
         return Stats::default();
     };
     let to_sink = |strip: &StripPixels<'_, Rgb565>| {
@@ -128,6 +136,14 @@ pub fn textured_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> 
 pub fn flat_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
     let shader = Flat::new(TORUS_LIGHT, torus_color());
     frame(buffers, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
+}
+
+/// The same by a renderer that knows no records.
+#[inline(never)]
+pub fn flat_torus_without_records(color: &mut [u16], depth: &mut [u16], sink: impl FnMut(&[u16])) -> Stats {
+    let shader = Flat::new(TORUS_LIGHT, torus_color());
+    let renderer = Renderer::without_records(SCREEN, color, depth);
+    frame_by(renderer, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
 #[inline(never)]

@@ -150,6 +150,8 @@ pub(super) struct UniformDepth {
     reciprocal: NonZeroU32,
     /// Normalized far times two to this power is far's w in clip space.
     exponent: i32,
+    /// [`rounded`](Self::rounded): a program links it where it makes one of these.
+    depth: fn(&Self, i64) -> u16,
 }
 
 impl UniformDepth {
@@ -161,16 +163,21 @@ impl UniformDepth {
         }
         let zeros = far.leading_zeros();
         match NonZeroU32::new(reciprocal((far as u32) << zeros)) {
-            Some(reciprocal) => Some(Self { reciprocal, exponent: 16 + scale - zeros as i32 }),
+            Some(reciprocal) => Some(Self { reciprocal, exponent: 16 + scale - zeros as i32, depth: Self::rounded }),
             None => None,
         }
+    }
+
+    /// The depth of z in clip space.
+    pub(super) fn depth(&self, z: i64) -> u16 {
+        (self.depth)(self, z)
     }
 
     /// Rounded to nearest.
     ///
     /// # Format
     /// z is cut to 32 bits, the reciprocal good to 2⁻²⁹: within 2⁻¹² of a step besides the rounding.
-    pub(super) fn depth(&self, z: i64) -> u16 {
+    fn rounded(&self, z: i64) -> u16 {
         if z <= 0 {
             return 0;
         }

@@ -18,7 +18,7 @@ use embedded_graphics_core::primitives::Rectangle;
 pub struct Buffers<'b, P: PixelFormat> {
     /// Colours of a strip: as many whole rows as fit make its height, which `depth` limits as well.
     pub color: &'b mut [P::Raw],
-    /// Depths of a strip. May be empty: then there is no depth, and every depth test passes.
+    /// Depths of a strip.
     pub depth: &'b mut [u16],
     /// Records; may be empty. See [`records_len`](super::records_len).
     pub records: &'b mut [u32],
@@ -33,7 +33,7 @@ pub enum RendererError {
     Screen(ViewportError),
     /// The colour buffer does not hold one row: how many pixels it has, and how many a row has.
     ColorTooShort(usize, u16),
-    /// The depth buffer is not empty, but does not hold one row: how many pixels it has, and how many a row has.
+    /// The depth buffer does not hold one row: how many pixels it has, and how many a row has.
     DepthTooShort(usize, u16),
 }
 
@@ -141,19 +141,18 @@ struct Engine<'b> {
 impl<'b> Engine<'b> {
     fn new(
         screen: (u16, u16),
-        rows: usize,
-        depth: &'b mut [u16],
+        mut rows: usize,
+        depth: Option<&'b mut [u16]>,
         records: &'b mut [u32],
     ) -> Result<Self, RendererError> {
         let viewport = Viewport::full(screen.0, screen.1).map_err(RendererError::Screen)?;
-        let depth_rows = match depth.len() {
-            0 => usize::MAX,
-            length => match whole_rows(length, screen.0) {
-                0 => return Err(RendererError::DepthTooShort(length, screen.0)),
-                rows => rows,
-            },
-        };
-        let strip_rows = rows.min(depth_rows).min(usize::from(screen.1)) as u16;
+        if let Some(depth) = &depth {
+            rows = rows.min(whole_rows(depth.len(), screen.0));
+            if rows == 0 {
+                return Err(RendererError::DepthTooShort(depth.len(), screen.0));
+            }
+        }
+        let (strip_rows, depth) = (rows.min(usize::from(screen.1)) as u16, depth.unwrap_or_default());
         Ok(Self { grid: Grid { viewport, strips: StripRows::new(strip_rows) }, depth, records })
     }
 }
@@ -194,10 +193,14 @@ impl Engine<'_> {
         let grid = self.grid;
         let rows = grid.rows_at(row);
         let pixels = usize::from(grid.viewport.width()) * usize::from(rows);
-        fill(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
+        if F::DEPTH {
+            fill(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
+        }
         loop {
             let mut records = Records::new(self.records, &mut progress.layout);
-            let (phase, band) = if row < progress.band.1 {
+            let (phase, band) = if !F::RECORDS {
+                (Phase::Direct, (row, row + rows))
+            } else if row < progress.band.1 {
                 records.begin_replay(grid.strips.of(u32::from(row - progress.band.0)));
                 (Phase::Replay, progress.band)
             } else if progress.strips == 0 {
@@ -221,13 +224,13 @@ impl Engine<'_> {
                 changed: None,
             };
             // Records that cannot even hold the lists need no walk to overflow.
-            if !scene.records.overflowed() {
+            if !scene.overflowed() {
                 scene.stats.walks = scene.stats.walks.wrapping_add(1);
                 draw(&mut scene);
             }
             let (draws, changed) = (scene.draws, scene.changed);
-            if phase == Phase::Record {
-                if scene.records.overflowed() {
+            if F::RECORDS && phase == Phase::Record {
+                if scene.overflowed() {
                     progress.stats.overflows = progress.stats.overflows.wrapping_add(1);
                     progress.strips /= 2;
                 } else {
@@ -236,7 +239,7 @@ impl Engine<'_> {
                 continue;
             }
             let missing = phase == Phase::Replay && draws != progress.draws;
-            if let Some(draw) = changed.or(missing.then(|| draws.min(progress.draws))) {
+            if let (true, Some(draw)) = (F::RECORDS, changed.or(missing.then(|| draws.min(progress.draws)))) {
                 // What is left in the records is of no use: the frame is over.
                 progress.row = grid.viewport.height();
                 return Err(draw);
@@ -276,7 +279,7 @@ impl Engine<'_> {
 /// # Ok::<(), zstrip::output::RendererError>(())
 /// ```
 #[derive(Debug)]
-pub struct Renderer<'b, P: PixelFormat> {
+pub struct Renderer<'b, P: PixelFormat, const DEPTH: bool = true, const RECORDS: bool = true> {
     engine: Engine<'b>,
     color: &'b mut [P::Raw],
 }
@@ -287,12 +290,61 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
     /// # Errors
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or a buffer does not hold one row.
     pub fn new(screen: (u16, u16), buffers: Buffers<'b, P>) -> Result<Self, RendererError> {
+        Self::with_buffers(screen, buffers)
+    }
+}
+
+impl<'b, P: PixelFormat> Renderer<'b, P, true, false> {
+    /// The same without records: every strip takes a walk over the scene, and a program is some KB smaller than one that lends
+    /// empty records.
+    ///
+    /// # Errors
+    /// As [`new`](Renderer::new).
+    pub fn without_records(
+        screen: (u16, u16),
+        color: &'b mut [P::Raw],
+        depth: &'b mut [u16],
+    ) -> Result<Self, RendererError> {
+        Self::with_buffers(screen, Buffers { color, depth, records: &mut [] })
+    }
+}
+
+impl<'b, P: PixelFormat> Renderer<'b, P, false> {
+    /// The same without depth: every depth test passes, and what is drawn later covers what is there. Records may be empty.
+    ///
+    /// # Errors
+    /// As [`new`](Renderer::new).
+    pub fn without_depth(
+        screen: (u16, u16),
+        color: &'b mut [P::Raw],
+        records: &'b mut [u32],
+    ) -> Result<Self, RendererError> {
+        Self::with_buffers(screen, Buffers { color, depth: &mut [], records })
+    }
+}
+
+impl<'b, P: PixelFormat> Renderer<'b, P, false, false> {
+    /// The same with neither: for embedded-graphics drawings, and pictures of one convex body.
+    ///
+    /// # Errors
+    /// As [`new`](Renderer::new).
+    pub fn color_only(screen: (u16, u16), color: &'b mut [P::Raw]) -> Result<Self, RendererError> {
+        Self::with_buffers(screen, Buffers { color, depth: &mut [], records: &mut [] })
+    }
+}
+
+impl<'b, P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Renderer<'b, P, DEPTH, RECORDS> {
+    /// [`new`](Renderer::new) for renderers of all kinds; buffers that one does not have may be empty.
+    ///
+    /// # Errors
+    /// As [`new`](Renderer::new).
+    pub fn with_buffers(screen: (u16, u16), buffers: Buffers<'b, P>) -> Result<Self, RendererError> {
         let Buffers { color, depth, records } = buffers;
         let rows = whole_rows(color.len(), screen.0);
         if rows == 0 {
             return Err(RendererError::ColorTooShort(color.len(), screen.0));
         }
-        Ok(Self { engine: Engine::new(screen, rows, depth, records)?, color })
+        Ok(Self { engine: Engine::new(screen, rows, DEPTH.then_some(depth), records)?, color })
     }
 
     /// Width and height of the screen.
@@ -315,7 +367,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         &mut self,
         display: &mut D,
         background: P::Color,
-        draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+        draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Stats, FrameError<D::Error>> {
         self.frame_to(OnDisplay::new(display), background, draw)
     }
@@ -330,7 +382,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         display: &mut D,
         top_left: Point,
         background: P::Color,
-        draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+        draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Stats, FrameError<D::Error>> {
         self.frame_to(OnDisplay::at(display, top_left), background, draw)
     }
@@ -343,7 +395,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
         &mut self,
         mut sink: K,
         background: P::Color,
-        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Stats, FrameError<K::Error>> {
         let mut frame = self.begin(background);
         loop {
@@ -356,7 +408,7 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
     }
 
     /// Starts a frame whose strips the caller pulls.
-    pub fn begin(&mut self, background: P::Color) -> Frame<'_, 'b, P> {
+    pub fn begin(&mut self, background: P::Color) -> Frame<'_, 'b, P, DEPTH, RECORDS> {
         Frame { renderer: self, background: P::from_color(background), progress: Progress::new() }
     }
 }
@@ -379,20 +431,20 @@ impl<'b, P: PixelFormat> Renderer<'b, P> {
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct Frame<'r, 'b, P: PixelFormat> {
-    renderer: &'r mut Renderer<'b, P>,
+pub struct Frame<'r, 'b, P: PixelFormat, const DEPTH: bool = true, const RECORDS: bool = true> {
+    renderer: &'r mut Renderer<'b, P, DEPTH, RECORDS>,
     background: P::Raw,
     progress: Progress,
 }
 
-impl<P: PixelFormat> Frame<'_, '_, P> {
+impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Frame<'_, '_, P, DEPTH, RECORDS> {
     /// Draws the next strip; `None` after the last.
     ///
     /// # Errors
     /// [`FrameError::SceneChanged`] if `draw` drew something else than before in this frame.
     pub fn next_strip(
         &mut self,
-        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Option<StripPixels<'_, P>>, FrameError> {
         let Renderer { engine, color } = &mut *self.renderer;
         strip_into(engine, &mut self.progress, color, self.background, &mut draw)
@@ -406,7 +458,7 @@ impl<P: PixelFormat> Frame<'_, '_, P> {
     pub fn next_strip_in<'c>(
         &mut self,
         color: &'c mut [P::Raw],
-        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
         strip_into(&mut self.renderer.engine, &mut self.progress, color, self.background, &mut draw)
     }
@@ -421,12 +473,12 @@ impl<P: PixelFormat> Frame<'_, '_, P> {
 ///
 /// The closure is called through a pointer, once a strip or so: whatever many frames draw, this is linked once.
 #[inline(never)]
-fn strip_into<'c, P: PixelFormat>(
+fn strip_into<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
     engine: &mut Engine<'_>,
     progress: &mut Progress,
     color: &'c mut [P::Raw],
     background: P::Raw,
-    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P>>),
+    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
 ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
     let ((width, height), row) = (engine.grid.screen(), progress.row);
     if row >= height {
@@ -436,7 +488,7 @@ fn strip_into<'c, P: PixelFormat>(
     let length = (usize::from(width) * usize::from(rows)).min(color.len());
     let color = color.get_mut(..length).unwrap_or_default();
     fill(color, background);
-    let mut strip = Strip::<P>::new(&mut *color, width, u32::from(row));
+    let mut strip = Strip::<P, DEPTH, RECORDS>::new(&mut *color, width, u32::from(row));
     engine.next_strip(progress, &mut strip, draw).map_err(FrameError::SceneChanged)?;
     let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
     Ok(Some(StripPixels::new(area, color)))
@@ -444,7 +496,7 @@ fn strip_into<'c, P: PixelFormat>(
 
 /// Draws frames straight into a framebuffer, with a depth buffer as high as the screen, or only a strip of it, or none.
 #[derive(Debug)]
-pub struct FramebufferRenderer<'b> {
+pub struct FramebufferRenderer<'b, const DEPTH: bool = true> {
     engine: Engine<'b>,
 }
 
@@ -452,12 +504,25 @@ impl<'b> FramebufferRenderer<'b> {
     /// For a screen of `(width, height)` pixels; as many rows as `depth` holds are drawn at a time.
     ///
     /// # Errors
-    /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or `depth` is not empty and does not hold one row.
+    /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or `depth` does not hold one row.
     pub fn new(screen: (u16, u16), depth: &'b mut [u16], records: &'b mut [u32]) -> Result<Self, RendererError> {
-        Ok(Self { engine: Engine::new(screen, usize::MAX, depth, records)? })
+        Ok(Self { engine: Engine::new(screen, usize::MAX, Some(depth), records)? })
     }
+}
 
-    /// Draws a frame over `background`, or over what is there.
+impl<'b> FramebufferRenderer<'b, false> {
+    /// For framebuffers without depth, such as [`WithoutDepth`](super::WithoutDepth).
+    ///
+    /// # Errors
+    /// When the screen is empty or larger than [`Viewport::MAX_SIZE`].
+    pub fn without_depth(screen: (u16, u16), records: &'b mut [u32]) -> Result<Self, RendererError> {
+        Ok(Self { engine: Engine::new(screen, usize::MAX, None, records)? })
+    }
+}
+
+impl<const DEPTH: bool> FramebufferRenderer<'_, DEPTH> {
+    /// Draws a frame over `background`, or over what is there. The framebuffer must be one with or without depth
+    /// ([`Framebuffer::DEPTH`]) as the renderer is; another does not compile.
     ///
     /// # Errors
     /// [`FrameError::SceneChanged`] if `draw` draws something else in a later call.
@@ -467,6 +532,7 @@ impl<'b> FramebufferRenderer<'b> {
         background: Option<<F::Format as PixelFormat>::Color>,
         mut draw: impl FnMut(&mut Scene<'_, F>),
     ) -> Result<Stats, FrameError> {
+        const { assert!(F::DEPTH == DEPTH, "renderer and framebuffer are not alike: one is without depth") };
         let (width, height) = self.engine.grid.screen();
         if let Some(color) = background {
             for y in 0..height {

@@ -35,30 +35,41 @@ use embedded_graphics_core::primitives::Rectangle;
 /// assert_eq!((stats.strips, stats.drawn), (4, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct FrameView<'v, 'b, P: PixelFormat, F> {
+pub struct FrameView<'v, 'b, P: PixelFormat, F, const DEPTH: bool = true, const RECORDS: bool = true> {
     /// Taken out while it draws: `draw` has only a shared reference.
-    renderer: Cell<Option<&'v mut Renderer<'b, P>>>,
+    renderer: Cell<Option<&'v mut Renderer<'b, P, DEPTH, RECORDS>>>,
     area: Rectangle,
     background: P::Color,
     draw: F,
 }
 
-impl<'v, 'b, P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> FrameView<'v, 'b, P, F> {
+impl<'v, 'b, P: PixelFormat, F, const DEPTH: bool, const RECORDS: bool> FrameView<'v, 'b, P, F, DEPTH, RECORDS>
+where
+    F: Fn(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
+{
     /// The renderer's whole screen, with its corner at `top_left` of whatever it is drawn on.
-    pub fn new(renderer: &'v mut Renderer<'b, P>, top_left: Point, background: P::Color, draw: F) -> Self {
+    pub fn new(
+        renderer: &'v mut Renderer<'b, P, DEPTH, RECORDS>,
+        top_left: Point,
+        background: P::Color,
+        draw: F,
+    ) -> Self {
         let (width, height) = renderer.screen();
         let area = Rectangle::new(top_left, Size::new(u32::from(width), u32::from(height)));
         Self { renderer: Cell::new(Some(renderer)), area, background, draw }
     }
 }
 
-impl<P: PixelFormat, F> Dimensions for FrameView<'_, '_, P, F> {
+impl<P: PixelFormat, F, const DEPTH: bool, const RECORDS: bool> Dimensions for FrameView<'_, '_, P, F, DEPTH, RECORDS> {
     fn bounding_box(&self) -> Rectangle {
         self.area
     }
 }
 
-impl<P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> Drawable for FrameView<'_, '_, P, F> {
+impl<P: PixelFormat, F, const DEPTH: bool, const RECORDS: bool> Drawable for FrameView<'_, '_, P, F, DEPTH, RECORDS>
+where
+    F: Fn(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
+{
     type Color = P::Color;
     type Output = Result<Stats, FrameError>;
 
@@ -77,7 +88,7 @@ impl<P: PixelFormat, F: Fn(&mut Scene<'_, Strip<'_, P>>)> Drawable for FrameView
     }
 }
 
-impl<P: PixelFormat, F> fmt::Debug for FrameView<'_, '_, P, F> {
+impl<P: PixelFormat, F, const DEPTH: bool, const RECORDS: bool> fmt::Debug for FrameView<'_, '_, P, F, DEPTH, RECORDS> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("FrameView").field("area", &self.area).finish_non_exhaustive()
     }

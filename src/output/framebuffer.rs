@@ -11,6 +11,14 @@ pub trait Framebuffer {
     /// The format of the pixels.
     type Format: PixelFormat;
 
+    /// Whether there is a depth buffer beside it; without one, every depth test passes. A constant, so that a program links only
+    /// the loops that it needs.
+    const DEPTH: bool = true;
+
+    /// Whether there may be records for it. Without them, the closure is called once a strip, and the code that records and
+    /// replays is not linked.
+    const RECORDS: bool = true;
+
     /// Row `y` of the screen, from column 0.
     fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
 
@@ -36,23 +44,27 @@ fn first<R>(pixels: &mut [R], length: usize) -> &mut [R] {
     pixels.get_mut(..length).unwrap_or_default()
 }
 
-/// A horizontal strip of the screen.
+/// A horizontal strip of the screen, with a depth buffer and records beside it, or without.
 #[derive(Debug)]
-pub struct Strip<'a, P: PixelFormat> {
+pub struct Strip<'a, P: PixelFormat, const DEPTH: bool = true, const RECORDS: bool = true> {
     pixels: &'a mut [P::Raw],
     width: usize,
     first_row: u32,
 }
 
-impl<'a, P: PixelFormat> Strip<'a, P> {
+impl<'a, P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Strip<'a, P, DEPTH, RECORDS> {
     /// Rows of `width` px from `first_row` on, one after the other in `pixels`.
     pub const fn new(pixels: &'a mut [P::Raw], width: u16, first_row: u32) -> Self {
         Self { pixels, width: width as usize, first_row }
     }
 }
 
-impl<P: PixelFormat> Framebuffer for Strip<'_, P> {
+impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Framebuffer for Strip<'_, P, DEPTH, RECORDS> {
     type Format = P;
+
+    const DEPTH: bool = DEPTH;
+
+    const RECORDS: bool = RECORDS;
 
     #[inline]
     fn row(&mut self, y: u32) -> &mut [P::Raw] {
@@ -73,6 +85,36 @@ impl<P: PixelFormat> Framebuffer for Strip<'_, P> {
     fn rows(&mut self, first_row: u32, width: usize) -> Option<&mut [P::Raw]> {
         let start = (first_row.wrapping_sub(self.first_row) as usize).wrapping_mul(self.width);
         if width == self.width { self.pixels.get_mut(start..) } else { None }
+    }
+}
+
+/// A framebuffer that is drawn into without a depth buffer.
+#[derive(Debug)]
+pub struct WithoutDepth<F>(
+    /// Where the pixels are.
+    pub F,
+);
+
+impl<F: Framebuffer> Framebuffer for WithoutDepth<F> {
+    type Format = F::Format;
+
+    const DEPTH: bool = false;
+
+    const RECORDS: bool = F::RECORDS;
+
+    #[inline]
+    fn row(&mut self, y: u32) -> &mut [<F::Format as PixelFormat>::Raw] {
+        self.0.row(y)
+    }
+
+    #[inline]
+    fn span(&mut self, y: u32, column: usize, length: usize) -> &mut [<F::Format as PixelFormat>::Raw] {
+        self.0.span(y, column, length)
+    }
+
+    #[inline]
+    fn rows(&mut self, first_row: u32, width: usize) -> Option<&mut [<F::Format as PixelFormat>::Raw]> {
+        self.0.rows(first_row, width)
     }
 }
 

@@ -20,7 +20,7 @@ pub use draw_target::Overlay;
 pub(crate) use frame::StripRows;
 pub use frame::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
 pub use frame_view::FrameView;
-pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip};
+pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip, WithoutDepth};
 pub use packed::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use pixel::{Bgr565Be, Rgb332, Rgb565Be};
 pub use record::records_len;

@@ -1,8 +1,8 @@
 //! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
 
 use super::scan::{Culling, Scan, Seen, Stop};
-use super::triangle::Spans;
-use super::{Phase, Scene, State};
+use super::triangle::Chosen;
+use super::{Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, Face, MAX_DISTANCES, Mesh, Outcode, Part,
@@ -21,7 +21,7 @@ type FanCorner<S> = (Slot, <S as VertexShader>::Varyings);
 pub(super) struct Assembly<'s, 'a, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) scene: &'s mut Scene<'a, F>,
     pub(super) state: &'s State,
-    pub(super) spans: Spans<F, S>,
+    pub(super) chosen: &'s Chosen<F, S>,
     pub(super) mesh: &'s Mesh<'s>,
     pub(super) shader: &'s S,
     pub(super) transform: &'s Transform,
@@ -52,11 +52,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     pub(super) fn triangles(&mut self, numbers: Range<usize>) {
         let first = numbers.start;
         let culling = self.state.culling();
-        if S::CULL_DISTANCES > 0 || !self.scene.records.has_vertices() {
+        if S::CULL_DISTANCES > 0 || !self.scene.has_vertices() {
             return self.each_triangle(numbers, culling);
         }
         let mut scan = Scan::new(self.mesh, numbers);
-        while !self.scene.records.overflowed() {
+        while !self.scene.overflowed() {
             match scan.next(&self.scene.records, culling, &self.clip, self.scene.stats) {
                 Stop::Seen => self.shade_face(&scan.seen, scan.corners, scan.number),
                 Stop::Unplaced => self.unplaced(&mut scan.seen, culling, scan.corners, scan.number),
@@ -72,7 +72,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let mut seen = Seen::NONE;
         for number in numbers {
             let Some(corners) = self.mesh.triangle(number) else { return };
-            if self.scene.records.overflowed() {
+            if self.scene.overflowed() {
                 return;
             }
             self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
@@ -105,7 +105,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn shade_face(&mut self, seen: &Seen, corners: [u16; 3], number: usize) {
         let word = self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)));
-        if self.scene.phase == Phase::Record {
+        if self.scene.is_recording() {
             self.record(seen.row, corners, word);
         } else {
             let [i, j, k] = corners;
@@ -116,7 +116,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// The vertex stage's result for a vertex, from the records if it is there.
     #[inline]
     fn slot(&mut self, index: u16) -> Slot {
-        if !self.scene.records.has_vertices() {
+        if !self.scene.has_vertices() {
             return self.shade(index.into());
         }
         let slot = self.scene.records.slot(index.into());
@@ -144,7 +144,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     pub(super) fn shade(&mut self, index: usize) -> Slot {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
         let slot = self.stage().place(index);
-        if self.scene.records.has_vertices() {
+        if self.scene.has_vertices() {
             let varyings = self.vertex(index);
             self.scene.records.keep::<S>(index, slot, &varyings);
         }
@@ -217,7 +217,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if S::Varyings::PERSPECTIVE > 0 {
                 varyings.set_inverse_w(inverse_w(&vertex));
             }
-            if self.scene.phase != Phase::Record {
+            if !self.scene.is_recording() {
                 // What the records would keep of them, so that the picture is the same without.
                 varyings = rounded::<S>(&varyings);
             }
@@ -229,7 +229,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Draws a clipped polygon as a fan of triangles.
     #[inline(never)]
     fn fan(&mut self, seen: &mut Seen, fan: &[FanCorner<S>], corners: [u16; 3], number: usize) {
-        let recording = self.scene.phase == Phase::Record;
+        let recording = self.scene.is_recording();
         let (mut v, mut indices) = ([Slot::NONE; 3], [0; 3]);
         for (place, (slot, varyings)) in fan.iter().enumerate() {
             if recording {
@@ -259,7 +259,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     fn varyings(&self, index: u16) -> S::Varyings {
-        if self.scene.records.has_vertices() {
+        if self.scene.has_vertices() {
             return self.scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.vertex(usize::from(index)))
@@ -275,7 +275,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline]
     fn draw(&mut self, seen: &Seen, varyings: &mut [S::Varyings; 3], face: u32) {
         self.scene
-            .painter(&self.clip, self.state, self.spans, self.shader)
+            .painter(&self.clip, self.state, self.chosen, self.shader)
             .triangle_of_area(&seen.v, seen.area, varyings, face);
     }
 }

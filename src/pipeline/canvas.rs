@@ -1,8 +1,8 @@
 //! Drawing on the screen's plane: the primitives of the pipeline, from where they are on the screen.
 
 use super::stroke::block;
-use super::triangle::spans_by_state;
-use super::{Phase, Scene, State, Stroke, Thin};
+use super::triangle::Chosen;
+use super::{Scene, State, Stroke, Thin};
 use crate::Cull;
 use crate::fragment::{DepthState, Flat, Gouraud, Shader};
 use crate::geometry::ScreenVertex;
@@ -94,7 +94,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// # Ok::<(), zstrip::output::RendererError>(())
     /// ```
     pub fn canvas(&mut self) -> Canvas<'_, 'a, F> {
-        let rows = if self.phase == Phase::Record { 0..0 } else { self.target.rows.clone() };
+        let rows = if self.is_recording() { 0..0 } else { self.target.rows.clone() };
         let clip = self.clip_rect(&rows);
         Canvas { clip: clip.clone(), all: clip, scene: self, state: PAINTED, z: 0 }
     }
@@ -133,7 +133,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         }
         let Self { scene, clip, state, z, .. } = self;
         let shader = Flat::unlit(color);
-        block(&mut scene.painter(clip, state, spans_by_state, &shader), rect, *z, &[], word(color));
+        block(&mut scene.painter(clip, state, &const { Chosen::ANY }, &shader), rect, *z, &[], word(color));
     }
 
     /// Fills a convex polygon; its corners may go round either way.
@@ -175,7 +175,11 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         for next in corners {
             let v = [first.0, last.0, next.0];
             if !pixel_rect(&v).intersection(clip).is_empty() {
-                scene.painter(clip, state, spans_by_state, shader).triangle(&v, &mut [first.1, last.1, next.1], face);
+                scene.painter(clip, state, &const { Chosen::ANY }, shader).triangle(
+                    &v,
+                    &mut [first.1, last.1, next.1],
+                    face,
+                );
             }
             last = next;
         }
@@ -234,7 +238,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
             return;
         }
         let ends = [(ScreenVertex::new(a.x, a.y, *z), *from), (ScreenVertex::new(b.x, b.y, *z), *to)];
-        stroke.draw(&mut scene.painter(clip, state, spans_by_state, shader), &ends, face);
+        stroke.draw(&mut scene.painter(clip, state, &const { Chosen::ANY }, shader), &ends, face);
     }
 }
 

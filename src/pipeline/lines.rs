@@ -6,8 +6,8 @@
 
 use super::assembly::{Assembly, rounded};
 use super::stroke::block;
+use super::triangle::Chosen;
 use super::triangle::Painter;
-use super::triangle::spans_by_state;
 use super::{Phase, Scene, State, Stroke, Thin, fingerprint};
 use crate::fragment::Shader;
 use crate::geometry::{
@@ -90,12 +90,12 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         // No mesh has that many triangles and a reach.
         let kind = (count as u32).rotate_left(8) ^ !(reach as u32);
         let print = fingerprint(state, vertices, mvp, &self.viewport, stride) ^ kind;
-        if self.phase == Phase::Replay {
+        if F::RECORDS && self.phase == Phase::Replay {
             return self.find_draw(print, vertices.vertex_count(), stride) && !self.records.is_draw_empty();
         }
         self.count_draw();
-        let recording = self.phase == Phase::Record;
-        if recording && self.records.overflowed() {
+        let recording = self.is_recording();
+        if self.overflowed() {
             return false;
         }
         let bounded = !displaced && !matches!(vertices.data().positions, Positions::Homogeneous(_));
@@ -110,7 +110,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             self.records.end_draw();
             return false;
         }
-        if !culled {
+        if F::RECORDS && !culled {
             self.records.begin_direct(vertices.vertex_count(), stride);
         }
         !culled
@@ -240,11 +240,11 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
             transform.set_depth_scale(state.depth_scale);
             transform
         });
-        Assembly { scene, state, spans: spans_by_state, mesh: vertices, shader, transform, clip: clip.clone() }
+        Assembly { scene, state, chosen: &const { Chosen::ANY }, mesh: vertices, shader, transform, clip: clip.clone() }
     }
 
     fn varyings(&self, index: u16) -> S::Varyings {
-        if self.scene.records.has_vertices() {
+        if self.scene.has_vertices() {
             return self.scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.shader.vertex(&Corner::new(self.vertices, usize::from(index))))
@@ -255,7 +255,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     }
 
     fn painter(&mut self) -> Painter<'_, 'a, F, S> {
-        self.scene.painter(&self.clip, self.state, spans_by_state, self.shader)
+        self.scene.painter(&self.clip, self.state, &const { Chosen::ANY }, self.shader)
     }
 
     #[inline(never)]

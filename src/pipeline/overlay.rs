@@ -1,6 +1,6 @@
 //! 2-D drawing among the 3-D by embedded-graphics: targets over the strip at hand, and where on the screen a point of the world is.
 
-use super::{Phase, Scene, State};
+use super::{Scene, State};
 use crate::fragment::{AnyDepth, DepthState, DepthTest, LessWrite, NoDepth};
 use crate::geometry::{Mesh, MeshData, Placed, Positions, ScreenVertex, Transform};
 use crate::math::{Projective, Vec3};
@@ -32,9 +32,9 @@ impl<F: Framebuffer> Scene<'_, F> {
     }
 
     fn target_at<D: DepthTest>(&mut self, z: u16, test: D) -> Overlay<'_, F, D> {
+        let recording = self.is_recording();
         let target = &mut self.target;
-        let target =
-            (self.phase != Phase::Record).then(|| (&mut *target.framebuffer, &mut *target.depth, target.rows.clone()));
+        let target = (!recording).then(|| (&mut *target.framebuffer, &mut *target.depth, target.rows.clone()));
         Overlay::new(target, self.screen, z, test)
     }
 

@@ -1,6 +1,6 @@
 //! Strokes: a line on the screen → pixels. What is not used is not linked, as each is a type.
 
-use super::triangle::{Painter, spans_by_state};
+use super::triangle::{Chosen, Painter};
 use crate::fragment::{
     AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, MAX_SPAN, NoDepth,
     PixelFormat, Shader, Steps,
@@ -373,7 +373,7 @@ impl Draw for Smooth {
         let shader = Covered { shader: painter.shader, coverage };
         let Painter { target, screen, clip, state, .. } = painter;
         fill(
-            &mut Painter { target, screen: *screen, clip, state, shader: &shader, spans: spans_by_state },
+            &mut Painter { target, screen: *screen, clip, state, shader: &shader, chosen: &const { Chosen::ANY } },
             &corners,
             [from, to],
             face,

@@ -1,10 +1,11 @@
 //! Stages 8 to 11: a triangle on the screen → pixels.
 
 use super::{State, Target};
-use crate::fragment::{AnyDepth, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
-use crate::geometry::{Correction, ScreenVertex, Varyings, VertexShader, signed_area};
+use crate::fragment::{AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
+use crate::geometry::{Correction, DepthScale, ScreenVertex, Transform, Varyings, signed_area};
 use crate::output::Framebuffer;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, homogenize, widen};
+use core::ops::Range;
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -14,14 +15,60 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) clip: &'p PixelRect,
     pub(super) state: &'p State,
     pub(super) shader: &'p S,
-    pub(super) spans: Spans<F, S>,
+    pub(super) chosen: &'p Chosen<F, S>,
 }
 
-/// How the spans of a triangle are drawn: a value, so that a program links the loops for the depth tests that it uses.
-pub(super) type Spans<F, S> = fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, <S as VertexShader>::Varyings>);
+/// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
+pub struct Chosen<F: Framebuffer, S: Shader<F::Format>> {
+    /// 9. The spans of a triangle, by a depth test.
+    spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings>),
+    bias: Option<fn(DepthBias, Range<u16>, i32, i32) -> i32>,
+    pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
+}
 
-/// 9. The spans of a triangle, by any depth test.
-pub(super) fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
+impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
+    /// For [`State::DEFAULT`].
+    pub(super) const DEFAULT: Self =
+        Self { spans: if F::DEPTH { spans_nearer } else { spans_over }, bias: None, depth_scale: None };
+
+    /// For any state.
+    pub(super) const ANY: Self =
+        Self { spans: spans_by_state, bias: Some(DepthBias::steps), depth_scale: Some(Transform::set_depth_scale) };
+
+    /// For a state.
+    #[inline(always)]
+    pub(super) fn of(state: &State) -> Self {
+        Self {
+            spans: match state.depth {
+                DepthState::LESS if F::DEPTH => spans_nearer,
+                DepthState::OFF => spans_over,
+                _ if F::DEPTH => spans_by_state,
+                _ => spans_over,
+            },
+            bias: if state.bias.is_none() { None } else { Self::ANY.bias },
+            depth_scale: match state.depth_scale {
+                DepthScale::Perspective => None,
+                DepthScale::Uniform { .. } => Self::ANY.depth_scale,
+            },
+        }
+    }
+}
+
+fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    set_up: &SetUp<'_, S::Varyings>,
+) {
+    painter.spans(set_up, LessWrite);
+}
+
+fn spans_over<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    set_up: &SetUp<'_, S::Varyings>,
+) {
+    painter.spans(set_up, NoDepth);
+}
+
+fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
     set_up: &SetUp<'_, S::Varyings>,
 ) {
@@ -32,18 +79,10 @@ pub(super) fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
     }
 }
 
-/// The same for [`DepthState::LESS`] alone.
-pub(super) fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
-    painter: &mut Painter<'_, '_, F, S>,
-    set_up: &SetUp<'_, S::Varyings>,
-) {
-    if painter.target.depth.is_empty() { painter.spans(set_up, NoDepth) } else { painter.spans(set_up, LessWrite) }
-}
-
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// The depth test: without a depth buffer, every fragment passes.
     pub(super) fn test(&self) -> DepthState {
-        if self.target.depth.is_empty() { DepthState::OFF } else { self.state.depth }
+        if F::DEPTH { self.state.depth } else { DepthState::OFF }
     }
 
     /// Draws a triangle.
@@ -82,7 +121,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         };
         self.set_up(&mut set_up, varyings);
         // 9. Spans, in a loop of its own for each kind of depth test.
-        (self.spans)(self, &set_up);
+        (self.chosen.spans)(self, &set_up);
     }
 
     /// Stage 8, plane equations of depth and varyings; from here on, values are those at the screen's corner. In a function of
@@ -93,9 +132,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let gradients = Gradients::new(v, *area, self.screen);
         *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
         steps.dz_dx = depth.dx;
-        if !self.state.bias.is_none() {
+        if let Some(steps) = self.chosen.bias {
             let depths = v[0].z.min(v[1].z).min(v[2].z)..v[0].z.max(v[1].z).max(v[2].z);
-            let bias = self.state.bias.steps(depths, depth.dx, depth.dy);
+            let bias = steps(self.state.bias, depths, depth.dx, depth.dy);
             depth.base = depth.base.wrapping_add((bias as u32) << 16);
         }
         if S::Varyings::PERSPECTIVE > 0 {

@@ -28,7 +28,29 @@ pub fn strips<P: PixelFormat>(
     let mut depth = vec![0x1234; pixels];
     let mut records = vec![0xDEAD_BEEF; records];
     let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<P>::new((width, height), buffers).expect("a renderer");
+    let renderer = Renderer::<P>::new((width, height), buffers).expect("a renderer");
+    collect(renderer, background, draw)
+}
+
+/// The same by a renderer that knows no records.
+pub fn unrecorded_strips<P: PixelFormat>(
+    (width, height): (u16, u16),
+    rows: usize,
+    background: P::Color,
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, true, false>>),
+) -> (Vec<P::Raw>, Stats) {
+    let pixels = usize::from(width) * rows;
+    let (mut color, mut depth) = (vec![P::pack([0xA5; 3]); pixels], vec![0x1234; pixels]);
+    let renderer = Renderer::without_records((width, height), &mut color, &mut depth).expect("a renderer");
+    collect(renderer, background, draw)
+}
+
+fn collect<P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
+    mut renderer: Renderer<'_, P, DEPTH, RECORDS>,
+    background: P::Color,
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
+) -> (Vec<P::Raw>, Stats) {
+    let (width, height) = renderer.screen();
     let mut picture = Vec::new();
     let sink = |strip: &StripPixels<'_, P>| {
         let area = strip.area();
