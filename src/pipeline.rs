@@ -196,7 +196,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// whatever [`State::range`] says of what lies beyond them.
     #[inline(never)]
     pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
-        self.sees(&View::new(mvp, &self.viewport), bounds, DepthRange::Clip)
+        let mut view = View::EMPTY;
+        view.fold(mvp, &self.viewport);
+        self.sees(&view, bounds, DepthRange::Clip)
     }
 
     /// Maps clip space to a part of the screen from here on; nothing outside of it is touched. Each call of the closure
@@ -241,7 +243,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if self.overflowed() {
             return false;
         }
-        let view = View::new(mvp, &self.viewport);
+        let mut view = View::EMPTY;
+        view.fold(mvp, &self.viewport);
         let bounded = !displaced && !matches!(mesh.data().positions, Positions::Homogeneous(_));
         let culled = bounded && !self.sees(&view, mesh.bounds(), state.range);
         if recording {

@@ -100,10 +100,10 @@ fn frame_by<const RECORDS: bool>(
 
 #[inline(never)]
 pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+    const OVER: State = State { depth: DepthState::OFF, ..State::DEFAULT };
     let [r, g, b] = QUAD_COLOR;
     let shader = Flat::unlit(Rgb888::new(r, g, b));
-    let state = State { depth: DepthState::OFF, ..State::default() };
-    frame(buffers, sink, |scene| scene.draw_with(state, &QUAD, &IN_VIEW, &shader))
+    frame(buffers, sink, |scene| scene.draw_with(OVER, &QUAD, &IN_VIEW, &shader))
 }
 
 #[inline(never)]

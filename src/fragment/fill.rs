@@ -16,6 +16,17 @@ pub fn fill<R: Pod>(pixels: &mut [R], value: R) {
     }
 }
 
+/// [`fill`], out of line: for whole buffers.
+#[inline(never)]
+pub fn clear<R: Pod>(pixels: &mut [R], value: R) {
+    fill(pixels, value);
+}
+
+/// Sets all words.
+pub fn clear_words(words: &mut [u32], word: u32) {
+    store(word, word, word, word, words);
+}
+
 fn low_byte<R: Pod>(value: R) -> u8 {
     bytemuck::bytes_of(&value).first().copied().unwrap_or(0)
 }

@@ -4,7 +4,7 @@ use super::depth::{RUN, passing};
 use super::dither::dithered_span;
 use super::fill::fill;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
-use crate::geometry::{Corner, Face, Light, Lit, VertexShader};
+use crate::geometry::{Corner, Face, Light, VertexShader};
 use crate::math::SMALL_CORE;
 use core::hint::black_box;
 
@@ -13,41 +13,30 @@ use core::hint::black_box;
 /// The colour is the shader's, or that of the provoking vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat {
-    paint: Paint,
-}
-
-/// Where a face's colour comes from.
-#[derive(Clone, Copy, Debug)]
-enum Paint {
-    /// One colour.
-    Color([u8; 3]),
-    /// One colour under a light.
-    Lit(Lit),
-    /// The provoking vertices' colours.
-    Colors,
-    /// The same under a light.
-    LitColors(Light),
+    /// Otherwise the provoking vertices'.
+    color: Option<[u8; 3]>,
+    light: Option<Light>,
 }
 
 impl Flat {
     /// A colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { paint: Paint::Lit(light.on(channels(color.into()))) }
+        Self { color: Some(channels(color.into())), light: Some(light) }
     }
 
     /// A colour without light.
     pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { paint: Paint::Color(channels(color.into())) }
+        Self { color: Some(channels(color.into())), light: None }
     }
 
     /// The colours of the mesh's vertices as they are, the provoking one's a triangle.
     pub const fn colors_unlit() -> Self {
-        Self { paint: Paint::Colors }
+        Self { color: None, light: None }
     }
 
     /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
     pub const fn colors(light: Light) -> Self {
-        Self { paint: Paint::LitColors(light) }
+        Self { color: None, light: Some(light) }
     }
 }
 
@@ -67,16 +56,18 @@ impl VertexShader for Flat {
     /// The colour, 8 bits a channel, blue lowest.
     #[inline]
     fn face(&self, face: &Face<'_>) -> u32 {
-        let [r, g, b] = match &self.paint {
-            Paint::Color([r, g, b]) => return u32::from_be_bytes([0, *r, *g, *b]),
-            Paint::Lit(lit) => lit.shade(face.normal()),
-            Paint::Colors => {
-                let [r, g, b] = face.provoking().color();
-                return u32::from_be_bytes([0, r, g, b]);
-            }
-            Paint::LitColors(light) => light.shade(face.provoking().color(), face.normal()),
+        let color = match self.color {
+            Some(color) => color,
+            None => face.provoking().color(),
         };
-        u32::from_be_bytes([0, round(r), round(g), round(b)])
+        let [r, g, b] = match &self.light {
+            Some(light) => {
+                let [r, g, b] = light.shade(color, face.normal());
+                [round(r), round(g), round(b)]
+            }
+            None => color,
+        };
+        u32::from_be_bytes([0, r, g, b])
     }
 }
 

@@ -80,6 +80,7 @@ pub use depth_only::DepthOnly;
 pub use discard::{AlphaTest, ScreenDoor};
 pub use dither::dither_word;
 pub use fill::fill;
+pub(crate) use fill::{clear, clear_words};
 pub use flat::Flat;
 pub use fog::{FogCurve, FogTable, Fogged};
 pub use gouraud::Gouraud;

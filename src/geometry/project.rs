@@ -1,7 +1,7 @@
 //! Clip space → screen: divide, and snap to 1/256 px.
 
 use super::clip::ClipVertex;
-use crate::math::{Divisor, Scalar, mul_high, reciprocal};
+use crate::math::{Divisor, Scalar, leading_zeros_long, mul_high, reciprocal};
 use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Point;
 
@@ -75,16 +75,25 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
         return None;
     }
     // w' = w 2^shift / 2³². x' keeps 7 bits of headroom for the guard band: x 2^shift / 2³⁹, at most w' / 2.
-    let shift = v.w.leading_zeros();
-    let scaled = |c: i64| (((c << (shift - 1)) as u64) >> 31) as u32;
-    let w = scaled(v.w);
-    let half = i64::from(w >> 1);
-    let position = |c: i64| {
-        let c = if shift >= 39 { c << (shift - 39) } else { c >> (39 - shift) };
-        c.clamp(-half, half) as i32
-    };
-    let placed = divide(position(v.x), position(v.y), scaled(v.z.clamp(0, v.w)), w);
+    let shift = leading_zeros_long(v.w as u64) as i32;
+    let scaled = |c: i64| shifted(c, shift - 32);
+    let w = scaled(v.w) as u32;
+    let half = (w >> 1) as i32;
+    let position = |c: i64| clamped(shifted(c, shift - 39), half);
+    let placed = divide(position(v.x), position(v.y), scaled(v.z.clamp(0, v.w)) as u32, w);
     Some(ScreenVertex { x: placed.x.clamp(-LIMIT, LIMIT), y: placed.y.clamp(-LIMIT, LIMIT), ..placed })
+}
+
+/// `value` 2^`up`, rounded down.
+#[inline(never)]
+const fn shifted(value: i64, up: i32) -> i64 {
+    if up >= 0 { value << up } else { value >> -up }
+}
+
+/// `value`, but no more than `limit` in either direction.
+#[inline(never)]
+fn clamped(value: i64, limit: i32) -> i32 {
+    value.clamp((-limit).into(), limit.into()) as i32
 }
 
 /// 1 / w of a vertex, on a scale that all vertices of a draw share; 0 unless w > 0.
@@ -97,7 +106,7 @@ pub fn inverse_w(v: &ClipVertex) -> u32 {
     if v.w <= 0 {
         return 0;
     }
-    let exponent = v.w.leading_zeros();
+    let exponent = leading_zeros_long(v.w as u64);
     reciprocal(((v.w << (exponent - 1)) >> 31) as u32) & !63 | exponent
 }
 
@@ -181,7 +190,7 @@ impl UniformDepth {
         if z <= 0 {
             return 0;
         }
-        let zeros = z.leading_zeros();
+        let zeros = leading_zeros_long(z as u64);
         let high = (((z as u64) << zeros) >> 32) as u32;
         // z / far as 1.31, once the powers of two are made up for.
         let down = self.exponent - 32 + zeros as i32;

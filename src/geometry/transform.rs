@@ -7,7 +7,7 @@
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
-use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros};
+use crate::math::{Projective, SMALL_CORE, Scalar, Vec3, leading_zeros, leading_zeros_long};
 use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
@@ -36,12 +36,12 @@ pub struct Transform {
 /// # Format
 /// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵. The short path, for
 /// quantized positions q, computes Σ m q / 2¹⁵, with m = 2¹⁵ high + low below 2³⁰, low in -2¹⁴..2¹⁴ but for the last: that
-/// entry, for q = 1, is the translation, and its low half has the half that rounds. Cores that multiply to 64 bits have all of m
-/// in `high`, and that entry in `translation`.
+/// entry, for q = 1, is the low part of the translation, and has the half that rounds. Cores that multiply to 64 bits have all of
+/// m in `low`.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
-    high: [i32; 4],
-    low: [i32; 4],
+    /// High and low.
+    entries: [[i32; 2]; 4],
     translation: i64,
 }
 
@@ -58,10 +58,8 @@ pub enum Placed {
 #[inline(never)]
 pub fn place(vertex: &ClipVertex) -> Placed {
     let code = Outcode::of(vertex);
-    match project(vertex) {
-        Some(v) if code.0 == 0 => Placed::Screen(v),
-        _ => Placed::Outside(code),
-    }
+    let placed = if code.0 == 0 { project(vertex) } else { None };
+    placed.map_or(Placed::Outside(code), Placed::Screen)
 }
 
 /// `value / 2^shift`, rounded to nearest; a negative shift multiplies. 0 for shifts above 62.
@@ -84,37 +82,71 @@ fn times(a: i64, b: i64) -> i64 {
 #[inline(never)]
 fn excess(values: &[i64], bits: i32) -> i32 {
     let all = values.iter().fold(0, |all, v| all | v.unsigned_abs());
-    64 - all.leading_zeros() as i32 - bits
+    64 - leading_zeros_long(all) as i32 - bits
+}
+
+/// A row of the matrix with the viewport in it: `size` times it, and `offset` times the row of w, both cut by `shift` bits first.
+#[inline(never)]
+fn view_row(row: &[i64; 4], w: &[i64; 4], size: i32, offset: i32, shift: i32) -> [i64; 4] {
+    core::array::from_fn(|k| i64::from(size) * scale(row[k], shift) + i64::from(offset) * scale(w[k], shift))
+}
+
+/// A bounding box cut to 14 bits, in units of 2^`shift`.
+struct ShortBox {
+    /// Centre and half size.
+    sides: [[i32; 3]; 2],
+    shift: u32,
+    /// What a sum of products may be too small by.
+    off: i32,
+}
+
+impl ShortBox {
+    fn new(aabb: &BoundingBox) -> Self {
+        let mut sides = [aabb.center.to_bits(), aabb.half.to_bits()];
+        let reach = sides.as_flattened().iter().fold(0, |all, c| all | c.unsigned_abs());
+        let shift = 18_u32.saturating_sub(leading_zeros(reach)).max(2);
+        // What the entries may be off by takes part in each plane: 2 units times the coordinates and 1, halved.
+        let mut off = (1 << 16 >> shift) + 8;
+        for c in sides.as_flattened_mut() {
+            *c >>= shift;
+            off += c.abs();
+        }
+        Self { sides, shift, off }
+    }
+
+    /// Whether `a` `row` + `b` `w` may be positive in it.
+    #[inline(never)]
+    fn reaches(&self, row: &[i64; 4], a: i32, w: &[i64; 4], b: i32) -> bool {
+        let entries: [i64; 4] = core::array::from_fn(|k| row[k] * i64::from(a) + w[k] * i64::from(b));
+        let cut = excess(&entries, 15).max(17);
+        // The last entry, for a coordinate of 1, which is 2¹⁶ here.
+        let mut value = self.off + (((entries[3] >> cut) as i32) << 15 >> self.shift);
+        let [center, half] = &self.sides;
+        for (entry, (center, half)) in entries.iter().zip(center.iter().zip(half)) {
+            let entry = (entry >> cut) as i32;
+            let size = entry.abs();
+            value += ((entry * center) >> 1) + ((size * half) >> 1) + size;
+        }
+        value >= 0
+    }
 }
 
 impl View {
-    /// Folds a viewport into the matrix that takes object space to clip space.
-    #[inline]
-    pub fn new(mvp: &Projective, viewport: &Viewport) -> Self {
-        let mut view = Self { rows: [[0; 4]; 4], scale: 0 };
-        view.fold(mvp, viewport);
-        view
-    }
+    /// Of nothing yet.
+    pub const EMPTY: Self = Self { rows: [[0; 4]; 4], scale: 0 };
 
+    /// Becomes the matrix that takes object space to clip space with a viewport folded in.
     #[inline(never)]
-    fn fold(&mut self, mvp: &Projective, viewport: &Viewport) {
-        let entries = mvp.rows();
+    pub fn fold(&mut self, mvp: &Projective, viewport: &Viewport) {
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
-        let shift = excess(entries.as_flattened(), 44).max(0);
+        let shift = excess(mvp.rows().as_flattened(), 44).max(0);
         // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
-        let [rx, ry, rz, rw] = &mut self.rows;
-        let [mx, my, mz, mw] = entries;
-        let axis = |x: i64, w: i64, size: i64, corner: i16| size * x + (2 * i64::from(corner) + size.abs()) * w;
-        let (width, height) = (i64::from(viewport.width()), i64::from(viewport.height()));
-        for ((((rx, ry), rz), rw), (((mx, my), mz), mw)) in
-            rx.iter_mut().zip(ry).zip(rz).zip(rw).zip(mx.iter().zip(my).zip(mz).zip(mw))
-        {
-            let w = scale(*mw, shift);
-            *rx = axis(scale(*mx, shift), w, width, viewport.x());
-            *ry = axis(scale(*my, shift), w, -height, viewport.y());
-            *rz = scale(*mz, shift) << 10;
-            *rw = w << 10;
-        }
+        let ([x, y, z, w], [to_x, to_y, to_z, to_w]) = (mvp.rows(), &mut self.rows);
+        let (width, height) = (i32::from(viewport.width()), i32::from(viewport.height()));
+        *to_x = view_row(x, w, width, 2 * i32::from(viewport.x()) + width, shift);
+        *to_y = view_row(y, w, -height, 2 * i32::from(viewport.y()) + height, shift);
+        *to_z = view_row(z, w, 1 << 10, 0, shift);
+        *to_w = view_row(w, w, 1 << 10, 0, shift);
         let more = excess(self.rows.as_flattened(), 45);
         for entry in self.rows.as_flattened_mut() {
             *entry = scale(*entry, more);
@@ -131,42 +163,17 @@ impl View {
     /// coordinates by less than 1. Products are below 2²⁹; all is counted in halves, so that their sum fits.
     #[inline(never)]
     pub fn sees(&self, aabb: &BoundingBox, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
-        let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
-        let reach = center.iter().zip(half).fold(0, |all, (c, h)| all | c.unsigned_abs() | h.unsigned_abs());
-        let shift = 18_u32.saturating_sub(leading_zeros(reach)).max(2);
-        // What the entries may be off by takes part in each plane: 2 units times the coordinates and 1, halved.
-        let mut off = (1 << 16 >> shift) + 8;
-        for (center, half) in center.iter().zip(half) {
-            off += (center >> shift).abs() + (half >> shift);
-        }
+        let aabb = ShortBox::new(aabb);
         let [x, y, z, w] = &self.rows;
-        for plane in 0..6 {
-            let (row, a, b) = match plane {
-                0 => (x, 512, -columns.start),
-                1 => (x, -512, columns.end),
-                2 => (y, 512, -lines.start),
-                3 => (y, -512, lines.end),
-                4 if clamped.0 & Outcode::NEAR == 0 => (z, 512, 0),
-                5 if clamped.0 & Outcode::FAR == 0 => (z, -512, 512),
-                _ => continue,
-            };
-            let mut entries = [0; 4];
-            for ((entry, r), w) in entries.iter_mut().zip(row).zip(w) {
-                *entry = r * a + w * i64::from(b);
-            }
-            let cut = excess(&entries, 15).max(17);
-            // The last entry, for a coordinate of 1, which is 2¹⁶ here.
-            let mut value = off + (((entries[3] >> cut) as i32) << 15 >> shift);
-            for (entry, (center, half)) in entries.iter().zip(center.iter().zip(half)) {
-                let entry = (entry >> cut) as i32;
-                let size = entry.abs();
-                value += ((entry * (center >> shift)) >> 1) + ((size * (half >> shift)) >> 1) + size;
-            }
-            if value < 0 {
-                return false;
-            }
-        }
-        true
+        // Depth is as a coordinate of 512 px.
+        let starts_before = |row, end: i32| aabb.reaches(row, -512, w, end);
+        let ends_behind = |row, start: i32| aabb.reaches(row, 512, w, -start);
+        starts_before(x, columns.end)
+            && ends_behind(x, columns.start)
+            && starts_before(y, lines.end)
+            && ends_behind(y, lines.start)
+            && (clamped.0 & Outcode::NEAR != 0 || ends_behind(z, 0))
+            && (clamped.0 & Outcode::FAR != 0 || starts_before(z, 512))
     }
 
     /// The least w in a box.
@@ -177,10 +184,103 @@ impl View {
     fn least_w(&self, aabb: &BoundingBox) -> i64 {
         let [.., row] = &self.rows;
         let [.., mut least] = *row;
-        for ((entry, center), half) in row.iter().zip(aabb.center.to_bits()).zip(aabb.half.to_bits()) {
-            least += times(*entry, i64::from(center)) - times(entry.abs(), i64::from(half));
+        let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
+        for ((entry, center), half) in row.iter().zip(&center).zip(&half) {
+            least += times(*entry, i64::from(*center)) - times(entry.abs(), i64::from(*half));
         }
         least
+    }
+}
+
+/// What a mesh makes of its numbers.
+///
+/// # Format
+/// Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions
+/// are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
+struct Numbers {
+    factor: i64,
+    offset: [i32; 3],
+    quantized: bool,
+    homogeneous: bool,
+}
+
+impl Numbers {
+    fn of(mesh: &Mesh<'_>, displaced: bool) -> Self {
+        let mut numbers = Self { factor: 1 << 31, offset: [0; 3], quantized: false, homogeneous: false };
+        match &mesh.data().positions {
+            _ if displaced => {}
+            Positions::Quantized { scale, offset, .. } => {
+                numbers.factor = scale.to_bits().into();
+                numbers.offset = offset.to_bits();
+                numbers.quantized = true;
+            }
+            Positions::Homogeneous(_) => numbers.homogeneous = true,
+            Positions::Exact(_) => {}
+        }
+        numbers
+    }
+
+    /// t of a row.
+    #[inline(never)]
+    fn translation(&self, row: &[i64; 4]) -> i64 {
+        let mut t = if self.homogeneous { 0 } else { row[3] };
+        for (r, offset) in row.iter().zip(&self.offset) {
+            t += times(*r, (*offset).into());
+        }
+        t
+    }
+
+    /// The entries e of a row.
+    #[inline]
+    fn entries(&self, row: &[i64; 4]) -> impl Iterator<Item = i64> {
+        row.iter().take(if self.homogeneous { 4 } else { 3 }).map(|r| times(*r, self.factor))
+    }
+
+    /// A quarter of the largest value that a row can reach.
+    #[inline(never)]
+    fn reach(&self, row: &[i64; 4]) -> i64 {
+        let t = self.translation(row).unsigned_abs() as i64 >> 2;
+        self.entries(row).fold(t, |sum, e| sum + (e.abs() >> 2) + 2)
+    }
+
+    /// Makes a row of the transform, cut by `shift` bits.
+    #[inline(never)]
+    fn row(&self, row: &[i64; 4], shift: i32, short: bool, to: &mut Row) {
+        to.translation = scale(self.translation(row), shift);
+        for (entry, e) in to.entries.iter_mut().zip(self.entries(row)) {
+            // 16 fractional bits: e / 2³¹ · 2¹⁶.
+            let e = scale(e, shift + 15);
+            *entry = if !short {
+                [(e >> 16) as i32, (e & 0xFFFF) as i32]
+            } else {
+                // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
+                let m = ((e + (1 << 9)) >> 10) as i32;
+                let low = if SMALL_CORE { ((m & 0x7FFF) ^ 0x4000) - 0x4000 } else { m };
+                [(m - low) >> 15, low]
+            };
+        }
+        if short {
+            let t = (to.translation + (1 << 9)) >> 10;
+            to.translation = t >> 15;
+            to.entries[3] = [0, (t & 0x7FFF) as i32 + (1 << 14)];
+        }
+    }
+}
+
+impl Row {
+    /// A clip coordinate, by either path.
+    ///
+    /// # Format
+    /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded; fractions below 2¹⁶ · 2³¹.
+    #[inline(never)]
+    fn apply(&self, p: &[i32; 4], short: bool) -> i64 {
+        let (mut value, mut fraction) = (self.translation, 0_i64);
+        for ([high, low], p) in self.entries.iter().zip(p) {
+            value += i64::from(*high) * i64::from(*p);
+            fraction += i64::from(*low) * i64::from(*p);
+        }
+        fraction >>= 15;
+        value + if short { fraction } else { fraction >> 1 }
     }
 }
 
@@ -191,7 +291,9 @@ impl Transform {
     /// move vertices.
     pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
         let mut transform = Self::default();
-        transform.fold(&View::new(mvp, viewport), mesh, displaced);
+        let mut view = View::EMPTY;
+        view.fold(mvp, viewport);
+        transform.fold(&view, mesh, displaced);
         transform
     }
 
@@ -202,64 +304,15 @@ impl Transform {
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
     pub fn fold(&mut self, view: &View, mesh: &Mesh<'_>, displaced: bool) {
-        let aabb = &mesh.bounds().aabb;
-        // 1. What the mesh makes of its numbers. Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats
-        //    written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
-        let (mut factor, mut offset, mut quantized, mut homogeneous) = (1 << 31, [0; 3], false, false);
-        if !displaced {
-            match &mesh.data().positions {
-                Positions::Quantized { scale, offset: middle, .. } => {
-                    (factor, offset, quantized) = (i64::from(scale.to_bits()), middle.to_bits(), true);
-                }
-                Positions::Homogeneous(_) => homogeneous = true,
-                Positions::Exact(_) => {}
-            }
-        }
-        // A quarter of the largest value that any row can reach.
-        let mut reach = 0;
-        for (row, r) in self.rows.iter_mut().zip(&view.rows) {
-            let [.., last] = r;
-            let mut t = if homogeneous { 0 } else { *last };
-            for (r, offset) in r.iter().zip(offset) {
-                t += times(*r, i64::from(offset));
-            }
-            row.translation = t;
-            let mut sum = t.unsigned_abs() as i64 >> 2;
-            for (k, ((high, low), r)) in row.high.iter_mut().zip(&mut row.low).zip(r).enumerate() {
-                let e = if k == 3 && !homogeneous { 0 } else { times(*r, factor) };
-                // As it is, for now.
-                (*high, *low) = ((e >> 32) as i32, e as i32);
-                sum += (e.abs() >> 2) + 2;
-            }
-            reach |= sum;
-        }
-
-        // 2. One shift for all, so that the largest reachable value is just below 2⁵⁵.
-        let shift = excess(&[reach], 53);
-        let least_w = view.least_w(aabb);
-        self.short = quantized && scale(least_w, shift) >= Self::SHORT_W;
-        for row in &mut self.rows {
-            row.translation = scale(row.translation, shift);
-            for (high, low) in row.high.iter_mut().zip(&mut row.low) {
-                // 16 fractional bits: e / 2³¹ · 2¹⁶.
-                let e = scale(i64::from(*high) << 32 | i64::from(*low as u32), shift + 15);
-                (*high, *low) = ((e >> 16) as i32, (e & 0xFFFF) as i32);
-                if self.short {
-                    // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
-                    let m = ((e + (1 << 9)) >> 10) as i32;
-                    *low = if SMALL_CORE { ((m & 0x7FFF) ^ 0x4000) - 0x4000 } else { 0 };
-                    *high = if SMALL_CORE { (m - *low) >> 15 } else { m };
-                }
-            }
-            if self.short {
-                let t = (row.translation + (1 << 9)) >> 10;
-                row.high[3] = (t >> 15) as i32;
-                row.low[3] = (t & 0x7FFF) as i32 + (1 << 14);
-                row.translation = t + (1 << 14);
-            }
-        }
+        let numbers = Numbers::of(mesh, displaced);
+        // One shift for all, so that the largest reachable value is just below 2⁵⁵.
+        let shift = excess(&[view.rows.iter().fold(0, |reach, row| reach | numbers.reach(row))], 53);
+        let least_w = view.least_w(&mesh.bounds().aabb);
+        self.short = numbers.quantized && scale(least_w, shift) >= Self::SHORT_W;
         self.scale = view.scale - shift;
-        self.uniform = None;
+        for (row, from) in self.rows.iter_mut().zip(&view.rows) {
+            numbers.row(from, shift, self.short, row);
+        }
     }
 
     /// Sets how depth grows with distance.
@@ -297,20 +350,15 @@ impl Transform {
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
     #[inline(never)]
     pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> ClipVertex {
-        match positions {
+        let p = match positions {
             Positions::Quantized { points, .. } => {
-                let q = points.get(index).copied().unwrap_or_default();
-                if self.short {
-                    return self.short_vertex(&q);
-                }
-                self.apply([i32::from(q[0]) << 16, i32::from(q[1]) << 16, i32::from(q[2]) << 16, 0])
+                let [x, y, z] = points.get(index).copied().unwrap_or_default().map(i32::from);
+                if self.short { [x, y, z, 1] } else { [x << 16, y << 16, z << 16, 0] }
             }
-            Positions::Exact(points) => self.point(points.get(index).copied().unwrap_or_default()),
-            Positions::Homogeneous(points) => {
-                let [x, y, z, w] = points.get(index).copied().unwrap_or_default();
-                self.apply([x.to_bits(), y.to_bits(), z.to_bits(), w.to_bits()])
-            }
-        }
+            Positions::Exact(points) => return self.point(points.get(index).copied().unwrap_or_default()),
+            Positions::Homogeneous(points) => points.get(index).copied().unwrap_or_default().map(Scalar::to_bits),
+        };
+        self.apply(&p)
     }
 
     /// Where a mesh vertex is on the screen, or which planes keep it off.
@@ -340,7 +388,7 @@ impl Transform {
     /// Clip coordinates of a 16.16 position, of a transform made for those.
     pub fn point(&self, position: Vec3) -> ClipVertex {
         let [x, y, z] = position.to_bits();
-        self.apply([x, y, z, 0])
+        self.apply(&[x, y, z, 0])
     }
 
     /// Whether vertices take the 32-bit path.
@@ -348,40 +396,12 @@ impl Transform {
         self.short
     }
 
-    /// The long path.
-    ///
-    /// # Format
-    /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded in `of`; fractions below 2¹⁶ · 2³¹.
+    /// Both paths, coordinate by coordinate: the long one, and the short one for the few vertices that are clipped.
     #[inline(never)]
-    fn apply(&self, p: [i32; 4]) -> ClipVertex {
-        let mut clip = [0_i64; 4];
-        for (value, row) in clip.iter_mut().zip(&self.rows) {
-            let mut fraction = 0_i64;
-            *value = row.translation;
-            for ((high, low), p) in row.high.iter().zip(&row.low).zip(p) {
-                *value += i64::from(*high) * i64::from(p);
-                fraction += i64::from(*low) * i64::from(p);
-            }
-            *value += fraction >> 16;
-        }
-        let [x, y, z, w] = clip;
-        ClipVertex { x, y, z, w }
-    }
-
-    /// [`apply_short`](Self::apply_short) for the few vertices that are clipped: a loop.
-    #[inline(never)]
-    fn short_vertex(&self, q: &[i16; 3]) -> ClipVertex {
-        let mut clip = [0; 4];
-        for (value, row) in clip.iter_mut().zip(&self.rows) {
-            let mut sum = row.translation;
-            for ((high, low), q) in row.high.iter().zip(&row.low).zip(q) {
-                let m = if SMALL_CORE { (high << 15) + low } else { *high };
-                sum += i64::from(m) * i64::from(*q);
-            }
-            *value = sum >> 15;
-        }
-        let [x, y, z, w] = clip;
-        ClipVertex { x, y, z, w }
+    fn apply(&self, p: &[i32; 4]) -> ClipVertex {
+        let [x, y, z, w] = &self.rows;
+        let apply = |row: &Row| row.apply(p, self.short);
+        ClipVertex { x: apply(x), y: apply(y), z: apply(z), w: apply(w) }
     }
 
     /// The short path; see [`Row`].
@@ -389,14 +409,14 @@ impl Transform {
     fn apply_short(&self, q: [i16; 3]) -> [i32; 4] {
         let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
         let apply = |row: &Row| {
+            let [[hx, lx], [hy, ly], [hz, lz], [_, lt]] = row.entries;
+            let translation = row.translation as i32;
             if SMALL_CORE {
-                let ([hx, hy, hz, ht], [lx, ly, lz, lt]) = (row.high, row.low);
-                hx * x + hy * y + hz * z + ht + ((lx * x + ly * y + lz * z + lt) >> 15)
+                hx * x + hy * y + hz * z + translation + ((lx * x + ly * y + lz * z + lt) >> 15)
             } else {
                 // The same, of whole entries.
-                let [mx, my, mz, _] = row.high;
                 let product = |m: i32, q: i32| i64::from(m) * i64::from(q);
-                ((row.translation + product(mx, x) + product(my, y) + product(mz, z)) >> 15) as i32
+                translation + ((i64::from(lt) + product(lx, x) + product(ly, y) + product(lz, z)) >> 15) as i32
             }
         };
         // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.

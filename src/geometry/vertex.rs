@@ -1,7 +1,7 @@
 //! The vertex stage's seam: what a shader sees of a vertex or a face, and what it hands on.
 
 use super::{MAX_DISTANCES, Mesh, Positions, Varyings};
-use crate::math::{Vec3, isqrt, mul_high_signed, reciprocal};
+use crate::math::{Vec3, isqrt, leading_zeros_long, mul_high_signed, reciprocal};
 
 /// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
 /// white (colours).
@@ -118,7 +118,7 @@ impl<'a> Face<'a> {
         let mut n = fifteen_bits([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]);
         let length = isqrt(n.iter().fold(0, |sum, v| sum.wrapping_add((v * v) as u32)));
         // v 2¹⁴ / length = v 2¹⁶ (2⁶³ / (length 2^shift)) / 2³² / 2^(33 - shift), with 15 or 16 bits of length.
-        let shift = length.leading_zeros();
+        let shift = leading_zeros_long(length.into()) - 32;
         if shift > 17 {
             return [0; 3];
         }
@@ -167,7 +167,7 @@ fn edge(from: &[i32; 3], to: &[i32; 3]) -> [i32; 3] {
 #[inline(never)]
 fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
     let widest = v.iter().fold(0, |all, c| all | c.unsigned_abs());
-    let zeros = widest.leading_zeros() as i32 - 17;
+    let zeros = leading_zeros_long(widest.into()) as i32 - 49;
     // Zero has 32 leading zeros.
     v.map(|c| if zeros >= 0 { c << zeros } else { c >> -zeros })
 }

@@ -54,6 +54,16 @@ pub(crate) const fn leading_zeros(x: u32) -> u32 {
     leading_zeros_by_table(x)
 }
 
+/// The same out of line, of 64 bits: where speed does not matter.
+#[inline(never)]
+pub(crate) const fn leading_zeros_long(x: u64) -> u32 {
+    if !SMALL_CORE {
+        return x.leading_zeros();
+    }
+    let (word, zeros) = if x >> 32 == 0 { (x as u32, 32) } else { ((x >> 32) as u32, 0) };
+    zeros + leading_zeros_by_table(word)
+}
+
 #[inline(always)]
 const fn leading_zeros_by_table(x: u32) -> u32 {
     let (x, zeros) = if x >> 16 != 0 { (x >> 16, 0) } else { (x, 16) };

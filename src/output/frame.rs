@@ -3,9 +3,9 @@
 use super::record::{Layout, Records};
 use super::sink::{OnDisplay, StripPixels, StripSink};
 use super::{Framebuffer, Stats, Strip};
-use crate::fragment::{PixelFormat, fill};
+use crate::fragment::{PixelFormat, clear};
 use crate::geometry::{Viewport, ViewportError};
-use crate::math::divided;
+use crate::math::{divided, leading_zeros_long};
 use crate::pipeline::{Phase, Scene, Target};
 use core::fmt;
 use core::num::NonZeroU32;
@@ -84,7 +84,7 @@ impl StripRows {
     /// 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below 2¹².
     fn new(rows: u16) -> Self {
         let rows = rows.max(1);
-        let shift = 12 + (u32::from(rows) - 1).checked_ilog2().map_or(0, |bits| bits + 1);
+        let shift = 12 + 64 - leading_zeros_long(u64::from(rows) - 1);
         Self { rows, factor: (whole_rows((1 << shift) - 1, rows) + 1) as u32, shift }
     }
 
@@ -194,7 +194,7 @@ impl Engine<'_> {
         let rows = grid.rows_at(row);
         let pixels = usize::from(grid.viewport.width()) * usize::from(rows);
         if F::DEPTH {
-            fill(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
+            clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
         }
         loop {
             let mut records = Records::new(self.records, &mut progress.layout);
@@ -487,7 +487,7 @@ fn strip_into<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
     let rows = engine.grid.rows_at(row);
     let length = (usize::from(width) * usize::from(rows)).min(color.len());
     let color = color.get_mut(..length).unwrap_or_default();
-    fill(color, background);
+    clear(color, background);
     let mut strip = Strip::<P, DEPTH, RECORDS>::new(&mut *color, width, u32::from(row));
     engine.next_strip(progress, &mut strip, draw).map_err(FrameError::SceneChanged)?;
     let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
@@ -538,7 +538,7 @@ impl<const DEPTH: bool> FramebufferRenderer<'_, DEPTH> {
             for y in 0..height {
                 let row = framebuffer.row(u32::from(y));
                 let length = row.len().min(usize::from(width));
-                fill(row.get_mut(..length).unwrap_or_default(), F::Format::from_color(color));
+                clear(row.get_mut(..length).unwrap_or_default(), F::Format::from_color(color));
             }
         }
         let mut progress = Progress::new();

@@ -13,6 +13,7 @@
 //! order. Each triangle is in one list at a time: recorded into the list of the topmost strip it touches, it moves on to
 //! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
 
+use crate::fragment::clear_words;
 use crate::geometry::{Placed, ScreenVertex, Varyings, VertexShader};
 use crate::raster::first_centre;
 
@@ -169,7 +170,7 @@ impl<'a> Records<'a> {
     pub(crate) fn begin_band(&mut self, strips: usize) {
         *self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
         match self.words.get_mut(..strips) {
-            Some(lists) => lists.fill(u32::from(NONE) << 16 | u32::from(NONE)),
+            Some(lists) => clear_words(lists, u32::from(NONE) << 16 | u32::from(NONE)),
             None => self.layout.overflow = true,
         }
     }

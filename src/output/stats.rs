@@ -4,6 +4,8 @@
 /// wrap at 2³².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+// Cleared by the same routine as 64-bit numbers are.
+#[repr(align(8))]
 pub struct Stats {
     /// How often the closure that draws was called.
     pub walks: u32,

@@ -33,7 +33,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Takes the parts of a mesh that can be seen.
     #[inline(never)]
     pub(super) fn parts(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
-        let view = View::new(mvp, &self.scene.viewport);
+        let mut view = View::EMPTY;
+        view.fold(mvp, &self.scene.viewport);
         let mut k = 0;
         while let Some(node) = nodes.get(k) {
             if self.scene.sees(&view, &node.bounds, self.state.range) {

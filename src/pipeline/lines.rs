@@ -102,7 +102,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let rect = self.clip_rect(&self.band);
         let (x, y) = (rect.x.start - reach..rect.x.end + reach, rect.y.start - reach..rect.y.end + reach);
         let planes = state.range.clamped();
-        let culled = bounded && !View::new(mvp, &self.viewport).sees(&vertices.bounds().aabb, &x, &y, planes);
+        let mut view = View::EMPTY;
+        view.fold(mvp, &self.viewport);
+        let culled = bounded && !view.sees(&vertices.bounds().aabb, &x, &y, planes);
         self.stats.culled = self.stats.culled.wrapping_add(u32::from(culled));
         if recording {
             let count = if culled { 0 } else { vertices.vertex_count() };

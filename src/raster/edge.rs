@@ -8,7 +8,7 @@
 //! than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the exact one. D is below 2³², and 45
 //! bits behind the point leave room for the rounding of a step in each of 4,096 rows.
 
-use crate::math::{ShortDivisor, divide_modulo, mul_high_signed, reciprocal};
+use crate::math::{ShortDivisor, divide_modulo, leading_zeros_long, mul_high_signed, reciprocal};
 
 /// The state of an edge at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,7 +86,7 @@ impl Edge {
         if dx.unsigned_abs() >> 17 != 0 || dy >> 19 != 0 {
             return Self::huge(x, dx, dy, p);
         }
-        let z = dy.leading_zeros();
+        let z = leading_zeros_long(dy as u64) - 32;
         let inverse = reciprocal((dy as u32) << z);
         let h = mul_high_signed(dx << 12, inverse);
         let rest = (dx << (43 - z)).wrapping_sub(h.wrapping_mul(dy));

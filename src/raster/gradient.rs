@@ -12,7 +12,7 @@
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{divide_modulo, leading_zeros, mul_high_signed};
+use crate::math::{divide_modulo, leading_zeros, leading_zeros_long, mul_high_signed};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +62,7 @@ impl Gradients {
         } else if medium(x[0]) & medium(x[1]) & medium(y[0]) & medium(y[1]) {
             // Areas up to 2³⁵, of which the upper 32 bits count: 2⁻³¹ is lost.
             let magnitude = area.unsigned_abs();
-            let zeros = magnitude.leading_zeros();
+            let zeros = leading_zeros_long(magnitude);
             shift = zeros as i32 - 32;
             reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
@@ -155,7 +155,7 @@ impl Gradients {
     /// 2⁻³⁰).
     fn gentle(&self, n: i64, scale: u32) -> Option<i32> {
         // Redundant sign bits, all but the last of which can go.
-        let zeros = (n ^ (n >> 63)).leading_zeros();
+        let zeros = leading_zeros_long((n ^ (n >> 63)) as u64);
         let normalized = (n << (zeros - 1) >> 32) as i32;
         let high = mul_high_signed(normalized, self.reciprocal);
         // With up = zeros - 33: high 2³² 2^(shift + scale - up) / 2⁵⁵.

@@ -128,7 +128,8 @@ impl Outline {
         let end = if area == 0 { top } else { first_centre(c.1).min(clip.end) };
         let bend = first_centre(b.1);
         if top >= end {
-            return Self { top, bend, end, left: Edge::EMPTY, right: Edge::EMPTY, short: Edge::EMPTY, bend_right };
+            // Edges from a point to itself are empty.
+            (b, c) = (a, a);
         }
         let long = Edge::new(a, c, top);
         let short = if bend < end { Edge::new(b, c, bend.max(top)) } else { Edge::EMPTY };
