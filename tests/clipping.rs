@@ -45,7 +45,7 @@ type Polygon = Vec<(ClipVertex, [i32; 3])>;
 fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Polygon> {
     let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
     let mut polygons = Vec::new();
-    for part in range.parts(Outcode(codes)) {
+    for part in [zstrip::geometry::Part::Between].into_iter().chain(range.parts_beyond(Outcode(codes))) {
         let mut polygon = Vec::new();
         clip_triangle(triangle.map(|v| v.0), Outcode(codes), part, |corner| {
             polygon.push((corner.vertex, corner.weights))

@@ -57,9 +57,9 @@ pub enum Workload {
 }
 
 /// Draws a frame of a workload; the strip is as high as the buffers.
-pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
     match workload {
-        Workload::Empty => frame(buffers, sink, |_| {}),
+        Workload::Empty => frame(buffers, &mut sink, &mut |_| {}),
         Workload::Quad => quad(buffers, sink),
         Workload::GouraudQuad => gouraud_quad(buffers, sink),
         Workload::FlatQuad => flat_quad(buffers, sink),
@@ -74,10 +74,12 @@ pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&
 
 const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
 
+/// One function for all workloads, as a program has that shows several things.
+#[inline(never)]
 fn frame(
     buffers: Buffers<'_, Rgb565>,
-    sink: impl FnMut(&[u16]),
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
+    sink: &mut dyn FnMut(&[u16]),
+    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
 ) -> Stats {
     frame_by(Renderer::new(SCREEN, buffers), sink, draw)
 }
@@ -99,43 +101,43 @@ fn frame_by<const RECORDS: bool>(
 }
 
 #[inline(never)]
-pub fn quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+pub fn quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
     const OVER: State = State { depth: DepthState::OFF, ..State::DEFAULT };
     let [r, g, b] = QUAD_COLOR;
     let shader = Flat::unlit(Rgb888::new(r, g, b));
-    frame(buffers, sink, |scene| scene.draw_with(OVER, &QUAD, &IN_VIEW, &shader))
+    frame(buffers, &mut sink, &mut |scene| scene.draw_with(OVER, &QUAD, &IN_VIEW, &shader))
 }
 
 #[inline(never)]
-pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::colors_unlit()))
+pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::colors_unlit()))
 }
 
 #[inline(never)]
-pub fn flat_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+pub fn flat_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
     let [r, g, b] = QUAD_COLOR;
-    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &Flat::unlit(Rgb888::new(r, g, b))))
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &Flat::unlit(Rgb888::new(r, g, b))))
 }
 
 #[inline(never)]
-pub fn own_flat_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &OwnFlat))
+pub fn own_flat_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &OwnFlat))
 }
 
 #[inline(never)]
-pub fn own_gouraud_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    frame(buffers, sink, |scene| scene.draw(&QUAD, &IN_VIEW, &OwnGouraud))
+pub fn own_gouraud_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &OwnGouraud))
 }
 
 #[inline(never)]
-pub fn textured_quad(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
-    frame(buffers, sink, |scene| scene.draw(&TILTED, &IN_VIEW, &Textured::new(&TEXTURE)))
+pub fn textured_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&TILTED, &IN_VIEW, &Textured::new(&TEXTURE)))
 }
 
 #[inline(never)]
-pub fn flat_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+pub fn flat_torus(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
     let shader = Flat::new(TORUS_LIGHT, torus_color());
-    frame(buffers, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
 /// The same by a renderer that knows no records.
@@ -147,15 +149,15 @@ pub fn flat_torus_without_records(color: &mut [u16], depth: &mut [u16], sink: im
 }
 
 #[inline(never)]
-pub fn gouraud_torus(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+pub fn gouraud_torus(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
     let shader = Gouraud::new(TORUS_LIGHT, torus_color());
-    frame(buffers, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
 #[inline(never)]
-pub fn tiny(buffers: Buffers<'_, Rgb565>, sink: impl FnMut(&[u16])) -> Stats {
+pub fn tiny(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
     let shader = FaceColors(Flat::unlit(Rgb888::new(0, 0, 0)));
-    frame(buffers, sink, |scene| scene.draw(&TINY, &IN_VIEW, &shader))
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&TINY, &IN_VIEW, &shader))
 }
 
 /// The compiler makes it: 128-bit arithmetic stays out of the firmware.

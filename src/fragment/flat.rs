@@ -13,20 +13,20 @@ use core::hint::black_box;
 /// The colour is the shader's, or that of the provoking vertex.
 #[derive(Clone, Copy, Debug)]
 pub struct Flat {
-    /// Otherwise the provoking vertices'.
-    color: Option<[u8; 3]>,
+    /// Red, green and blue in a word, blue lowest; otherwise the provoking vertices'.
+    color: Option<u32>,
     light: Option<Light>,
 }
 
 impl Flat {
     /// A colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { color: Some(channels(color.into())), light: Some(light) }
+        Self { color: Some(packed(channels(color.into()))), light: Some(light) }
     }
 
     /// A colour without light.
     pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { color: Some(channels(color.into())), light: None }
+        Self { color: Some(packed(channels(color.into()))), light: None }
     }
 
     /// The colours of the mesh's vertices as they are, the provoking one's a triangle.
@@ -58,22 +58,23 @@ impl VertexShader for Flat {
     fn face(&self, face: &Face<'_>) -> u32 {
         let color = match self.color {
             Some(color) => color,
-            None => face.provoking().color(),
+            None => packed(face.provoking().color()),
         };
-        let [r, g, b] = match &self.light {
-            Some(light) => {
-                let [r, g, b] = light.shade(color, face.normal());
-                [round(r), round(g), round(b)]
-            }
+        match &self.light {
+            Some(light) => light.shade(color, face.normal()),
             None => color,
-        };
-        u32::from_be_bytes([0, r, g, b])
+        }
     }
 }
 
 /// 8.8 to 8 bits, to nearest; 255.0 is the largest value there is.
 pub(super) const fn round(channel: i32) -> u8 {
     ((channel + 128) >> 8) as u8
+}
+
+/// The word of a face of this colour.
+const fn packed([r, g, b]: [u8; 3]) -> u32 {
+    u32::from_be_bytes([0, r, g, b])
 }
 
 /// The colour of a face, from its word.

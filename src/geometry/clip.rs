@@ -61,11 +61,8 @@ impl Outcode {
     /// The planes `vertex` lies outside of.
     #[inline]
     pub fn of(vertex: &ClipVertex) -> Self {
-        let ClipVertex { x, y, z, w } = *vertex;
-        let band = band(w);
-        let depth = u8::from(w < ClipVertex::MIN_W) | u8::from(z < 0) << 1 | u8::from(z > w) << 2;
-        let sides = u8::from(x < -band) | u8::from(x > band) << 1 | u8::from(y < -band) << 2 | u8::from(y > band) << 3;
-        Self(depth | sides << 3)
+        let place = [Cell::new(vertex.x), Cell::new(vertex.y), Cell::new(vertex.z), Cell::new(vertex.w)];
+        Self((0..PLANES).fold(0, |code, plane| code | u8::from(distance(plane, &place) < 0) << plane))
     }
 }
 
@@ -165,11 +162,9 @@ impl PolygonCorner {
 
     /// Corner `k` of a triangle.
     pub(super) fn set(&self, vertex: &ClipVertex, k: usize) {
-        let [x, y, z, w] = &self.place;
-        x.set(vertex.x);
-        y.set(vertex.y);
-        z.set(vertex.z);
-        w.set(vertex.w);
+        for (place, c) in self.place.iter().zip([vertex.x, vertex.y, vertex.z, vertex.w]) {
+            place.set(c);
+        }
         for (own, weight) in self.weights.iter().enumerate() {
             weight.set(if own == k { ClipCorner::WHOLE } else { 0 });
         }
@@ -269,12 +264,11 @@ impl DepthRange {
         }
     }
 
-    /// The parts to draw of a triangle whose vertices' outcodes are `codes`, united.
-    pub fn parts(self, codes: Outcode) -> impl Iterator<Item = Part> {
+    /// The parts to draw beside that between the planes, of a triangle whose vertices' outcodes are `codes`, united.
+    pub fn parts_beyond(self, codes: Outcode) -> impl Iterator<Item = Part> {
         let outside = codes.0 & self.clamped().0;
-        // The bit of the plane it lies behind; the part between has none.
-        let parts = [(Part::Before, Outcode::NEAR), (Part::Between, 0), (Part::Beyond, Outcode::FAR)];
-        parts.into_iter().filter(move |(_, plane)| *plane == 0 || outside & plane != 0).map(|(part, _)| part)
+        let parts = [(Part::Before, Outcode::NEAR), (Part::Beyond, Outcode::FAR)];
+        parts.into_iter().filter(move |(_, plane)| outside & plane != 0).map(|(part, _)| part)
     }
 }
 
@@ -297,13 +291,12 @@ impl Polygon {
             corner.next.set(if k == 2 { 0 } else { k as u8 + 1 });
         }
         for ((k, corner), vertex) in self.corners.iter().enumerate().zip(triangle) {
-            let ClipVertex { x, y, z, w } = *vertex;
+            corner.set(vertex, k);
             // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
-            if x | y | z | w == 0 {
+            if corner.place.iter().fold(0, |all, c| all | c.get()) == 0 {
                 self.ring.len = 0;
                 return;
             }
-            corner.set(vertex, k);
         }
         for plane in 0..PLANES {
             if codes.0 & (1 << plane) != 0 {

@@ -83,17 +83,19 @@ impl Light {
         Self { direction: unit(enlarged(model).inverse_rigid().transform_vector(direction)), ..*self }
     }
 
-    /// Red, green, blue in 8.8 of a surface of a colour with a unit normal: `self.on(color).shade(normal)`, in one.
+    /// The colour of a surface with a unit normal, rounded from what [`on`](Self::on) and [`Lit::shade`] make of it: red, green
+    /// and blue in a word, blue lowest.
     #[inline(never)]
-    pub fn shade(&self, color: [u8; 3], normal: [i16; 3]) -> [i32; 3] {
+    pub fn shade(&self, mut color: u32, normal: [i16; 3]) -> u32 {
         let cosine = cosine(normal, self.direction);
-        let mut channels = [0; 3];
-        let levels = self.ambient.iter().zip(&self.diffuse);
-        for ((channel, color), (ambient, diffuse)) in channels.iter_mut().zip(color).zip(levels) {
-            let [color, ambient, diffuse] = [i32::from(color), i32::from(*ambient), i32::from(*diffuse)];
-            *channel = (color * ambient + ((color * diffuse * cosine) >> 14)).min(WHITE);
+        let mut shaded = 0;
+        for (ambient, diffuse) in self.ambient.iter().zip(&self.diffuse) {
+            color <<= 8;
+            let channel = (color >> 24) as i32;
+            let lit = channel * i32::from(*ambient) + ((channel * i32::from(*diffuse) * cosine) >> 14);
+            shaded = shaded << 8 | ((lit.min(WHITE) + 128) >> 8) as u32;
         }
-        channels
+        shaded
     }
 
     /// Light on a surface of a colour: what is the same for all its normals, worked out once.

@@ -25,6 +25,24 @@ pub enum Positions<'a> {
     Homogeneous(&'a [[Scalar; 4]]),
 }
 
+impl Positions<'_> {
+    /// The numbers of a position as they are, 0 past the end; 0 for the w of those without.
+    #[inline(never)]
+    pub(super) fn numbers(&self, index: usize) -> [i32; 4] {
+        match self {
+            Self::Quantized { points, .. } => {
+                let [x, y, z] = points.get(index).copied().unwrap_or_default();
+                [x.into(), y.into(), z.into(), 0]
+            }
+            Self::Exact(points) => {
+                let [x, y, z] = points.get(index).copied().unwrap_or_default().to_bits();
+                [x, y, z, 0]
+            }
+            Self::Homogeneous(points) => points.get(index).copied().unwrap_or_default().map(Scalar::to_bits),
+        }
+    }
+}
+
 /// How vertices, or indices, form triangles. A counter-clockwise triangle (y up) is a front face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Topology {

@@ -78,10 +78,10 @@ pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     let shift = leading_zeros_long(v.w as u64) as i32;
     let scaled = |c: i64| shifted(c, shift - 32);
     let w = scaled(v.w) as u32;
-    let half = (w >> 1) as i32;
-    let position = |c: i64| clamped(shifted(c, shift - 39), half);
-    let placed = divide(position(v.x), position(v.y), scaled(v.z.clamp(0, v.w)) as u32, w);
-    Some(ScreenVertex { x: placed.x.clamp(-LIMIT, LIMIT), y: placed.y.clamp(-LIMIT, LIMIT), ..placed })
+    // 2²³ - 1 steps: half of w, less its 2²³rd part.
+    let limit = ((w >> 1) - (w >> 24)) as i32;
+    let position = |c: i64| clamped(shifted(c, shift - 39), limit);
+    Some(divide(position(v.x), position(v.y), scaled(v.z.clamp(0, v.w)) as u32, w))
 }
 
 /// `value` 2^`up`, rounded down.
@@ -207,12 +207,12 @@ fn sixteen_bits(fraction: u32) -> u16 {
     ((fraction + (1 << 14) - ((fraction + 0xFFFF) >> 16)) >> 15) as u16
 }
 
-/// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.
-const LIMIT: i32 = (1 << 23) - 1;
-
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.
+    const LIMIT: i32 = (1 << 23) - 1;
 
     #[test]
     fn short_projection_is_the_same() {

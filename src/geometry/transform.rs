@@ -7,7 +7,7 @@
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
-use crate::math::{Projective, SMALL_CORE, Scalar, Vec3, leading_zeros, leading_zeros_long};
+use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros, leading_zeros_long};
 use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
@@ -350,14 +350,14 @@ impl Transform {
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
     #[inline(never)]
     pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> ClipVertex {
-        let p = match positions {
-            Positions::Quantized { points, .. } => {
-                let [x, y, z] = points.get(index).copied().unwrap_or_default().map(i32::from);
-                if self.short { [x, y, z, 1] } else { [x << 16, y << 16, z << 16, 0] }
+        let mut p = positions.numbers(index);
+        if self.short {
+            p[3] = 1;
+        } else if let Positions::Quantized { .. } = positions {
+            for c in &mut p {
+                *c <<= 16;
             }
-            Positions::Exact(points) => return self.point(points.get(index).copied().unwrap_or_default()),
-            Positions::Homogeneous(points) => points.get(index).copied().unwrap_or_default().map(Scalar::to_bits),
-        };
+        }
         self.apply(&p)
     }
 
@@ -399,9 +399,8 @@ impl Transform {
     /// Both paths, coordinate by coordinate: the long one, and the short one for the few vertices that are clipped.
     #[inline(never)]
     fn apply(&self, p: &[i32; 4]) -> ClipVertex {
-        let [x, y, z, w] = &self.rows;
-        let apply = |row: &Row| row.apply(p, self.short);
-        ClipVertex { x: apply(x), y: apply(y), z: apply(z), w: apply(w) }
+        let [x, y, z, w] = core::array::from_fn(|k| self.rows[k].apply(p, self.short));
+        ClipVertex { x, y, z, w }
     }
 
     /// The short path; see [`Row`].

@@ -112,8 +112,14 @@ impl<'a> Face<'a> {
     /// so that the sum of their squares fits 32: within 2⁻¹² of the exact normal unless the edges are nearly parallel.
     #[inline(never)]
     fn computed_normal(&self) -> [i16; 3] {
+        let positions = &self.mesh.data().positions;
+        if let Positions::Homogeneous(_) = positions {
+            // There is none.
+            return [0; 3];
+        }
         let [a, b, c] = self.corners;
-        let (a, b, c) = (self.raw(a), self.raw(b), self.raw(c));
+        let numbers = |corner: u16| positions.numbers(corner.into());
+        let (a, b, c) = (numbers(a), numbers(b), numbers(c));
         let ([ax, ay, az], [bx, by, bz]) = (edge(&a, &b), edge(&a, &c));
         let mut n = fifteen_bits([ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx]);
         let length = isqrt(n.iter().fold(0, |sum, v| sum.wrapping_add((v * v) as u32)));
@@ -129,17 +135,6 @@ impl<'a> Face<'a> {
         let [x, y, z] = n;
         [x as i16, y as i16, z as i16]
     }
-
-    /// A corner's coordinates as the mesh has them; of homogeneous positions, there is no normal.
-    #[inline(never)]
-    fn raw(&self, index: u16) -> [i32; 3] {
-        let index = usize::from(index);
-        match self.mesh.data().positions {
-            Positions::Quantized { points, .. } => points.get(index).copied().unwrap_or_default().map(i32::from),
-            Positions::Exact(points) => points.get(index).copied().unwrap_or_default().to_bits(),
-            Positions::Homogeneous(_) => [0; 3],
-        }
-    }
 }
 
 /// The direction from a corner to another, scaled to 15 bits.
@@ -147,7 +142,7 @@ impl<'a> Face<'a> {
 /// # Format
 /// Differences of 33 bits are halved, all three: that far they are to be shifted in any case.
 #[inline(never)]
-fn edge(from: &[i32; 3], to: &[i32; 3]) -> [i32; 3] {
+fn edge(from: &[i32; 4], to: &[i32; 4]) -> [i32; 3] {
     let mut difference = [0; 3];
     let mut overflow = false;
     for ((difference, a), b) in difference.iter_mut().zip(from).zip(to) {

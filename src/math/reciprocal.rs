@@ -16,6 +16,12 @@ pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
     if SMALL_CORE { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
 }
 
+/// [`mul_high_signed`] out of line: where speed does not matter.
+#[inline(never)]
+pub fn mul_high_apart(a: i32, b: u32) -> i32 {
+    mul_high_signed(a, b)
+}
+
 /// [`mul_high`] from [`mul_high_signed`], which takes `a` for a - 2³² when its top bit is set: b is missing then.
 ///
 /// Four products by themselves would be recognized by the compiler and replaced by a call to `__aeabi_lmul`.

@@ -82,8 +82,13 @@ impl StripRows {
     /// # Format
     /// row / rows = row factor / 2^shift with factor = ⌈2^shift / rows⌉ ≤ 2¹³: too large by less than row / 2^shift, which is below
     /// 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below 2¹².
-    fn new(rows: u16) -> Self {
+    ///
+    /// Without records nothing is divided, and the factor is 0.
+    fn new(rows: u16, records: bool) -> Self {
         let rows = rows.max(1);
+        if !records {
+            return Self { rows, factor: 0, shift: 0 };
+        }
         let shift = 12 + 64 - leading_zeros_long(u64::from(rows) - 1);
         Self { rows, factor: (whole_rows((1 << shift) - 1, rows) + 1) as u32, shift }
     }
@@ -139,7 +144,8 @@ struct Engine<'b> {
 }
 
 impl<'b> Engine<'b> {
-    fn new(
+    #[inline]
+    fn new<const RECORDS: bool>(
         screen: (u16, u16),
         mut rows: usize,
         depth: Option<&'b mut [u16]>,
@@ -153,7 +159,7 @@ impl<'b> Engine<'b> {
             }
         }
         let (strip_rows, depth) = (rows.min(usize::from(screen.1)) as u16, depth.unwrap_or_default());
-        Ok(Self { grid: Grid { viewport, strips: StripRows::new(strip_rows) }, depth, records })
+        Ok(Self { grid: Grid { viewport, strips: StripRows::new(strip_rows, RECORDS) }, depth, records })
     }
 }
 
@@ -344,7 +350,7 @@ impl<'b, P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Renderer<'b, P,
         if rows == 0 {
             return Err(RendererError::ColorTooShort(color.len(), screen.0));
         }
-        Ok(Self { engine: Engine::new(screen, rows, DEPTH.then_some(depth), records)?, color })
+        Ok(Self { engine: Engine::new::<RECORDS>(screen, rows, DEPTH.then_some(depth), records)?, color })
     }
 
     /// Width and height of the screen.
@@ -506,7 +512,7 @@ impl<'b> FramebufferRenderer<'b> {
     /// # Errors
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`], or `depth` does not hold one row.
     pub fn new(screen: (u16, u16), depth: &'b mut [u16], records: &'b mut [u32]) -> Result<Self, RendererError> {
-        Ok(Self { engine: Engine::new(screen, usize::MAX, Some(depth), records)? })
+        Ok(Self { engine: Engine::new::<true>(screen, usize::MAX, Some(depth), records)? })
     }
 }
 
@@ -516,7 +522,7 @@ impl<'b> FramebufferRenderer<'b, false> {
     /// # Errors
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`].
     pub fn without_depth(screen: (u16, u16), records: &'b mut [u32]) -> Result<Self, RendererError> {
-        Ok(Self { engine: Engine::new(screen, usize::MAX, None, records)? })
+        Ok(Self { engine: Engine::new::<true>(screen, usize::MAX, None, records)? })
     }
 }
 
@@ -556,7 +562,7 @@ mod tests {
     #[test]
     fn every_row_is_in_its_strip() {
         for rows in 1..=Viewport::MAX_SIZE {
-            let strips = StripRows::new(rows);
+            let strips = StripRows::new(rows, true);
             let wrong =
                 (0..u32::from(Viewport::MAX_SIZE)).find(|row| strips.of(*row) != (row / u32::from(rows)) as usize);
             assert_eq!(wrong, None, "strips of {rows} rows");

@@ -66,7 +66,8 @@ impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Framebuffer for Str
 
     const RECORDS: bool = RECORDS;
 
-    #[inline]
+    // Out of line: in loops, rows are asked for one by one where the strip is short or narrow.
+    #[inline(never)]
     fn row(&mut self, y: u32) -> &mut [P::Raw] {
         let row = y.checked_sub(self.first_row).and_then(|row| (row as usize).checked_mul(self.width));
         let rest = row.and_then(|start| self.pixels.get_mut(start..)).unwrap_or_default();

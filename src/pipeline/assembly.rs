@@ -89,15 +89,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn unplaced(&mut self, seen: &mut Seen, culling: Culling, corners: [u16; 3], number: usize) {
         // 3. Vertex stage, once a vertex where there are records to keep the result.
-        let mut slots = [Slot::NONE; 3];
-        for (slot, index) in slots.iter_mut().zip(&corners) {
-            *slot = self.slot(*index);
-        }
-        let [a, b, c] = slots;
+        let [i, j, k] = corners;
+        let (a, b, c) = (self.slot(i), self.slot(j), self.slot(k));
         if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
             return self.clip(seen, [a.outcode(), b.outcode(), c.outcode()], corners, number);
         }
-        if seen.set(slots, culling, &self.clip, self.scene.stats) {
+        if seen.set([a, b, c], culling, &self.clip, self.scene.stats) {
             self.shade_face(seen, corners, number);
         }
     }
@@ -105,13 +102,18 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// A triangle on the screen.
     #[inline(never)]
     fn shade_face(&mut self, seen: &Seen, corners: [u16; 3], number: usize) {
-        let word = self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)));
+        let word = self.face(seen, corners, number);
         if self.scene.is_recording() {
             self.record(seen.row, corners, word);
         } else {
             let [i, j, k] = corners;
             self.draw(seen, &mut [self.varyings(i), self.varyings(j), self.varyings(k)], word);
         }
+    }
+
+    #[inline(never)]
+    fn face(&self, seen: &Seen, corners: [u16; 3], number: usize) -> u32 {
+        self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)))
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
@@ -172,17 +174,38 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1] | codes[2]);
-        for part in self.state.range.parts(all) {
-            if S::CLIP_DISTANCES > 0 {
-                self.part::<DISTANCE_CORNERS>(seen, corners, all, part, number);
-            } else {
-                self.part::<CLIPPED_CORNERS>(seen, corners, all, part, number);
-            }
+        self.part(seen, all, corners, number, Part::Between);
+        if let Some(beyond) = self.chosen.beyond {
+            beyond(self, seen, all, corners, number);
+        }
+    }
+
+    /// The parts of a triangle that have their depth clamped.
+    pub(super) fn beyond(&mut self, seen: &mut Seen, codes: Outcode, corners: [u16; 3], number: usize) {
+        for part in self.state.range.parts_beyond(codes) {
+            self.part(seen, codes, corners, number, part);
+        }
+    }
+
+    #[inline]
+    fn part(&mut self, seen: &mut Seen, codes: Outcode, corners: [u16; 3], number: usize, part: Part) {
+        if S::CLIP_DISTANCES > 0 {
+            self.cut_part::<DISTANCE_CORNERS>(seen, codes, corners, number, part);
+        } else {
+            self.cut_part::<CLIPPED_CORNERS>(seen, codes, corners, number, part);
         }
     }
 
     /// A part of a triangle, which has up to `N` corners when it has been clipped.
-    fn part<const N: usize>(&mut self, seen: &mut Seen, corners: [u16; 3], codes: Outcode, part: Part, number: usize) {
+    #[inline(never)]
+    fn cut_part<const N: usize>(
+        &mut self,
+        seen: &mut Seen,
+        codes: Outcode,
+        corners: [u16; 3],
+        number: usize,
+        part: Part,
+    ) {
         let mut fan = Fan::<S, N>::new();
         self.cut(corners, codes, part, &mut fan);
         self.fan(seen, &fan, corners, number);
@@ -240,7 +263,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             v[2] = *slot;
             if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
                 if seen.set(v, self.state.culling(), &self.clip, self.scene.stats) {
-                    let word = self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)));
+                    let word = self.face(seen, corners, number);
                     if recording {
                         self.record(seen.row, indices, word);
                     } else {

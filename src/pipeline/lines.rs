@@ -281,7 +281,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1]);
-        for part in self.state.range.parts(all) {
+        for part in [Part::Between].into_iter().chain(self.state.range.parts_beyond(all)) {
             if let Some(ends) = self.cut(corners, all, part) {
                 self.draw(&ends, corners, number, stroke);
             }

@@ -1,11 +1,12 @@
 //! Stages 8 to 11: a triangle on the screen → pixels.
 
+use super::assembly::Assembly;
+use super::scan::Seen;
 use super::{State, Target};
 use crate::fragment::{AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
-use crate::geometry::{Correction, DepthScale, ScreenVertex, Transform, Varyings, signed_area};
+use crate::geometry::{Correction, DepthRange, DepthScale, Outcode, ScreenVertex, Transform, Varyings, signed_area};
 use crate::output::Framebuffer;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, homogenize, widen};
-use core::ops::Range;
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -22,18 +23,25 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
 pub struct Chosen<F: Framebuffer, S: Shader<F::Format>> {
     /// 9. The spans of a triangle, by a depth test.
     spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings>),
-    bias: Option<fn(DepthBias, Range<u16>, i32, i32) -> i32>,
+    /// 8. What is added to depths.
+    bias: Option<fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32>,
     pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
+    /// 4. What is drawn of a clipped triangle before the near and beyond the far plane.
+    pub(super) beyond: Option<fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode, [u16; 3], usize)>,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
     /// For [`State::DEFAULT`].
     pub(super) const DEFAULT: Self =
-        Self { spans: if F::DEPTH { spans_nearer } else { spans_over }, bias: None, depth_scale: None };
+        Self { spans: if F::DEPTH { spans_nearer } else { spans_over }, bias: None, depth_scale: None, beyond: None };
 
     /// For any state.
-    pub(super) const ANY: Self =
-        Self { spans: spans_by_state, bias: Some(DepthBias::steps), depth_scale: Some(Transform::set_depth_scale) };
+    pub(super) const ANY: Self = Self {
+        spans: spans_by_state,
+        bias: Some(biased),
+        depth_scale: Some(Transform::set_depth_scale),
+        beyond: Some(|assembly, seen, codes, corners, number| assembly.beyond(seen, codes, corners, number)),
+    };
 
     /// For a state.
     #[inline(always)]
@@ -50,8 +58,17 @@ impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
                 DepthScale::Perspective => None,
                 DepthScale::Uniform { .. } => Self::ANY.depth_scale,
             },
+            beyond: match state.range {
+                DepthRange::Clip => None,
+                DepthRange::ClampFar | DepthRange::Clamp => Self::ANY.beyond,
+            },
         }
     }
+}
+
+/// The steps of depth that a bias is on a triangle.
+fn biased(bias: &DepthBias, [a, b, c]: &[ScreenVertex; 3], depth: &PlaneEquation) -> i32 {
+    bias.steps(a.z.min(b.z).min(c.z)..a.z.max(b.z).max(c.z), depth.dx, depth.dy)
 }
 
 fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
@@ -132,10 +149,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let gradients = Gradients::new(v, *area, self.screen);
         *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
         steps.dz_dx = depth.dx;
-        if let Some(steps) = self.chosen.bias {
-            let depths = v[0].z.min(v[1].z).min(v[2].z)..v[0].z.max(v[1].z).max(v[2].z);
-            let bias = steps(self.state.bias, depths, depth.dx, depth.dy);
-            depth.base = depth.base.wrapping_add((bias as u32) << 16);
+        if let Some(bias) = self.chosen.bias {
+            let steps = bias(&self.state.bias, v, depth);
+            depth.base = depth.base.wrapping_add((steps as u32) << 16);
         }
         if S::Varyings::PERSPECTIVE > 0 {
             homogenize(varyings, v, self.screen, &mut steps.correction);

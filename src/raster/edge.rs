@@ -8,7 +8,8 @@
 //! than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the exact one. D is below 2³², and 45
 //! bits behind the point leave room for the rounding of a step in each of 4,096 rows.
 
-use crate::math::{ShortDivisor, divide_modulo, leading_zeros_long, mul_high_signed, reciprocal};
+use crate::geometry::ScreenVertex;
+use crate::math::{ShortDivisor, divide_modulo, leading_zeros_long, mul_high_apart, reciprocal};
 
 /// The state of an edge at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,19 +37,19 @@ impl Edge {
     /// The edge from `a` down to `b`, at pixel row `row`; `EMPTY` unless `b` is below `a`.
     ///
     /// # Format
-    /// Points (x, y) in 24.8, at most ±32,767 px; `row` is one the edge crosses: 0 ≤ p < dy for its height p below `a`.
+    /// Points in 24.8, at most ±32,767 px; `row` is one the edge crosses: 0 ≤ p < dy for its height p below `a`.
     ///
     /// The usual edge is below 32 px high, 64 px wide, and dx dy is below 2²⁶. Its step is h 2^(z - 2) with the z of
     /// [`ShortDivisor`], and 1 / D, more than 2^(z + 5), is 128 units of h. On up to 32 rows, h is off by less than 0.55 a row
     /// and 5 in all, cut by less than 1 a row; the start is cut by 1: the sum is in -56..=23, and what is taken off at the
     /// start makes that -104..=-25.
     #[inline(never)]
-    pub fn new(a: (i32, i32), b: (i32, i32), row: i32) -> Self {
-        let (dx, dy) = (b.0 - a.0, b.1 - a.1);
-        let p = 256 * row + 128 - a.1;
+    pub fn new(a: &ScreenVertex, b: &ScreenVertex, row: i32) -> Self {
+        let (dx, dy) = (b.x - a.x, b.y - a.y);
+        let p = 256 * row + 128 - a.y;
         let usual = (((dx + (1 << 14)) as u32) < 1 << 15) & (((dy - 1) as u32) < (1 << 13) - 1);
         if !usual || dx.unsigned_abs() * dy as u32 >= 1 << 26 {
-            return Self::large(a.0, dx, dy, p);
+            return Self::large(a.x, dx, dy, p);
         }
         let divisor = ShortDivisor::new(dy as u32);
         let by = divisor.shift() - 2;
@@ -60,7 +61,7 @@ impl Edge {
         } else {
             ((step * i64::from(p)) >> 8) - shifted(48, by)
         };
-        Self { x: Self::start(a.0) + along, step }
+        Self { x: Self::start(a.x) + along, step }
     }
 
     /// A position of 24.8, and half a pixel: of the centre that it is compared with, and the one pixel more.
@@ -88,9 +89,9 @@ impl Edge {
         }
         let z = leading_zeros_long(dy as u64) - 32;
         let inverse = reciprocal((dy as u32) << z);
-        let h = mul_high_signed(dx << 12, inverse);
+        let h = mul_high_apart(dx << 12, inverse);
         let rest = (dx << (43 - z)).wrapping_sub(h.wrapping_mul(dy));
-        let second = i64::from(mul_high_signed(rest << 8, inverse)) << 20 >> (57 - 2 * (z as i32)).max(0);
+        let second = i64::from(mul_high_apart(rest << 8, inverse)) << 20 >> (57 - 2 * (z as i32)).max(0);
         let step = (i64::from(h) << (z + 2)).wrapping_add(second);
         Self { x: Self::start(x).wrapping_add((step.wrapping_mul(p.into())) >> 8) - (1 << (z + 4)), step }
     }
@@ -128,6 +129,10 @@ impl Edge {
 mod tests {
     use super::*;
 
+    fn at((x, y): (i32, i32)) -> ScreenVertex {
+        ScreenVertex::new(x, y, 0)
+    }
+
     /// ⌈N / D⌉ in exact arithmetic.
     fn exact(a: (i32, i32), b: (i32, i32), row: i32) -> i32 {
         let [ax, ay, bx, by] = [a.0, a.1, b.0, b.1].map(i128::from);
@@ -160,7 +165,7 @@ mod tests {
             }
             usual += u32::from(end - first > 1);
             for start in [first, next(first, end)] {
-                let mut edge = Edge::new(a, b, start);
+                let mut edge = Edge::new(&at(a), &at(b), start);
                 for row in start..end.min(start + 4096) {
                     if row - start < 70 || next(0, 50) == 0 {
                         rows += 1;
@@ -181,7 +186,7 @@ mod tests {
             for dx in [-widest, 1 - widest, -dy, -1, 0, 1, dy / 3, dy, widest / 2, widest - 1, widest] {
                 for ax in [-128, -1, 0, 5, 128] {
                     let (a, b) = ((ax, 100), (ax + dx, 100 + dy));
-                    let mut edge = Edge::new(a, b, 0);
+                    let mut edge = Edge::new(&at(a), &at(b), 0);
                     for row in 0..(b.1 + 127) >> 8 {
                         assert_eq!(edge.pixel(), exact(a, b, row), "{a:?} {b:?} row {row}");
                         edge.step();

@@ -12,12 +12,12 @@
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{divide_modulo, leading_zeros, leading_zeros_long, mul_high_signed};
+use crate::math::{divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
 pub struct Gradients {
-    /// Vertices 1 and 2 as seen from vertex 0.
+    /// Vertices 1 and 2 as seen from vertex 0; from the other side where the area is below 0.
     x: [i32; 2],
     y: [i32; 2],
     /// The centre of the pixel at the origin as seen from vertex 0.
@@ -50,8 +50,8 @@ impl Gradients {
     /// `width` × `height` px.
     #[inline]
     pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {
-        let x = [v[1].x - v[0].x, v[2].x - v[0].x];
-        let y = [v[1].y - v[0].y, v[2].y - v[0].y];
+        let mut x = [v[1].x - v[0].x, v[2].x - v[0].x];
+        let mut y = [v[1].y - v[0].y, v[2].y - v[0].y];
         let mut origin = (v[0].x >> 8, v[0].y >> 8);
         let (mut reciprocal, mut shift) = (0, 0);
         let is_small = small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]);
@@ -68,6 +68,9 @@ impl Gradients {
         } else {
             // `clamp` would panic on an empty screen.
             origin = (origin.0.min(i32::from(width) - 1).max(0), origin.1.min(i32::from(height) - 1).max(0));
+        }
+        if area < 0 {
+            (x, y) = ([-x[0], -x[1]], [-y[0], -y[1]]);
         }
         let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
         Self { x, y, to, area, is_small, reciprocal, shift, origin }
@@ -95,43 +98,36 @@ impl Gradients {
         }
         // Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
         let up = self.shift + scale as i32 - 23;
+        let mut gradients = None;
         if self.is_small && up <= 4 && moderate(v1) & moderate(v2) {
             let a = v1 * self.y[1] - v2 * self.y[0];
             let b = v2 * self.x[0] - v1 * self.x[1];
-            let (a, b) = if self.area < 0 { (-a, -b) } else { (a, b) };
             let (dx, dy) = (mul_high_signed(a, self.reciprocal), mul_high_signed(b, self.reciprocal));
             // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
             // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
-            let limit = 1 << (29 - up.max(0));
-            if dx.abs() < limit && dy.abs() < limit {
-                let (dx, dy) = if up >= 0 { (dx << up, dy << up) } else { (dx >> -up, dy >> -up) };
-                return self.near(base, dx, dy);
+            if ((dx ^ dx >> 31) | (dy ^ dy >> 31)) >> (29 - up.max(0)) == 0 {
+                gradients = Some(if up >= 0 { [dx << up, dy << up] } else { [dx >> -up, dy >> -up] });
             }
         }
-        self.long(values, scale)
-    }
-
-    /// The plane by its gradients, which are below 2²⁹, at a pixel at most half a pixel from vertex 0.
-    ///
-    /// # Format
-    /// 2²⁹⁻⁶ · 2⁷ twice: below 2³¹. The cut bits are 2⁻¹¹ of a unit in 16.16.
-    #[inline]
-    fn near(&self, base: u32, dx: i32, dy: i32) -> PlaneEquation {
+        if gradients.is_none() {
+            let numerators = self.numerators(values);
+            gradients = self.gentle(&numerators, scale);
+            if gradients.is_none() {
+                return self.steep(values[0], &numerators, scale);
+            }
+        }
+        // Both are below 2²⁹, at a pixel at most half a pixel from vertex 0: 2²⁹⁻⁶ · 2⁷ twice, below 2³¹. The cut bits are 2⁻¹¹ of a
+        // unit in 16.16.
+        let [dx, dy] = gradients.unwrap_or_default();
         let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
         PlaneEquation { dx, dy, base: base.wrapping_add(offset as u32) }
     }
 
-    /// [`plane`](Self::plane) for any triangle and any values.
+    /// The plane of any triangle and any values.
     #[inline(never)]
-    fn long(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
-        let (a, b) = self.numerators(values);
-        if self.reciprocal != 0 {
-            if let (Some(dx), Some(dy)) = (self.gentle(a, scale), self.gentle(b, scale)) {
-                return self.near((values[0] as u32) << scale, dx, dy);
-            }
-        }
+    fn steep(&self, v0: i32, numerators: &[i64; 2], scale: u32) -> PlaneEquation {
         // Bits cut from what was rounded down leave what is rounded down.
-        let plane = self.exact(values[0], a, b);
+        let plane = self.exact(v0, numerators);
         let cut = |value: i64| (value >> (32 - scale)) as u32;
         PlaneEquation { dx: cut(plane.dx) as i32, dy: cut(plane.dy) as i32, base: cut(plane.base) }
     }
@@ -140,27 +136,33 @@ impl Gradients {
     ///
     /// # Format
     /// Differences of 33 bits times 2²⁵, below 2⁵⁸; in sums below 2⁵⁹.
-    #[inline]
-    fn numerators(&self, values: [i32; 3]) -> (i64, i64) {
-        let [v0, v1, v2] = values.map(i64::from);
-        let v = [v1 - v0, v2 - v0];
-        let (a, b) = (minor(&v, &self.y), minor(&v, &self.x));
-        if self.area < 0 { (-a, b) } else { (a, -b) }
+    #[inline(never)]
+    fn numerators(&self, [v0, v1, v2]: [i32; 3]) -> [i64; 2] {
+        let v = [i64::from(v1) - i64::from(v0), i64::from(v2) - i64::from(v0)];
+        [minor(&v, &self.y), -minor(&v, &self.x)]
     }
 
-    /// 256 2^scale n / |area|, if it is below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative
+    /// 256 2^scale n / |area|, if both are below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative
     /// error below 2⁻²⁸, so less than 2⁻⁵ of a unit over 512 px in both directions, and one unit of 2⁻¹⁶ a pixel.
     ///
     /// 256 / |area| = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
     /// 2⁻³⁰).
-    fn gentle(&self, n: i64, scale: u32) -> Option<i32> {
-        // Redundant sign bits, all but the last of which can go.
-        let zeros = leading_zeros_long((n ^ (n >> 63)) as u64);
-        let normalized = (n << (zeros - 1) >> 32) as i32;
-        let high = mul_high_signed(normalized, self.reciprocal);
-        // With up = zeros - 33: high 2³² 2^(shift + scale - up) / 2⁵⁵.
-        let down = zeros as i32 - 10 - self.shift - scale as i32;
-        if down < 2 { None } else { Some(high >> down.min(31)) }
+    #[inline(never)]
+    fn gentle(&self, numerators: &[i64; 2], scale: u32) -> Option<[i32; 2]> {
+        let mut gradients = [0; 2];
+        for (gradient, n) in gradients.iter_mut().zip(numerators) {
+            // Redundant sign bits, all but the last of which can go.
+            let zeros = leading_zeros_long((n ^ (n >> 63)) as u64);
+            let normalized = (n << (zeros - 1) >> 32) as i32;
+            let high = mul_high_apart(normalized, self.reciprocal);
+            // With up = zeros - 33: high 2³² 2^(shift + scale - up) / 2⁵⁵.
+            let down = zeros as i32 - 10 - self.shift - scale as i32;
+            if self.reciprocal == 0 || down < 2 {
+                return None;
+            }
+            *gradient = high >> down.min(31);
+        }
+        Some(gradients)
     }
 
     /// The plane by its gradients' numerators, with 32 fractional bits, modulo 2⁶⁴ and with its base at the origin, by long
@@ -169,7 +171,7 @@ impl Gradients {
     /// # Format
     /// The difference to the origin is Σ n to, of up to 84 bits, from two halves of each n.
     #[inline(never)]
-    fn exact(&self, v0: i32, a: i64, b: i64) -> WidePlane {
+    fn exact(&self, v0: i32, &[a, b]: &[i64; 2]) -> WidePlane {
         let (x, y) = (i64::from(self.to.0), i64::from(self.to.1));
         let low = i64::from(a as u32) * x + i64::from(b as u32) * y;
         let high = (a >> 32) * x + (b >> 32) * y + (low >> 32);
@@ -190,8 +192,7 @@ impl Gradients {
     /// three numbers is rounded down before it is carried from the origin to the screen's corner.
     #[inline(never)]
     pub fn plane_wide(&self, values: [i32; 3]) -> WidePlane {
-        let (a, b) = self.numerators(values);
-        let plane = self.exact(values[0], a, b);
+        let plane = self.exact(values[0], &self.numerators(values));
         let along = |change: i64, origin: i32| change.wrapping_mul(origin.into());
         let base = plane.base.wrapping_sub(along(plane.dx, self.origin.0)).wrapping_sub(along(plane.dy, self.origin.1));
         WidePlane { base, ..plane }

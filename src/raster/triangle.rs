@@ -90,7 +90,7 @@ pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl 
 pub struct Outline {
     /// The first row.
     pub top: i32,
-    /// The first row below the bend; not above `top`, where there is no row above the bend.
+    /// The first row below the bend, if there are rows above it.
     pub bend: i32,
     /// The row behind the last.
     pub end: i32,
@@ -108,34 +108,44 @@ impl Outline {
     /// The rows of a triangle that are in `clip`. Other parameters are those of [`spans`].
     #[inline(never)]
     pub fn new(v: &[ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
-        let [a, b, c] = v;
-        let (mut a, mut b, mut c) = ((a.x, a.y), (b.x, b.y), (c.x, c.y));
+        let [mut a, mut b, mut c] = v.each_ref();
         // The sign of the area, changed by each exchange.
         let mut bend_right = area > 0;
-        if b.1 < a.1 {
+        if b.y < a.y {
             (a, b) = (b, a);
             bend_right = !bend_right;
         }
-        if c.1 < b.1 {
+        if c.y < b.y {
             (b, c) = (c, b);
             bend_right = !bend_right;
-            if b.1 < a.1 {
+            if b.y < a.y {
                 (a, b) = (b, a);
                 bend_right = !bend_right;
             }
         }
-        let top = first_centre(a.1).max(clip.start);
-        let end = if area == 0 { top } else { first_centre(c.1).min(clip.end) };
-        let bend = first_centre(b.1);
+        let top = first_centre(a.y).max(clip.start);
+        let end = if area == 0 { top } else { first_centre(c.y).min(clip.end) };
         if top >= end {
             // Edges from a point to itself are empty.
             (b, c) = (a, a);
         }
-        let long = Edge::new(a, c, top);
-        let short = if bend < end { Edge::new(b, c, bend.max(top)) } else { Edge::EMPTY };
-        let first = if bend > top { Edge::new(a, b, top) } else { short };
-        let (left, right) = if bend_right { (long, first) } else { (first, long) };
-        Self { top, bend, end, left, right, short, bend_right }
+        let mut bend = first_centre(b.y);
+        let first = if bend > top {
+            (a, b)
+        } else {
+            bend = i32::MIN;
+            (b, c)
+        };
+        let (left, right) = if bend_right { ((a, c), first) } else { (first, (a, c)) };
+        Self {
+            top,
+            bend,
+            end,
+            left: Edge::new(left.0, left.1, top),
+            right: Edge::new(right.0, right.1, top),
+            short: if bend > top && bend < end { Edge::new(b, c, bend) } else { Edge::EMPTY },
+            bend_right,
+        }
     }
 
     /// The edges at the bend, from those that have been stepped down to it.
