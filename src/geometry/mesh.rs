@@ -294,15 +294,21 @@ impl<'a> Mesh<'a> {
     /// Vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
     #[inline]
     pub const fn triangle(&self, n: usize) -> Option<[u16; 3]> {
-        if n >= self.triangles as usize {
-            return None;
-        }
         // The usual mesh, by the shortest way.
         if let (Topology::Triangles, Some(indices)) = (self.data.topology, self.data.indices) {
             return match indices.split_at_checked(3 * n) {
                 Some((_, [a, b, c, ..])) => Some([*a, *b, *c]),
                 _ => None,
             };
+        }
+        self.any_triangle(n)
+    }
+
+    /// [`triangle`](Self::triangle), of any mesh in the same way.
+    #[inline(never)]
+    pub(crate) const fn any_triangle(&self, n: usize) -> Option<[u16; 3]> {
+        if n >= self.triangles as usize {
+            return None;
         }
         let at = match self.data.topology {
             Topology::Triangles => [3 * n, 3 * n + 1, 3 * n + 2],

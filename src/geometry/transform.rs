@@ -85,12 +85,6 @@ fn excess(values: &[i64], bits: i32) -> i32 {
     64 - leading_zeros_long(all) as i32 - bits
 }
 
-/// A row of the matrix with the viewport in it: `size` times it, and `offset` times the row of w, both cut by `shift` bits first.
-#[inline(never)]
-fn view_row(row: &[i64; 4], w: &[i64; 4], size: i32, offset: i32, shift: i32) -> [i64; 4] {
-    core::array::from_fn(|k| i64::from(size) * scale(row[k], shift) + i64::from(offset) * scale(w[k], shift))
-}
-
 /// A bounding box cut to 14 bits, in units of 2^`shift`.
 struct ShortBox {
     /// Centre and half size.
@@ -141,12 +135,15 @@ impl View {
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
         let shift = excess(mvp.rows().as_flattened(), 44).max(0);
         // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
-        let ([x, y, z, w], [to_x, to_y, to_z, to_w]) = (mvp.rows(), &mut self.rows);
+        let [.., w] = mvp.rows();
         let (width, height) = (i32::from(viewport.width()), i32::from(viewport.height()));
-        *to_x = view_row(x, w, width, 2 * i32::from(viewport.x()) + width, shift);
-        *to_y = view_row(y, w, -height, 2 * i32::from(viewport.y()) + height, shift);
-        *to_z = view_row(z, w, 1 << 10, 0, shift);
-        *to_w = view_row(w, w, 1 << 10, 0, shift);
+        let (x, y) = (2 * i32::from(viewport.x()) + width, 2 * i32::from(viewport.y()) + height);
+        let factors = [(width, x), (-height, y), (1 << 10, 0), (1 << 10, 0)];
+        for ((to, row), (size, offset)) in self.rows.iter_mut().zip(mvp.rows()).zip(&factors) {
+            for ((to, r), w) in to.iter_mut().zip(row).zip(w) {
+                *to = i64::from(*size) * scale(*r, shift) + i64::from(*offset) * scale(*w, shift);
+            }
+        }
         let more = excess(self.rows.as_flattened(), 45);
         for entry in self.rows.as_flattened_mut() {
             *entry = scale(*entry, more);

@@ -403,12 +403,12 @@ impl<'b, P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Renderer<'b, P,
         background: P::Color,
         mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Stats, FrameError<K::Error>> {
-        let mut frame = self.begin(background);
+        let Frame { renderer: Self { engine, color }, background, mut progress } = self.begin(background);
         loop {
-            match frame.next_strip(&mut draw) {
-                Ok(Some(strip)) => sink.strip(&strip).map_err(FrameError::Sink)?,
-                Ok(None) => return Ok(frame.stats()),
-                Err(FrameError::SceneChanged(draw)) => return Err(FrameError::SceneChanged(draw)),
+            let strip = strip_into(engine, &mut progress, color, background, &mut draw);
+            sink.strip(&strip.map_err(FrameError::SceneChanged)?).map_err(FrameError::Sink)?;
+            if progress.row >= engine.grid.viewport.height() {
+                return Ok(progress.stats);
             }
         }
     }
@@ -453,7 +453,7 @@ impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Frame<'_, '_, P, DE
         mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Option<StripPixels<'_, P>>, FrameError> {
         let Renderer { engine, color } = &mut *self.renderer;
-        strip_into(engine, &mut self.progress, color, self.background, &mut draw)
+        next_strip(engine, &mut self.progress, color, self.background, &mut draw)
     }
 
     /// The same into a buffer of the caller's, so that one strip can be drawn while another is on its way.
@@ -466,7 +466,7 @@ impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Frame<'_, '_, P, DE
         color: &'c mut [P::Raw],
         mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
     ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
-        strip_into(&mut self.renderer.engine, &mut self.progress, color, self.background, &mut draw)
+        next_strip(&mut self.renderer.engine, &mut self.progress, color, self.background, &mut draw)
     }
 
     /// What was done so far.
@@ -475,7 +475,21 @@ impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Frame<'_, '_, P, DE
     }
 }
 
-/// Draws the next strip of a frame into `color`.
+/// Draws the next strip of a frame into `color`, if there is one.
+fn next_strip<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
+    engine: &mut Engine<'_>,
+    progress: &mut Progress,
+    color: &'c mut [P::Raw],
+    background: P::Raw,
+    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
+) -> Result<Option<StripPixels<'c, P>>, FrameError> {
+    if progress.row >= engine.grid.viewport.height() {
+        return Ok(None);
+    }
+    strip_into(engine, progress, color, background, draw).map(Some).map_err(FrameError::SceneChanged)
+}
+
+/// Draws the next strip of a frame, of which there must be one, into `color`; the number of the draw that differed is an error.
 ///
 /// The closure is called through a pointer, once a strip or so: whatever many frames draw, this is linked once.
 #[inline(never)]
@@ -485,19 +499,16 @@ fn strip_into<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
     color: &'c mut [P::Raw],
     background: P::Raw,
     draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
-) -> Result<Option<StripPixels<'c, P>>, FrameError> {
-    let ((width, height), row) = (engine.grid.screen(), progress.row);
-    if row >= height {
-        return Ok(None);
-    }
+) -> Result<StripPixels<'c, P>, u16> {
+    let (width, row) = (engine.grid.viewport.width(), progress.row);
     let rows = engine.grid.rows_at(row);
     let length = (usize::from(width) * usize::from(rows)).min(color.len());
     let color = color.get_mut(..length).unwrap_or_default();
     clear(color, background);
     let mut strip = Strip::<P, DEPTH, RECORDS>::new(&mut *color, width, u32::from(row));
-    engine.next_strip(progress, &mut strip, draw).map_err(FrameError::SceneChanged)?;
+    engine.next_strip(progress, &mut strip, draw)?;
     let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
-    Ok(Some(StripPixels::new(area, color)))
+    Ok(StripPixels::new(area, color))
 }
 
 /// Draws frames straight into a framebuffer, with a depth buffer as high as the screen, or only a strip of it, or none.

@@ -72,7 +72,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     fn each_triangle(&mut self, numbers: Range<usize>, culling: Culling) {
         let mut seen = Seen::NONE;
         for number in numbers {
-            let Some(corners) = self.mesh.triangle(number) else { return };
+            let Some(corners) = self.mesh.any_triangle(number) else { return };
             if self.scene.overflowed() {
                 return;
             }
@@ -94,7 +94,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
             return self.clip(seen, [a.outcode(), b.outcode(), c.outcode()], corners, number);
         }
-        if seen.set([a, b, c], culling, &self.clip, self.scene.stats) {
+        if seen.set(&[a, b, c], culling, &self.clip, self.scene.stats) {
             self.shade_face(seen, corners, number);
         }
     }
@@ -262,7 +262,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             }
             v[2] = *slot;
             if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
-                if seen.set(v, self.state.culling(), &self.clip, self.scene.stats) {
+                if seen.set(&v, self.state.culling(), &self.clip, self.scene.stats) {
                     let word = self.face(seen, corners, number);
                     if recording {
                         self.record(seen.row, indices, word);

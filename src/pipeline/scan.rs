@@ -1,7 +1,7 @@
 //! Stages 2 and 5: a mesh's triangles one after the other, without those that cannot be seen. The same code for all shaders.
 
 use super::{Cull, State, Winding};
-use crate::geometry::{Mesh, ScreenVertex, Side, Topology, area_of};
+use crate::geometry::{Mesh, ScreenVertex, Side, Topology, area_of, signed_area};
 use crate::output::{Records, Slot, Stats};
 use crate::raster::{PixelRect, pixel_rect};
 use core::ops::Range;
@@ -82,14 +82,16 @@ impl Seen {
     /// Becomes a triangle with these vertices, and tells whether it may be seen: stage 5, culling by winding, and of what covers
     /// no pixel of `clip`.
     #[inline(never)]
-    pub(super) fn set(&mut self, v: [Slot; 3], culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
-        let [a, b, c] = v;
-        self.area = area_of(a.xy(), b.xy(), c.xy());
+    pub(super) fn set(&mut self, slots: &[Slot; 3], culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
+        for (v, slot) in self.v.iter_mut().zip(slots) {
+            *v = slot.screen();
+        }
+        let [a, b, c] = &self.v;
+        self.area = signed_area(a, b, c);
         if culling.leaves_out(self.area) {
             stats.back_facing = stats.back_facing.wrapping_add(1);
             return false;
         }
-        self.v = [a.screen(), b.screen(), c.screen()];
         self.has_pixels(clip, stats)
     }
 
@@ -189,8 +191,7 @@ impl<'m> Scan<'m> {
     }
 
     /// The vertices of a triangle of any topology; none past the last.
-    #[inline(never)]
     fn other(&self, number: usize) -> Option<[u16; 3]> {
-        if number < self.end { self.mesh.triangle(number) } else { None }
+        if number < self.end { self.mesh.any_triangle(number) } else { None }
     }
 }

@@ -177,7 +177,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let framebuffer = &mut *self.target.framebuffer;
         let mut nothing = [(); usize::MAX];
         let outline = Outline::new(v, *area, &self.clip.y);
-        let (mut left, mut right) = (outline.left, outline.right);
+        if outline.top >= outline.end {
+            return;
+        }
+        let (mut left, mut right) = (outline.side(false, outline.top), outline.side(true, outline.top));
         // What is at column 0 of the row; depth with the half that rounds.
         let mut y = outline.top;
         let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
@@ -187,7 +190,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
         while y < outline.end {
             if y == outline.bend {
-                (left, right) = outline.below(left, right);
+                *if outline.bend_right { &mut right } else { &mut left } = outline.side(outline.bend_right, y);
             }
             // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
             let mut row = width.wrapping_mul((y - first) as usize);

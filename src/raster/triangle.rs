@@ -71,10 +71,10 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 #[inline]
 pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl FnMut(i32, Range<i32>)) {
     let outline = Outline::new(v, area, &clip.y);
-    let (mut left, mut right) = (outline.left, outline.right);
+    let (mut left, mut right) = (outline.side(false, outline.top), outline.side(true, outline.top));
     for y in outline.top..outline.end {
         if y == outline.bend {
-            (left, right) = outline.below(left, right);
+            *if outline.bend_right { &mut right } else { &mut left } = outline.side(outline.bend_right, y);
         }
         let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
         if x.start < x.end {
@@ -85,29 +85,27 @@ pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl 
     }
 }
 
-/// A triangle between its edges: those of the first row, and the one that takes the place of one of them at the bend.
+/// A triangle's rows, and its edges.
 #[derive(Debug)]
-pub struct Outline {
+pub struct Outline<'v> {
+    /// The vertices by height.
+    a: &'v ScreenVertex,
+    b: &'v ScreenVertex,
+    c: &'v ScreenVertex,
     /// The first row.
     pub top: i32,
-    /// The first row below the bend, if there are rows above it.
+    /// The first row below the bend, where another edge takes the place of one, if there are rows above it.
     pub bend: i32,
     /// The row behind the last.
     pub end: i32,
-    /// The edges at the first row; both have to be stepped once a row.
-    pub left: Edge,
-    /// See `left`.
-    pub right: Edge,
-    /// The edge below the bend.
-    short: Edge,
     /// Whether the bend is to the right of the long edge.
-    bend_right: bool,
+    pub bend_right: bool,
 }
 
-impl Outline {
+impl<'v> Outline<'v> {
     /// The rows of a triangle that are in `clip`. Other parameters are those of [`spans`].
     #[inline(never)]
-    pub fn new(v: &[ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
+    pub fn new(v: &'v [ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
         let [mut a, mut b, mut c] = v.each_ref();
         // The sign of the area, changed by each exchange.
         let mut bend_right = area > 0;
@@ -125,32 +123,21 @@ impl Outline {
         }
         let top = first_centre(a.y).max(clip.start);
         let end = if area == 0 { top } else { first_centre(c.y).min(clip.end) };
-        if top >= end {
-            // Edges from a point to itself are empty.
-            (b, c) = (a, a);
-        }
-        let mut bend = first_centre(b.y);
-        let first = if bend > top {
-            (a, b)
-        } else {
-            bend = i32::MIN;
-            (b, c)
-        };
-        let (left, right) = if bend_right { ((a, c), first) } else { (first, (a, c)) };
-        Self {
-            top,
-            bend,
-            end,
-            left: Edge::new(left.0, left.1, top),
-            right: Edge::new(right.0, right.1, top),
-            short: if bend > top && bend < end { Edge::new(b, c, bend) } else { Edge::EMPTY },
-            bend_right,
-        }
+        let bend = first_centre(b.y);
+        Self { a, b, c, top, bend: if bend > top { bend } else { i32::MIN }, end, bend_right }
     }
 
-    /// The edges at the bend, from those that have been stepped down to it.
-    #[inline(always)]
-    pub fn below(&self, left: Edge, right: Edge) -> (Edge, Edge) {
-        if self.bend_right { (left, self.short) } else { (self.short, right) }
+    /// The edge on the left, or on the right, at a row; it has to be stepped once a row.
+    #[inline(never)]
+    pub fn side(&self, right: bool, row: i32) -> Edge {
+        let (mut from, mut to) = (self.a, self.c);
+        if right == self.bend_right {
+            if row < self.bend {
+                to = self.b;
+            } else {
+                from = self.b;
+            }
+        }
+        Edge::new(from, to, row)
     }
 }
