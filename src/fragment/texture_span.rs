@@ -10,8 +10,8 @@
 use super::depth::{RUN, passing};
 use super::perspective::nth;
 use super::{DepthTest, Fragments, PixelFormat, Steps, Texture};
-use crate::geometry::{Correction, PerspectiveClass, Varyings};
-use crate::math::{CoarseDivisor, SMALL_CORE};
+use crate::geometry::{Correction, Lane, PerspectiveClass, Varyings};
+use crate::math::{CoarseDivisor, SMALL_CORE, leading_zeros};
 use core::hint::black_box;
 
 /// Pixels from one division to the next.
@@ -25,20 +25,19 @@ pub(super) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
     span: Fragments<'_, P, V, D::Stored>,
     test: D,
 ) {
-    let Fragments { mut color, mut depth, z, varyings, steps, .. } = span;
-    let mut walk = Walk::new(&varyings, steps);
+    let Fragments { color, depth, z, varyings, steps, .. } = span;
+    let length = color.len().min(depth.len());
+    let Some(mut color) = color.get_mut(..length) else { return };
+    let Some(mut depth) = depth.get_mut(..length) else { return };
+    let mut walk = Walk::new(&varyings, steps, length as i32 - 1);
     let mut pen = Pen { z, dz_dx: steps.dz_dx, vu: 0, step: 0 };
-    let mut uv = walk.ahead(0);
+    walk.run();
     while color.len() > STEP {
         let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<STEP>() else { return };
         color = rest;
         let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<STEP>() else { return };
         depth = rest;
-        let next = walk.ahead(STEP as i32);
-        pen.vu = packed(uv);
-        let (du, dv) = (next.0.wrapping_sub(uv.0), next.1.wrapping_sub(uv.1));
-        pen.step = step([du.wrapping_add(8) >> 4, dv.wrapping_add(8) >> 4]);
-        uv = next;
+        (pen.vu, pen.step) = walk.run();
         if SMALL_CORE && T::IS_OPAQUE {
             pen.run_in_two::<P, T, D>(texture, test, colors, depths);
         } else {
@@ -48,10 +47,7 @@ pub(super) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
         }
     }
     let way = color.len().saturating_sub(1);
-    let end = if way > 0 { walk.ahead(way as i32) } else { uv };
-    let (du, dv) = (end.0.wrapping_sub(uv.0), end.1.wrapping_sub(uv.1));
-    pen.step = step([nth(du, way), nth(dv, way)]);
-    pen.vu = packed(end).wrapping_sub(pen.step.wrapping_mul(way as u32));
+    (pen.vu, pen.step) = walk.rest(way);
     if SMALL_CORE {
         pen.some::<P, T, D>(texture, test, 0, color, depth);
     } else {
@@ -194,84 +190,106 @@ impl Pen {
     }
 }
 
-/// Both coordinates, and 1 / w, along a span.
+/// Both coordinates along a span, from run to run.
+///
+/// q, d q of u and that of v are shifted up, so that the larger q of both ends has its top bit set. Where there is no
+/// perspective, q is 0.
 struct Walk {
-    u: Coordinate,
-    v: Coordinate,
-    q: i32,
-    dq_dx: i32,
-    /// How far q was shifted last.
-    shift: u32,
-    is_affine: bool,
+    /// q and the others where the walk is, and what the next run adds.
+    at: [i32; 3],
+    step: [i32; 3],
+    /// u and v there.
+    uv: (i32, i32),
+    u: Scale,
+    v: Scale,
+    /// q and the others at the last pixel.
+    end: [i32; 3],
 }
 
 impl Walk {
+    /// A run before a span, whose last pixel is `way` pixels from the first.
     #[inline(always)]
-    fn new<V: Varyings>(varyings: &V, steps: &Steps<V>) -> Self {
+    fn new<V: Varyings>(varyings: &V, steps: &Steps<V>, way: i32) -> Self {
+        let (at, step) = (varyings.as_ref(), steps.d_dx.as_ref());
+        let value = |values: &[i32], k: usize| values.get(k).copied().unwrap_or(0);
         let last = |values: &[i32]| values.last().copied().unwrap_or(0);
+        let (mut q, mut dq) = (last(at), last(step));
+        if steps.correction.class() == PerspectiveClass::Affine {
+            (q, dq) = (0, 0);
+        }
+        let end = q.wrapping_add(dq.wrapping_mul(way));
+        let shift = leading_zeros((q as u32).max(end as u32)) & 31;
+        let at = [q, value(at, 0), value(at, 1)];
+        let step = [dq, value(step, 0), value(step, 1)];
+        let lanes = steps.correction.varyings();
+        let along = |k: usize| {
+            let (at, step) = (value(&at, k) << shift, value(&step, k) << shift);
+            (at.wrapping_sub(step << 4), step << 4, at.wrapping_add(step.wrapping_mul(way)))
+        };
+        let (q, u, v) = (along(0), along(1), along(2));
         Self {
-            u: Coordinate::new(0, varyings, steps),
-            v: Coordinate::new(1, varyings, steps),
-            q: last(varyings.as_ref()),
-            dq_dx: last(steps.d_dx.as_ref()),
-            shift: 1,
-            is_affine: steps.correction.class() == PerspectiveClass::Affine,
+            at: [q.0, u.0, v.0],
+            step: [q.1, u.1, v.1],
+            uv: (0, 0),
+            u: Scale::new(lanes.first()),
+            v: Scale::new(lanes.get(1)),
+            end: [q.2, u.2, v.2],
         }
     }
 
-    /// Both coordinates so many pixels on.
-    #[inline(always)]
-    fn ahead(&mut self, pixels: i32) -> (i32, i32) {
-        if SMALL_CORE { self.ahead_apart(pixels) } else { self.ahead_here(pixels) }
-    }
-
-    /// Out of line: its values are more than the loop around it has registers for.
+    /// Goes a run on: what to draw it with. Out of line: its values are more than the loop around it has registers for.
     #[inline(never)]
-    fn ahead_apart(&mut self, pixels: i32) -> (i32, i32) {
-        self.ahead_here(pixels)
+    fn run(&mut self) -> (u32, u32) {
+        let [q, u, v] = self.at;
+        let [dq, du, dv] = self.step;
+        let (q, mut u, mut v) = (q.wrapping_add(dq), u.wrapping_add(du), v.wrapping_add(dv));
+        self.at = [q, u, v];
+        if q != 0 {
+            let mut q = q as u32;
+            while q >> 31 == 0 {
+                (q, u, v) = (q << 1, u << 1, v << 1);
+            }
+            let q = CoarseDivisor::of_normalized(q);
+            (u, v) = (q.divide_normalized(u), q.divide_normalized(v));
+        }
+        let (from, to) = (self.uv, (self.u.scaled(u), self.v.scaled(v)));
+        self.uv = to;
+        let (du, dv) = (to.0.wrapping_sub(from.0), to.1.wrapping_sub(from.1));
+        (packed(from), step([du.wrapping_add(8) >> 4, dv.wrapping_add(8) >> 4]))
     }
 
+    /// Goes on to the end: what to draw the last pixels with, the last of them `way` pixels ahead.
     #[inline(always)]
-    fn ahead_here(&mut self, pixels: i32) -> (i32, i32) {
-        let Self { u, v, .. } = self;
-        u.advance(pixels);
-        v.advance(pixels);
-        self.q = self.q.wrapping_add(self.dq_dx.wrapping_mul(pixels));
-        if self.is_affine {
-            return (u.scaled(u.h), v.scaled(v.h));
-        }
-        let q = CoarseDivisor::near(self.q as u32, &mut self.shift);
-        (u.scaled(q.divide(u.h)), v.scaled(q.divide(v.h)))
+    fn rest(&mut self, way: usize) -> (u32, u32) {
+        let from = self.uv;
+        let ([q, u, v], [end_q, end_u, end_v]) = (self.at, self.end);
+        self.step = [end_q.wrapping_sub(q), end_u.wrapping_sub(u), end_v.wrapping_sub(v)];
+        self.run();
+        let (du, dv) = (self.uv.0.wrapping_sub(from.0), self.uv.1.wrapping_sub(from.1));
+        let step = step([nth(du, way), nth(dv, way)]);
+        (packed(self.uv).wrapping_sub(step.wrapping_mul(way as u32)), step)
     }
 }
 
-/// What is interpolated of a coordinate, and how to scale it back.
-struct Coordinate {
-    h: i32,
-    dh_dx: i32,
-    base: i32,
-    shift: u32,
+/// How to scale what is interpolated of a coordinate back.
+struct Scale {
     /// Half of what is shifted out.
     half: i32,
+    shift: u32,
+    base: i32,
 }
 
-impl Coordinate {
+impl Scale {
     #[inline(always)]
-    fn new<V: Varyings>(k: usize, varyings: &V, steps: &Steps<V>) -> Self {
-        let (base, shift) = steps.correction.varyings().get(k).map_or((0, 0), |lane| (lane.base, lane.shift & 31));
-        let at = |values: &[i32]| values.get(k).copied().unwrap_or(0);
-        Self { h: at(varyings.as_ref()), dh_dx: at(steps.d_dx.as_ref()), base, shift, half: (1 << shift) >> 1 }
-    }
-
-    #[inline(always)]
-    fn advance(&mut self, pixels: i32) {
-        self.h = self.h.wrapping_add(self.dh_dx.wrapping_mul(pixels));
+    fn new(lane: Option<&Lane>) -> Self {
+        let (base, shift) = lane.map_or((0, 0), |lane| (lane.base, lane.shift & 31));
+        Self { half: (1 << shift) >> 1, shift, base }
     }
 
     /// To nearest.
     #[inline(always)]
     fn scaled(&self, h: i32) -> i32 {
-        self.base.wrapping_add(h.wrapping_add(self.half) >> self.shift)
+        self.base.wrapping_add(h.wrapping_add(self.half) >> (self.shift & 31))
     }
 }
 
