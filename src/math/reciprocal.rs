@@ -245,12 +245,14 @@ impl CoarseDivisor {
     #[inline(always)]
     pub fn of_normalized(x: u32) -> Self {
         let r = SEED[(x >> 23) as usize & 0xFF] as u32;
-        let product = if SMALL_CORE {
-            (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16)
+        let defect = if SMALL_CORE {
+            let product = (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16);
+            // 2³¹ without its bit: the difference fits 31 bits.
+            (product.wrapping_neg() << 1) as i32 >> 7
         } else {
-            mul_high(x, r << 16)
+            (1_i32 << 31).wrapping_sub(mul_high(x, r << 16) as i32) >> 6
         };
-        Self { reciprocal: r as i32, defect: (1_i32 << 31).wrapping_sub(product as i32) >> 6 }
+        Self { reciprocal: r as i32, defect }
     }
 
     /// `n` / x as 1.31.
