@@ -255,12 +255,12 @@ impl Walk {
         let last = |values: &[i32]| values.last().copied().unwrap_or(0);
         let (mut q, mut dq) = (last(at), last(step));
         let end = q.wrapping_add(dq.wrapping_mul(way));
-        let most = (q as u32).max(end as u32) | 1;
+        let mut most = (q as u32).max(end as u32) | 1;
         let mut shift = 0;
         if SMALL_CORE {
             // Few, and fewer than a table takes.
-            while (most << (shift & 31)) >> 31 == 0 {
-                shift += 1;
+            while most >> 31 == 0 {
+                (most, shift) = (most << 1, shift + 1);
             }
         } else {
             shift = most.leading_zeros();
