@@ -153,15 +153,23 @@ impl Pen {
         draw!(a az b bz c cz d dz e ez f fz g gz h hz i iz j jz k kz l lz m mz n nz o oz p pz);
     }
 
-    /// Draws pixels one by one.
+    /// Draws pixels one by one, or in pairs.
     #[inline(always)]
     fn rest<P: PixelFormat, T: Texture, D: DepthTest>(
         mut self,
         texture: &T,
         test: D,
-        colors: &mut [P::Raw],
-        depths: &mut [D::Stored],
+        mut colors: &mut [P::Raw],
+        mut depths: &mut [D::Stored],
     ) {
+        while !SMALL_CORE && colors.len() >= 2 {
+            let Some(([a, b], rest)) = core::mem::take(&mut colors).split_first_chunk_mut::<2>() else { return };
+            colors = rest;
+            let Some(([az, bz], rest)) = core::mem::take(&mut depths).split_first_chunk_mut::<2>() else { return };
+            depths = rest;
+            self.draw::<P, T, D>(texture, test, a, az);
+            self.draw::<P, T, D>(texture, test, b, bz);
+        }
         for (color, stored) in colors.iter_mut().zip(depths) {
             self.draw::<P, T, D>(texture, test, color, stored);
         }
@@ -329,9 +337,10 @@ impl Walk {
 
 /// How to scale what is interpolated of a coordinate back.
 struct Scale {
-    /// Half of what is shifted out.
+    /// Half of what is shifted out; 4 times that on cores with a long product.
     half: i32,
-    shift: u32,
+    /// By how much to shift; on cores with a long product 2³⁰, shifted by that.
+    by: i32,
     base: i32,
 }
 
@@ -339,13 +348,26 @@ impl Scale {
     #[inline(always)]
     fn new(lane: Option<&Lane>) -> Self {
         let (base, shift) = lane.map_or((0, 0), |lane| (lane.base, lane.shift & 31));
-        Self { half: (1 << shift) >> 1, shift, base }
+        if SMALL_CORE {
+            Self { half: (1 << shift) >> 1, by: shift as i32, base }
+        } else {
+            Self { half: 2 << shift & !3, by: 1 << 30 >> shift, base }
+        }
     }
 
     /// To nearest.
+    ///
+    /// # Format
+    /// |`h`| ≤ 2²⁸ and a little; shifts are at most 28.
     #[inline(always)]
     fn scaled(&self, h: i32) -> i32 {
-        self.base.wrapping_add(h.wrapping_add(self.half) >> (self.shift & 31))
+        if SMALL_CORE {
+            self.base.wrapping_add(h.wrapping_add(self.half) >> (self.by & 31))
+        } else {
+            // The same in two instructions.
+            let h = (h << 2).wrapping_add(self.half);
+            self.base.wrapping_add(((i64::from(h) * i64::from(self.by)) >> 32) as i32)
+        }
     }
 }
 
@@ -358,7 +380,7 @@ mod tests {
 
     /// A walk without perspective, that has been at `uv`.
     fn walk([u, v]: [i32; 2], [du, dv]: [i32; 2]) -> Walk {
-        let scale = || Scale { half: 0, shift: 0, base: 0 };
+        let scale = || Scale::new(None);
         let at = [0, u, v];
         Walk { at, step: [0, du, dv], uv: (u, v), u: scale(), v: scale(), end: [0; 3], dz_dx: 0 }
     }
