@@ -2,7 +2,6 @@
 
 use super::PixelFormat;
 use super::texel::{OPAQUE, TexelFormat, expand};
-use crate::math::SMALL_CORE;
 
 /// A rectangle of texels.
 ///
@@ -210,7 +209,7 @@ impl<const W: usize, const H: usize> Texture for Tile<'_, W, H> {
     #[inline(always)]
     fn fetch<P: PixelFormat>(&self, vu: u32) -> Option<P::Raw> {
         let (columns, rows) = (W.trailing_zeros(), H.trailing_zeros());
-        if SMALL_CORE || columns + rows > 16 || rows > 8 || rows == 0 {
+        if columns + rows > 16 || rows > 8 || rows == 0 {
             return self.pixel::<P>(vu >> (16 - columns), vu >> 16 >> (16 - rows));
         }
         // The upper bits of both halves, those of the lower one moved up to the others: the number of the texel.

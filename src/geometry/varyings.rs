@@ -33,6 +33,14 @@ pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
         }
     }
 
+    /// Adds `pixels` times `change`, modulo 2³².
+    #[inline]
+    fn advance(&mut self, change: &Self, pixels: i32) {
+        for (value, change) in self.as_mut().iter_mut().zip(change.as_ref()) {
+            *value = value.wrapping_add(change.wrapping_mul(pixels));
+        }
+    }
+
     /// Puts 1 / w, as [`inverse_w`](super::inverse_w) gives it, into its place.
     #[inline]
     fn set_inverse_w(&mut self, inverse_w: u32) {
@@ -49,32 +57,40 @@ impl<const N: usize> Varyings for [i32; N] {
 
     #[inline(always)]
     fn step(&mut self, change: &Self) {
-        step(self, change);
+        advance(self, change, 1);
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, change: &Self, pixels: i32) {
+        advance(self, change, pixels);
     }
 }
 
-/// Adds `changes`, modulo 2³². Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+/// Adds `pixels` times `changes`, modulo 2³². Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
 #[inline(always)]
-fn step<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
+fn advance<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
     let (values, changes) = (values.as_mut_slice(), changes.as_slice());
-    step_one(values, changes, 0);
-    step_one(values, changes, 1);
-    step_one(values, changes, 2);
-    step_one(values, changes, 3);
-    step_one(values, changes, 4);
-    step_one(values, changes, 5);
-    step_one(values, changes, 6);
-    step_one(values, changes, 7);
-    for (value, change) in values.iter_mut().zip(changes).skip(8) {
-        *value = value.wrapping_add(*change);
+    if !matches!(N, 1..=8) {
+        for (value, change) in values.iter_mut().zip(changes) {
+            *value = value.wrapping_add(change.wrapping_mul(pixels));
+        }
+        return;
     }
+    advance_one(values, changes, pixels, 0);
+    advance_one(values, changes, pixels, 1);
+    advance_one(values, changes, pixels, 2);
+    advance_one(values, changes, pixels, 3);
+    advance_one(values, changes, pixels, 4);
+    advance_one(values, changes, pixels, 5);
+    advance_one(values, changes, pixels, 6);
+    advance_one(values, changes, pixels, 7);
 }
 
-/// Steps a value, if there are so many.
+/// Advances a value, if there are so many.
 #[inline(always)]
-fn step_one(values: &mut [i32], changes: &[i32], k: usize) {
+fn advance_one(values: &mut [i32], changes: &[i32], pixels: i32, k: usize) {
     if let (Some(value), Some(change)) = (values.get_mut(k), changes.get(k)) {
-        *value = value.wrapping_add(*change);
+        *value = value.wrapping_add(change.wrapping_mul(pixels));
     }
 }
 
@@ -142,7 +158,12 @@ impl<const P: usize, const N: usize> AsMut<[i32]> for Perspective<P, N> {
 impl<const P: usize, const N: usize> Varyings for Perspective<P, N> {
     #[inline(always)]
     fn step(&mut self, change: &Self) {
-        step(&mut self.0, &change.0);
+        advance(&mut self.0, &change.0, 1);
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, change: &Self, pixels: i32) {
+        advance(&mut self.0, &change.0, pixels);
     }
 
     const LEN: usize = N;

@@ -250,7 +250,6 @@ impl ShortDivisor {
 /// [`Divisor`], with what the table knows for a reciprocal.
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseDivisor {
-    shift: u32,
     /// 2⁴⁷ / x within 2⁻⁹: 16 bits.
     reciprocal: i32,
     /// 2²⁵ - x `reciprocal` / 2²²: below 2¹⁶·¹.
@@ -258,38 +257,36 @@ pub struct CoarseDivisor {
 }
 
 impl CoarseDivisor {
-    /// Of a number, which is not 0. `shift` is likely to be the number of its leading zeros, and becomes that.
+    /// Of a number with its top bit set.
     #[inline(always)]
-    pub fn near(q: u32, shift: &mut u32) -> Self {
-        let mut x = q << (*shift & 31);
-        if !SMALL_CORE || x >> (*shift & 31) != q || x >> 31 == 0 {
-            *shift = leading_zeros(q);
-            x = q << (*shift & 31);
-        }
+    pub fn of_normalized(x: u32) -> Self {
         let r = SEED[(x >> 23) as usize & 0xFF] as u32;
-        let product = if SMALL_CORE {
-            (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16)
+        let defect = if SMALL_CORE {
+            let product = (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16);
+            // 2³¹ without its bit: the difference fits 31 bits.
+            (product.wrapping_neg() << 1) as i32 >> 7
         } else {
-            mul_high(x, r << 16)
+            (1_i32 << 31).wrapping_sub(mul_high(x, r << 16) as i32) >> 6
         };
-        Self { shift: *shift & 31, reciprocal: r as i32, defect: (1_i32 << 31).wrapping_sub(product as i32) >> 6 }
+        Self { reciprocal: r as i32, defect }
     }
 
-    /// `n` / q as 1.31.
+    /// `n` / x as 1.31.
     ///
     /// # Format
-    /// |n| < q / 4. Off by less than 2⁻¹⁸ of the quotient, the square of the table's error, and 192 units for bits cut.
+    /// |n| < x / 4. Off by less than 2⁻¹⁸ of the quotient, the square of the table's error, and 192 units for bits cut.
     #[inline(always)]
-    pub fn divide(&self, n: i32) -> i32 {
-        let n = n << self.shift;
-        let h = if SMALL_CORE {
+    pub fn divide_normalized(&self, n: i32) -> i32 {
+        if SMALL_CORE {
             let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
-            (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32)
+            let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+            h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 9)
         } else {
-            // The same, of factors that fit 31 bits and a sign.
-            ((i64::from(n << 1) * i64::from(self.reciprocal << 15)) >> 32) as i32
-        };
-        h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 9)
+            // The same in two instructions, each of 32 by 16 bits: the reciprocal less 2¹⁶ fits 16 bits and a sign.
+            let times = |a: i32, b: i16| ((i64::from(a) * i64::from(b)) >> 16) as i32;
+            let h = n.wrapping_add(times(n, self.reciprocal as i16));
+            h.wrapping_add(times(self.defect << 7, (h >> 16) as i16))
+        }
     }
 }
 
@@ -320,10 +317,11 @@ mod tests {
                         assert!(off > -7.0 && off < 3.0, "2 {n} / {x}: {off} units");
                         let n = n.unsigned_abs();
                         assert_eq!(Divisor::of_normalized(1 << 31).fraction_normalized(n), n);
+                        let n = n as i32 / 2 * if off < 0.0 { -1 } else { 1 };
+                        let coarse = CoarseDivisor::of_normalized(x).divide_normalized(n);
+                        let exact = f64::from(n) / f64::from(x) * 2f64.powi(31);
+                        worst_coarse = worst_coarse.max((f64::from(coarse) - exact).abs() - exact.abs() / 262_144.0);
                     }
-                    let coarse = CoarseDivisor::near(x, &mut (random() % 32)).divide(n / 2);
-                    let exact = f64::from(n / 2) / f64::from(x) * 2f64.powi(31);
-                    worst_coarse = worst_coarse.max((f64::from(coarse) - exact).abs() - exact.abs() / 262_144.0);
                 }
             }
         }

@@ -185,9 +185,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let mut y = outline.top;
         let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
         let mut values = *corner;
-        for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
-            *value = value.wrapping_add(dy.wrapping_mul(y));
-        }
+        values.advance(d_dy, y);
         while y < outline.end {
             if y == outline.bend {
                 *if outline.bend_right { &mut right } else { &mut left } = outline.side(outline.bend_right, y);
@@ -217,9 +215,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                     let Some(depth) = part(depths, at, length) else { return };
                     let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
                     let mut varyings = values;
-                    for (value, dx) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-                        *value = value.wrapping_add(dx.wrapping_mul(start));
-                    }
+                    varyings.advance(&steps.d_dx, start);
                     // 10, 11. Depth test and fragments.
                     let span = Fragments { color, depth, z, varyings, steps, position: (start, y) };
                     self.shader.span(*face, span, test);
@@ -229,9 +225,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 y += 1;
                 row = row.wrapping_add(width);
                 z = z.wrapping_add_signed(depth.dy);
-                for (value, dy) in values.as_mut().iter_mut().zip(d_dy.as_ref()) {
-                    *value = value.wrapping_add(*dy);
-                }
+                values.step(d_dy);
             }
         }
     }
