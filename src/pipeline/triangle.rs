@@ -188,7 +188,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         values.advance(d_dy, y);
         while y < outline.end {
             if y == outline.bend {
-                *if outline.bend_right { &mut right } else { &mut left } = outline.side(outline.bend_right, y);
+                let edge = outline.side(outline.bend_right, y);
+                if outline.bend_right {
+                    right = edge;
+                } else {
+                    left = edge;
+                }
             }
             // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
             let mut row = width.wrapping_mul((y - first) as usize);

@@ -74,7 +74,12 @@ pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl 
     let (mut left, mut right) = (outline.side(false, outline.top), outline.side(true, outline.top));
     for y in outline.top..outline.end {
         if y == outline.bend {
-            *if outline.bend_right { &mut right } else { &mut left } = outline.side(outline.bend_right, y);
+            let edge = outline.side(outline.bend_right, y);
+            if outline.bend_right {
+                right = edge;
+            } else {
+                left = edge;
+            }
         }
         let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
         if x.start < x.end {
