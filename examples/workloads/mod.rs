@@ -142,10 +142,10 @@ pub fn flat_torus(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) ->
 
 /// The same by a renderer that knows no records.
 #[inline(never)]
-pub fn flat_torus_without_records(color: &mut [u16], depth: &mut [u16], sink: impl FnMut(&[u16])) -> Stats {
+pub fn flat_torus_without_records(color: &mut [u16], depth: &mut [u16], sink: impl FnMut(&[u16])) {
     let shader = Flat::new(TORUS_LIGHT, torus_color());
     let renderer = Renderer::without_records(SCREEN, color, depth);
-    frame_by(renderer, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
+    frame_by(renderer, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader));
 }
 
 #[inline(never)]

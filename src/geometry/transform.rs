@@ -7,7 +7,7 @@
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
-use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros, leading_zeros_long};
+use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long};
 use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
@@ -98,7 +98,7 @@ impl ShortBox {
     fn new(aabb: &BoundingBox) -> Self {
         let mut sides = [aabb.center.to_bits(), aabb.half.to_bits()];
         let reach = sides.as_flattened().iter().fold(0, |all, c| all | c.unsigned_abs());
-        let shift = 18_u32.saturating_sub(leading_zeros(reach)).max(2);
+        let shift = 50_u32.saturating_sub(leading_zeros_long(reach.into())).max(2);
         // What the entries may be off by takes part in each plane: 2 units times the coordinates and 1, halved.
         let mut off = (1 << 16 >> shift) + 8;
         for c in sides.as_flattened_mut() {
@@ -161,16 +161,13 @@ impl View {
     #[inline(never)]
     pub fn sees(&self, aabb: &BoundingBox, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
         let aabb = ShortBox::new(aabb);
-        let [x, y, z, w] = &self.rows;
-        // Depth is as a coordinate of 512 px.
-        let starts_before = |row, end: i32| aabb.reaches(row, -512, w, end);
-        let ends_behind = |row, start: i32| aabb.reaches(row, 512, w, -start);
-        starts_before(x, columns.end)
-            && ends_behind(x, columns.start)
-            && starts_before(y, lines.end)
-            && ends_behind(y, lines.start)
-            && (clamped.0 & Outcode::NEAR != 0 || ends_behind(z, 0))
-            && (clamped.0 & Outcode::FAR != 0 || starts_before(z, 512))
+        let [.., w] = &self.rows;
+        // Depth is as a coordinate of 512 px, and of the others no plane is left out.
+        let axes = [(columns, 0), (lines, 0), (&(0..512), clamped.0)];
+        self.rows.iter().zip(axes).all(|(row, (range, clamped))| {
+            (clamped & Outcode::FAR != 0 || aabb.reaches(row, -512, w, range.end))
+                && (clamped & Outcode::NEAR != 0 || aabb.reaches(row, 512, w, -range.start))
+        })
     }
 
     /// The least w in a box.

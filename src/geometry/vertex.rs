@@ -35,7 +35,11 @@ impl<'a> Corner<'a> {
     /// Colour: red, green, blue.
     #[inline]
     pub fn color(&self) -> [u8; 3] {
-        self.mesh.data().colors.and_then(|c| c.get(self.index)).copied().unwrap_or([255; 3])
+        // Channel by channel: three bytes at once are put together and taken apart.
+        match self.mesh.data().colors.and_then(|colors| colors.get(self.index)) {
+            Some([r, g, b]) => [*r, *g, *b],
+            None => [255; 3],
+        }
     }
 
     /// Texture coordinates.

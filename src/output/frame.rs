@@ -185,7 +185,7 @@ impl Progress {
 }
 
 impl Engine<'_> {
-    /// Draws the next strip, of which there must be one, into rows of `framebuffer`, which hold the background already.
+    /// Draws the next strip of so many rows, of which there must be one, into rows of `framebuffer`, which hold the background already.
     ///
     /// If it is not in the records, a band that begins with it is recorded first: all the rest of the screen, or half of
     /// what was tried last, until it fits. Where not even one strip does, it is drawn directly.
@@ -193,11 +193,11 @@ impl Engine<'_> {
         &mut self,
         progress: &mut Progress,
         framebuffer: &mut F,
+        rows: u16,
         draw: &mut dyn FnMut(&mut Scene<'_, F>),
     ) -> Result<(), u16> {
         let row = progress.row;
         let grid = self.grid;
-        let rows = grid.rows_at(row);
         let pixels = usize::from(grid.viewport.width()) * usize::from(rows);
         if F::DEPTH {
             clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
@@ -251,7 +251,9 @@ impl Engine<'_> {
                 return Err(draw);
             }
             if phase == Phase::Direct {
-                progress.strips = 1;
+                if F::RECORDS {
+                    progress.strips = 1;
+                }
                 progress.stats.direct_strips = progress.stats.direct_strips.wrapping_add(1);
             }
             progress.row += rows;
@@ -506,7 +508,7 @@ fn strip_into<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
     let color = color.get_mut(..length).unwrap_or_default();
     clear(color, background);
     let mut strip = Strip::<P, DEPTH, RECORDS>::new(&mut *color, width, u32::from(row));
-    engine.next_strip(progress, &mut strip, draw)?;
+    engine.next_strip(progress, &mut strip, rows, draw)?;
     let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
     Ok(StripPixels::new(area, color))
 }
@@ -560,7 +562,8 @@ impl<const DEPTH: bool> FramebufferRenderer<'_, DEPTH> {
         }
         let mut progress = Progress::new();
         while progress.row < height {
-            self.engine.next_strip(&mut progress, framebuffer, &mut draw).map_err(FrameError::SceneChanged)?;
+            let rows = self.engine.grid.rows_at(progress.row);
+            self.engine.next_strip(&mut progress, framebuffer, rows, &mut draw).map_err(FrameError::SceneChanged)?;
         }
         Ok(progress.stats)
     }

@@ -89,12 +89,16 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn unplaced(&mut self, seen: &mut Seen, culling: Culling, corners: [u16; 3], number: usize) {
         // 3. Vertex stage, once a vertex where there are records to keep the result.
-        let [i, j, k] = corners;
-        let (a, b, c) = (self.slot(i), self.slot(j), self.slot(k));
-        if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
-            return self.clip(seen, [a.outcode(), b.outcode(), c.outcode()], corners, number);
+        let mut slots = [Slot::NONE; 3];
+        let mut visible = true;
+        for (slot, index) in slots.iter_mut().zip(&corners) {
+            *slot = self.slot(*index);
+            visible &= slot.is_on_screen();
         }
-        if seen.set(&[a, b, c], culling, &self.clip, self.scene.stats) {
+        if !visible {
+            return self.clip(seen, &slots, corners, number);
+        }
+        if seen.set(&slots, culling, &self.clip, self.scene.stats) {
             self.shade_face(seen, corners, number);
         }
     }
@@ -166,14 +170,18 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     /// 4. Clipping, of a triangle with a vertex outside.
     #[inline(never)]
-    fn clip(&mut self, seen: &mut Seen, codes: [u8; 3], corners: [u16; 3], number: usize) {
-        let clamped = self.state.range.clamped().0;
-        if codes[0] & codes[1] & codes[2] & !clamped != 0 {
+    fn clip(&mut self, seen: &mut Seen, slots: &[Slot; 3], corners: [u16; 3], number: usize) {
+        let (mut common, mut all) = (!self.state.range.clamped().0, 0);
+        for slot in slots {
+            common &= slot.outcode();
+            all |= slot.outcode();
+        }
+        let all = Outcode(all);
+        if common != 0 {
             self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             return;
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
-        let all = Outcode(codes[0] | codes[1] | codes[2]);
         self.part(seen, all, corners, number, Part::Between);
         if let Some(beyond) = self.chosen.beyond {
             beyond(self, seen, all, corners, number);
@@ -223,9 +231,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// has left the stack when it is drawn.
     #[inline(never)]
     fn cut<const N: usize>(&self, corners: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan<S, N>) {
-        let [i, j, k] = corners.map(usize::from);
+        let mut triangle = [ClipVertex::default(); 3];
+        for (vertex, index) in triangle.iter_mut().zip(&corners) {
+            *vertex = self.transformed(usize::from(*index));
+        }
         let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; N]>::new();
-        polygon.clip(&[self.transformed(i), self.transformed(j), self.transformed(k)], codes, part);
+        polygon.clip(&triangle, codes, part);
+        let [i, j, k] = corners;
+        let (i, j, k) = (usize::from(i), usize::from(j), usize::from(k));
         if S::CLIP_DISTANCES > 0 {
             let [i, j, k] = [self.stage().distances(i), self.stage().distances(j), self.stage().distances(k)];
             for ((i, j), k) in i.into_iter().zip(j).zip(k).take(S::CLIP_DISTANCES) {
