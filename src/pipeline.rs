@@ -16,7 +16,7 @@ mod triangle;
 
 use crate::fragment::{DepthBias, DepthState, Shader};
 use crate::geometry::{
-    Bounds, DepthRange, DepthScale, MAX_DISTANCES, Mesh, Positions, Transform, Varyings, View, Viewport,
+    Bounds, BoundsNode, DepthRange, DepthScale, MAX_DISTANCES, Mesh, Positions, Transform, Varyings, View, Viewport,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Records, Stats, StripRows, TriangleRecord, VERTEX_WORDS};
@@ -175,7 +175,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
                 scale(&mut transform, state.depth_scale);
             }
             let clip = self.clip_rect(&self.band);
-            let mut assembly = Assembly { scene: self, state, chosen, mesh, shader, transform: &transform, clip };
+            let culling = state.culling();
+            let mut assembly =
+                Assembly { scene: self, state, chosen, mesh, shader, transform: &transform, culling, clip };
             match mesh.data().hierarchy {
                 Some(nodes) if !S::DISPLACES => assembly.parts(nodes, mvp),
                 _ => {
@@ -225,6 +227,25 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     fn sees(&self, view: &View, bounds: &Bounds, range: DepthRange) -> bool {
         let rect = self.clip_rect(&self.band);
         view.sees(&bounds.aabb, &rect.x, &rect.y, range.clamped())
+    }
+
+    /// Which of 32 nodes of a hierarchy can be seen, from `next` on, a bit each, the lowest for the first; `next` moves on behind
+    /// them. In a function of its own, so that what it takes has left the stack when they are drawn.
+    #[inline(never)]
+    fn visible_nodes(&mut self, state: &State, nodes: &[BoundsNode], mvp: &Projective, next: &mut usize) -> u32 {
+        let mut view = View::EMPTY;
+        view.fold(mvp, &self.viewport);
+        let (first, mut visible) = (*next, 0);
+        while let (Some(node), Some(bit)) = (nodes.get(*next), 1_u32.checked_shl((*next - first) as u32)) {
+            if self.sees(&view, &node.bounds, state.range) {
+                visible |= bit;
+                *next += 1;
+            } else {
+                self.stats.culled = self.stats.culled.wrapping_add(1);
+                *next = usize::from(node.skip);
+            }
+        }
+        visible
     }
 
     /// Starts recording a draw, or drawing it directly: makes the vertex transform, if there is anything to do.

@@ -276,24 +276,31 @@ impl DepthRange {
 /// left in one part of it: a convex polygon, or nothing.
 pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: Part, mut emit: impl FnMut(&ClipCorner)) {
     let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; CLIPPED_CORNERS]>::new();
-    polygon.clip(&triangle, codes, part);
+    for (k, vertex) in triangle.iter().enumerate() {
+        polygon.set(k, vertex);
+    }
+    polygon.clip(codes, part);
     for corner in polygon.corners() {
         emit(&ClipCorner { vertex: corner.vertex(), weights: corner.weights() });
     }
 }
 
 impl Polygon {
-    /// The part of a triangle that is inside of the planes in `codes` (the outcodes of its vertices, united), or nothing.
+    /// Sets corner `k` of the triangle that a new polygon is to be cut from.
+    pub fn set(&mut self, k: usize, vertex: &ClipVertex) {
+        if let Some(corner) = self.corners.get(k) {
+            corner.set(vertex, k);
+        }
+    }
+
+    /// Becomes the part of its triangle that is inside of the planes in `codes` (the outcodes of its vertices, united), or nothing.
     #[inline(never)]
-    pub fn clip(&mut self, triangle: &[ClipVertex; 3], codes: Outcode, part: Part) {
+    pub fn clip(&mut self, codes: Outcode, part: Part) {
         self.ring = Ring { len: 3, last: 2, free: 3 };
         for (k, corner) in self.corners.iter().enumerate() {
             corner.next.set(if k == 2 { 0 } else { k as u8 + 1 });
-        }
-        for ((k, corner), vertex) in self.corners.iter().enumerate().zip(triangle) {
-            corner.set(vertex, k);
             // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
-            if corner.place.iter().fold(0, |all, c| all | c.get()) == 0 {
+            if k < 3 && corner.place.iter().fold(0, |all, c| all | c.get()) == 0 {
                 self.ring.len = 0;
                 return;
             }

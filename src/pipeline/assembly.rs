@@ -6,16 +6,22 @@ use super::{Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, Face, MAX_DISTANCES, Mesh, Outcode, Part,
-    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, View, inverse_w, weighted,
+    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, inverse_w, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
 use crate::raster::PixelRect;
 use core::ops::Range;
 
-/// The corners of a clipped polygon on the screen, with their varyings.
-type Fan<S, const N: usize> = heapless::Vec<FanCorner<S>, N>;
-type FanCorner<S> = (Slot, <S as VertexShader>::Varyings);
+/// A corner of a clipped polygon on the screen. What is interpolated is made of it when it is drawn, or recorded: there may be ten.
+#[derive(Clone, Copy, Debug)]
+struct FanCorner {
+    slot: Slot,
+    /// Parts of the triangle's corners in it, see [`ClipCorner`](crate::geometry::ClipCorner).
+    weights: [i32; 3],
+    /// See [`inverse_w`]; 0 where nothing is perspective-correct.
+    inverse_w: u32,
+}
 
 /// One draw.
 pub(super) struct Assembly<'s, 'a, F: Framebuffer, S: Shader<F::Format>> {
@@ -25,25 +31,25 @@ pub(super) struct Assembly<'s, 'a, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) mesh: &'s Mesh<'s>,
     pub(super) shader: &'s S,
     pub(super) transform: &'s Transform,
+    /// Which faces are left out.
+    pub(super) culling: Culling,
     /// Pixels that can be drawn in this phase.
     pub(super) clip: PixelRect,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Takes the parts of a mesh that can be seen.
-    #[inline(never)]
     pub(super) fn parts(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
-        let mut view = View::EMPTY;
-        view.fold(mvp, &self.scene.viewport);
-        let mut k = 0;
-        while let Some(node) = nodes.get(k) {
-            if self.scene.sees(&view, &node.bounds, self.state.range) {
-                let first = usize::from(node.first_triangle);
-                self.triangles(first..first + usize::from(node.triangles));
-                k += 1;
-            } else {
-                self.scene.stats.culled = self.scene.stats.culled.wrapping_add(1);
-                k = usize::from(node.skip);
+        let mut next = 0;
+        while next < nodes.len() {
+            let some = nodes.iter().skip(next);
+            let mut visible = self.scene.visible_nodes(self.state, nodes, mvp, &mut next);
+            for node in some.take(32) {
+                if visible & 1 != 0 {
+                    let first = usize::from(node.first_triangle);
+                    self.triangles(first..first + usize::from(node.triangles));
+                }
+                visible >>= 1;
             }
         }
     }
@@ -51,25 +57,31 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Takes triangles one by one.
     #[inline(never)]
     pub(super) fn triangles(&mut self, numbers: Range<usize>) {
-        let first = numbers.start;
-        let culling = self.state.culling();
         if S::CULL_DISTANCES > 0 || !self.scene.has_vertices() {
-            return self.each_triangle(numbers, culling);
+            self.each_triangle(numbers);
+        } else {
+            self.scan(numbers);
         }
+    }
+
+    /// Where places are kept: those that may be seen.
+    #[inline(never)]
+    fn scan(&mut self, numbers: Range<usize>) {
+        let first = numbers.start;
         let mut scan = Scan::new(self.mesh, numbers);
         while !self.scene.overflowed() {
-            match scan.next(&self.scene.records, culling, &self.clip, self.scene.stats) {
+            match scan.next(&self.scene.records, self.culling, &self.clip, self.scene.stats) {
                 Stop::Seen => self.shade_face(&scan.seen, scan.corners, scan.number),
-                Stop::Unplaced => self.unplaced(&mut scan.seen, culling, scan.corners, scan.number),
+                Stop::Unplaced => self.unplaced(&mut scan.seen, scan.corners, scan.number),
                 Stop::End => break,
             }
         }
         self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add((scan.next_number() - first) as u32);
     }
 
-    /// [`triangles`](Self::triangles) where there is nothing to scan: places are not kept, or cull distances come before them.
+    /// Where there is nothing to scan: places are not kept, or cull distances come before them.
     #[inline(never)]
-    fn each_triangle(&mut self, numbers: Range<usize>, culling: Culling) {
+    fn each_triangle(&mut self, numbers: Range<usize>) {
         let mut seen = Seen::NONE;
         for number in numbers {
             let Some(corners) = self.mesh.any_triangle(number) else { return };
@@ -80,26 +92,38 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
                 self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             } else {
-                self.unplaced(&mut seen, culling, corners, number);
+                self.unplaced(&mut seen, corners, number);
             }
         }
     }
 
     /// A triangle that has a vertex which is not shaded yet, or not on the screen.
     #[inline(never)]
-    fn unplaced(&mut self, seen: &mut Seen, culling: Culling, corners: [u16; 3], number: usize) {
+    fn unplaced(&mut self, seen: &mut Seen, corners: [u16; 3], number: usize) {
         // 3. Vertex stage, once a vertex where there are records to keep the result.
         let mut slots = [Slot::NONE; 3];
         let mut visible = true;
+        let (mut common, mut all) = (!self.state.range.clamped().0, 0);
         for (slot, index) in slots.iter_mut().zip(&corners) {
             *slot = self.slot(*index);
             visible &= slot.is_on_screen();
+            common &= slot.outcode();
+            all |= slot.outcode();
         }
-        if !visible {
-            return self.clip(seen, &slots, corners, number);
-        }
-        if seen.set(&slots, culling, &self.clip, self.scene.stats) {
-            self.shade_face(seen, corners, number);
+        if visible {
+            if seen.set(&slots, self.culling, &self.clip, self.scene.stats) {
+                self.shade_face(seen, corners, number);
+            }
+        } else if common != 0 {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+        } else {
+            // 4. Clipping.
+            self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
+            let all = Outcode(all);
+            self.part(seen, all, corners, number, Part::Between);
+            if let Some(beyond) = self.chosen.beyond {
+                beyond(self, seen, all, corners, number);
+            }
         }
     }
 
@@ -168,26 +192,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.stage().transformed(index)
     }
 
-    /// 4. Clipping, of a triangle with a vertex outside.
-    #[inline(never)]
-    fn clip(&mut self, seen: &mut Seen, slots: &[Slot; 3], corners: [u16; 3], number: usize) {
-        let (mut common, mut all) = (!self.state.range.clamped().0, 0);
-        for slot in slots {
-            common &= slot.outcode();
-            all |= slot.outcode();
-        }
-        let all = Outcode(all);
-        if common != 0 {
-            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
-            return;
-        }
-        self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
-        self.part(seen, all, corners, number, Part::Between);
-        if let Some(beyond) = self.chosen.beyond {
-            beyond(self, seen, all, corners, number);
-        }
-    }
-
     /// The parts of a triangle that have their depth clamped.
     pub(super) fn beyond(&mut self, seen: &mut Seen, codes: Outcode, corners: [u16; 3], number: usize) {
         for part in self.state.range.parts_beyond(codes) {
@@ -204,7 +208,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// A part of a triangle, which has up to `N` corners when it has been clipped.
+    /// A part of a triangle, which has up to `N` corners when it has been clipped: a fan of triangles.
     #[inline(never)]
     fn cut_part<const N: usize>(
         &mut self,
@@ -214,9 +218,48 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         number: usize,
         part: Part,
     ) {
-        let mut fan = Fan::<S, N>::new();
-        self.cut(corners, codes, part, &mut fan);
-        self.fan(seen, &fan, corners, number);
+        let mut fan = heapless::Vec::<FanCorner, N>::new();
+        self.cut::<N>(corners, codes, part, &mut fan);
+        let recording = self.scene.is_recording();
+        let (mut v, mut indices) = ([Slot::NONE; 3], [0; 3]);
+        for (place, corner) in fan.iter().enumerate() {
+            if recording {
+                indices[2] = self.scene.records.push_vertex();
+                let varyings = self.corner_varyings(corners, corner);
+                self.scene.records.keep::<S>(usize::from(indices[2]), corner.slot, &varyings);
+            }
+            v[2] = corner.slot;
+            if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
+                if seen.set(&v, self.culling, &self.clip, self.scene.stats) {
+                    let word = self.face(seen, corners, number);
+                    if recording {
+                        self.record(seen.row, indices, word);
+                    } else {
+                        let varyings = |corner| self.corner_varyings(corners, corner);
+                        let mut varyings = [varyings(first), varyings(last), varyings(corner)];
+                        self.draw(seen, &mut varyings, word);
+                    }
+                }
+            }
+            let place = usize::from(place > 0);
+            (v[place], indices[place]) = (v[2], indices[2]);
+        }
+    }
+
+    /// The varyings at a corner of a clipped triangle.
+    #[inline(never)]
+    fn corner_varyings(&self, corners: [u16; 3], corner: &FanCorner) -> S::Varyings {
+        let vertex = |index: u16| self.shader.vertex(&Corner::new(self.mesh, usize::from(index)));
+        let [i, j, k] = corners;
+        let mut varyings: S::Varyings = weighted(&corner.weights, &[vertex(i), vertex(j), vertex(k)]);
+        if S::Varyings::PERSPECTIVE > 0 {
+            varyings.set_inverse_w(corner.inverse_w);
+        }
+        if self.scene.is_recording() {
+            return varyings;
+        }
+        // What the records would keep of them, so that the picture is the same without.
+        rounded::<S>(&varyings)
     }
 
     /// Whether one of the cull distances is negative at all corners.
@@ -230,63 +273,26 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
     /// has left the stack when it is drawn.
     #[inline(never)]
-    fn cut<const N: usize>(&self, corners: [u16; 3], codes: Outcode, part: Part, fan: &mut Fan<S, N>) {
-        let mut triangle = [ClipVertex::default(); 3];
-        for (vertex, index) in triangle.iter_mut().zip(&corners) {
-            *vertex = self.transformed(usize::from(*index));
-        }
+    fn cut<const N: usize>(
+        &self,
+        corners: [u16; 3],
+        codes: Outcode,
+        part: Part,
+        fan: &mut heapless::VecView<FanCorner>,
+    ) {
         let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; N]>::new();
-        polygon.clip(&triangle, codes, part);
-        let [i, j, k] = corners;
-        let (i, j, k) = (usize::from(i), usize::from(j), usize::from(k));
+        for (k, index) in corners.iter().enumerate() {
+            polygon.set(k, &self.transformed(usize::from(*index)));
+        }
+        polygon.clip(codes, part);
         if S::CLIP_DISTANCES > 0 {
-            let [i, j, k] = [self.stage().distances(i), self.stage().distances(j), self.stage().distances(k)];
-            for ((i, j), k) in i.into_iter().zip(j).zip(k).take(S::CLIP_DISTANCES) {
+            let [i, j, k] = corners;
+            let distances = |index: u16| self.stage().distances(usize::from(index));
+            for ((i, j), k) in distances(i).into_iter().zip(distances(j)).zip(distances(k)).take(S::CLIP_DISTANCES) {
                 polygon.cut_by_distance([i, j, k]);
             }
         }
-        let vertex = |index| self.shader.vertex(&Corner::new(self.mesh, index));
-        let varyings = [vertex(i), vertex(j), vertex(k)];
-        for corner in polygon.corners() {
-            let vertex = corner.vertex();
-            let Some(placed) = self.transform.project(&vertex) else { continue };
-            let mut varyings: S::Varyings = weighted(&corner.weights(), &varyings);
-            if S::Varyings::PERSPECTIVE > 0 {
-                varyings.set_inverse_w(inverse_w(&vertex));
-            }
-            if !self.scene.is_recording() {
-                // What the records would keep of them, so that the picture is the same without.
-                varyings = rounded::<S>(&varyings);
-            }
-            // There are no more corners than places.
-            let _ = fan.push((Slot::new(&Placed::Screen(placed)), varyings));
-        }
-    }
-
-    /// Draws a clipped polygon as a fan of triangles.
-    #[inline(never)]
-    fn fan(&mut self, seen: &mut Seen, fan: &[FanCorner<S>], corners: [u16; 3], number: usize) {
-        let recording = self.scene.is_recording();
-        let (mut v, mut indices) = ([Slot::NONE; 3], [0; 3]);
-        for (place, (slot, varyings)) in fan.iter().enumerate() {
-            if recording {
-                indices[2] = self.scene.records.push_vertex();
-                self.scene.records.keep::<S>(usize::from(indices[2]), *slot, varyings);
-            }
-            v[2] = *slot;
-            if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
-                if seen.set(&v, self.state.culling(), &self.clip, self.scene.stats) {
-                    let word = self.face(seen, corners, number);
-                    if recording {
-                        self.record(seen.row, indices, word);
-                    } else {
-                        self.draw(seen, &mut [first.1, last.1, *varyings], word);
-                    }
-                }
-            }
-            let place = usize::from(place > 0);
-            (v[place], indices[place]) = (v[2], indices[2]);
-        }
+        place(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, fan);
     }
 
     /// The varyings of a vertex, with 1 / w if they take it.
@@ -314,6 +320,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.scene
             .painter(&self.clip, self.state, self.chosen, self.shader)
             .triangle_of_area(&seen.v, seen.area, varyings, face);
+    }
+}
+
+/// The corners of a polygon, on the screen.
+#[inline(never)]
+fn place(polygon: &Polygon, transform: &Transform, perspective: bool, fan: &mut heapless::VecView<FanCorner>) {
+    for corner in polygon.corners() {
+        let vertex = corner.vertex();
+        if let Some(placed) = transform.project(&vertex) {
+            let inverse_w = if perspective { inverse_w(&vertex) } else { 0 };
+            // There are no more corners than places.
+            let slot = Slot::new(&Placed::Screen(placed));
+            let _ = fan.push(FanCorner { slot, weights: corner.weights(), inverse_w });
+        }
     }
 }
 

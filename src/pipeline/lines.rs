@@ -242,7 +242,16 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
             transform.set_depth_scale(state.depth_scale);
             transform
         });
-        Assembly { scene, state, chosen: &const { Chosen::ANY }, mesh: vertices, shader, transform, clip: clip.clone() }
+        Assembly {
+            scene,
+            state,
+            chosen: &const { Chosen::ANY },
+            mesh: vertices,
+            shader,
+            transform,
+            culling: state.culling(),
+            clip: clip.clone(),
+        }
     }
 
     fn varyings(&self, index: u16) -> S::Varyings {
