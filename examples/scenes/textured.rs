@@ -1,6 +1,6 @@
 //! Textures in perspective: wooden crates on a tiled floor, behind a fence of holes.
 
-use super::{camera, light};
+use super::{LIGHT, camera, in_place};
 use zstrip::fragment::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Textured, Tile};
 use zstrip::geometry::{Mesh, MeshData, NORMAL_ONE, Positions, Topology};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
@@ -233,21 +233,43 @@ fn around(turn: Angle) -> Affine {
         * Affine::rotation_y(turn)
 }
 
-fn lens(screen: (u16, u16)) -> Projective {
-    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16))
+/// Takes what a model matrix brings into the world to clip space.
+#[inline(never)]
+fn seen(screen: (u16, u16), turn: Angle) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * around(turn)
+}
+
+#[inline(never)]
+fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
+    let floor = if mips { Textured::mipmapped(&FLOOR_LEVELS).ok() } else { None };
+    let floor = floor.unwrap_or(Textured::new(&FLOOR_LEVELS[0]));
+    scene.draw(&GROUND, &seen(scene.screen(), turn), &floor.wrap(Repeat).filter(filter));
+}
+
+/// Where the crates are, in thousandths, and how they are turned, in degrees.
+const CRATES: [[i32; 4]; 3] = [[-700, 500, 0, 20], [650, 500, -400, -35], [-100, 1500, -150, 50]];
+
+/// Object space of a crate → eye space.
+fn crate_model(turn: Angle, [x, y, z, degrees]: [i32; 4]) -> Affine {
+    around(turn) * Affine::translation(Vec3::from_milli(x, y, z)) * Affine::rotation_y(Angle::from_degrees(degrees))
+}
+
+#[inline(never)]
+fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, place: [i32; 4], filter: G) {
+    let wood = in_place(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.to_object(&crate_model(turn, place))));
+    scene.draw(&CRATE, &crate_seen(scene.screen(), turn, place), &wood);
+}
+
+/// Object space of a crate → clip space.
+#[inline(never)]
+fn crate_seen(screen: (u16, u16), turn: Angle, place: [i32; 4]) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * crate_model(turn, place)
 }
 
 fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
-    let (lens, around) = (lens(scene.screen()), around(turn));
-    let floor = if mips { Textured::mipmapped(&FLOOR_LEVELS).ok() } else { None };
-    let floor = floor.unwrap_or(Textured::new(&FLOOR_LEVELS[0]));
-    scene.draw(&GROUND, &(lens * around), &floor.wrap(Repeat).filter(filter));
-    let crates = [(-700, 500, 0, 20), (650, 500, -400, -35), (-100, 1500, -150, 50)];
-    for (x, y, z, degrees) in crates {
-        let place = Affine::translation(Vec3::from_milli(x, y, z));
-        let model = around * place * Affine::rotation_y(Angle::from_degrees(degrees));
-        let wood = Textured::new(&WOODEN).filter(filter).lit(light().to_object(&model));
-        scene.draw(&CRATE, &(lens * model), &wood);
+    floor(scene, turn, mips, filter);
+    for place in CRATES {
+        one_crate(scene, turn, place, filter);
     }
 }
 
@@ -262,18 +284,27 @@ pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, look: Look)
 }
 
 /// A fence behind the crates, seen from both sides.
+#[inline(never)]
 fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let Ok(wire) = Image::new(&WIRE, (16, 16), MaskTexel([150, 160, 170])) else { return };
     let state = State { cull: Cull::None, ..State::DEFAULT };
-    let model = Affine::translation(Vec3::from_milli(0, 0, 1300));
-    scene.draw_with(state, &FENCE, &(lens(scene.screen()) * around(turn) * model), &Textured::new(&wire));
+    scene.draw_with(state, &FENCE, &fence_seen(scene.screen(), turn), &Textured::new(&wire));
+}
+
+#[inline(never)]
+fn fence_seen(screen: (u16, u16), turn: Angle) -> Projective {
+    seen(screen, turn) * Affine::translation(Vec3::from_milli(0, 0, 1300))
 }
 
 /// A crate so close that perspective is strong, and some of it before the near plane.
 pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let lens = camera(scene.screen(), Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16));
-    let model = Affine::translation(Vec3::from_milli(0, 0, -1250))
-        * Affine::rotation_x(Angle::from_degrees(25))
-        * Affine::rotation_y(turn);
-    scene.draw(&CRATE, &(lens * model), &Textured::new(&WOODEN));
+    scene.draw(&CRATE, &close_seen(scene.screen(), turn), &Textured::new(&WOODEN));
+}
+
+#[inline(never)]
+fn close_seen(screen: (u16, u16), turn: Angle) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16))
+        * (Affine::translation(Vec3::from_milli(0, 0, -1250))
+            * Affine::rotation_x(Angle::from_degrees(25))
+            * Affine::rotation_y(turn))
 }
