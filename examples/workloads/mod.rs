@@ -18,7 +18,7 @@ use zstrip::fragment::{
 };
 use zstrip::geometry::{Corner, Face, Light, Mesh, MeshData, Positions, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, Renderer, Stats, StripPixels};
+use zstrip::output::{Buffers, Renderer, Stats};
 use zstrip::{Scene, State};
 
 pub const WIDTH: usize = 320;
@@ -78,16 +78,15 @@ type Strip<'a> = zstrip::output::Strip<'a, Rgb565>;
 fn frame(
     buffers: Buffers<'_, Rgb565>,
     mut sink: impl FnMut(&[u16]),
-    draw: impl FnMut(&mut Scene<'_, Strip<'_>>),
+    mut draw: impl FnMut(&mut Scene<'_, Strip<'_>>),
 ) -> Stats {
-    let Ok(mut renderer) = Renderer::new((WIDTH as u16, HEIGHT as u16), buffers) else {
-        return Stats::default();
-    };
-    let to_sink = |strip: &StripPixels<'_, Rgb565>| {
+    let mut renderer = Renderer::new((WIDTH as u16, HEIGHT as u16), buffers);
+    let Ok(renderer) = &mut renderer else { return Stats::default() };
+    let mut frame = renderer.begin(BACKGROUND);
+    while let Ok(Some(strip)) = frame.next_strip(&mut draw) {
         sink(strip.pixels());
-        Ok::<(), core::convert::Infallible>(())
-    };
-    renderer.frame_to(to_sink, BACKGROUND, draw).unwrap_or_default()
+    }
+    frame.stats()
 }
 
 #[inline(never)]
