@@ -92,7 +92,7 @@ pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Sha
         Shading::PerVertex => pot(scene, turn, || Shaded::new(PerVertex, glaze(turn))),
         Shading::PerFragment => pot(scene, turn, || Shaded::new(PerFragment, sunlit_glaze(turn))),
         Shading::PerFragmentNear => pot(scene, turn, || Shaded::new(PerFragmentNear, glaze(turn))),
-        Shading::Matcap => pot(scene, turn, || Matcap::<Rgb888, 64>::new(&BALL, &pot_model(turn))),
+        Shading::Matcap => pot(scene, turn, || Matcap::<Rgb888, 64>::new(ball(), &pot_model(turn))),
     }
 }
 
@@ -125,7 +125,7 @@ fn glazed() -> Material {
 
 /// The glaze under the night's lights.
 fn glaze(turn: Angle) -> LitMaterial<1, 2> {
-    night(turn).on(&glazed(), &pot_model(turn), pot::MESH.bounds())
+    night(turn).on(&glazed(), &pot_model(turn), pot::mesh().bounds())
 }
 
 /// The glaze under a sun where the moon is.
@@ -133,20 +133,22 @@ fn sunlit_glaze(turn: Angle) -> LitMaterial<1, 0> {
     let Lighting { ambient, directional: [moon], .. } = night(turn);
     let sun = DirectionalLight { color: [235, 225, 210], ..moon };
     let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
-    lighting.on(&glazed(), &pot_model(turn), pot::MESH.bounds())
+    lighting.on(&glazed(), &pot_model(turn), pot::mesh().bounds())
 }
 
 /// The pot by a shader.
 #[inline(never)]
 fn pot<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, turn: Angle, shader: impl FnOnce() -> S) {
     let mvp = in_place(|| Lens::close(scene.screen()).seen(|| pot_model(turn)));
-    scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &in_place(shader));
+    scene.draw_with(BOTH_SIDES, pot::mesh(), &mvp, &in_place(shader));
 }
 
 /// A picture of a ball of polished copper in front of a horizon.
-static BALL: [[[u8; 3]; 64]; 64] = ball();
+fn ball() -> &'static [[[u8; 3]; 64]; 64] {
+    const { &picture() }
+}
 
-const fn ball() -> [[[u8; 3]; 64]; 64] {
+const fn picture() -> [[[u8; 3]; 64]; 64] {
     let mut picture = [[[0; 3]; 64]; 64];
     let mut k = 0;
     while k < 4096 {
@@ -178,16 +180,9 @@ const fn capped(v: i32) -> u8 {
 const MIST_NEAR: Scalar = Scalar::from_bits(1 << 14);
 const MIST_FAR: Scalar = Scalar::from_bits(28 << 16);
 
-static MIST: FogTable = mist(FogCurve::ExponentialSquared { density: Scalar::from_bits(5800) });
-static HAZE: FogTable = mist(FogCurve::Exponential { density: Scalar::from_bits(3600) });
-static BANK: FogTable = mist(FogCurve::Linear { start: Scalar::from_bits(4 << 16), end: Scalar::from_bits(19 << 16) });
-
-const fn mist(curve: FogCurve) -> FogTable {
-    match FogTable::perspective(MIST_NEAR, MIST_FAR, curve) {
-        Ok(table) => table,
-        Err(_) => panic!("near and far"),
-    }
-}
+/// Where a linear fog starts, and where nothing is left.
+const MIST_START: Scalar = Scalar::from_bits(4 << 16);
+const MIST_END: Scalar = Scalar::from_bits(19 << 16);
 
 /// How the fog thickens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -195,6 +190,23 @@ pub enum Mist {
     Squared,
     Exponential,
     Linear,
+}
+
+impl Mist {
+    fn table(self) -> &'static FogTable {
+        match self {
+            Self::Squared => const { &mist(FogCurve::ExponentialSquared { density: Scalar::from_bits(5800) }) },
+            Self::Exponential => const { &mist(FogCurve::Exponential { density: Scalar::from_bits(3600) }) },
+            Self::Linear => const { &mist(FogCurve::Linear { start: MIST_START, end: MIST_END }) },
+        }
+    }
+}
+
+const fn mist(curve: FogCurve) -> FogTable {
+    match FogTable::perspective(MIST_NEAR, MIST_FAR, curve) {
+        Ok(table) => table,
+        Err(_) => panic!("near and far"),
+    }
 }
 
 /// The colour of the fog.
@@ -205,11 +217,7 @@ const SUN: Light = Light::from_channels(Vec3::from_milli(-800, 420, 300), [250, 
 
 /// A hilly landscape with a lake in the morning fog, seen from a bird's round flight.
 pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, mist: Mist) {
-    let fog = match mist {
-        Mist::Squared => &MIST,
-        Mist::Exponential => &HAZE,
-        Mist::Linear => &BANK,
-    };
+    let fog = mist.table();
     draw_backdrop(scene, &SKY);
     let (lens, view) = (Lens::new(scene.screen(), MIST_NEAR, MIST_FAR), flight(turn));
     hills(scene, &lens, &view, fog);
@@ -230,13 +238,13 @@ fn flight(turn: Angle) -> Affine {
 #[inline(never)]
 fn hills<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
     let mvp = lens.seen(|| *view);
-    scene.draw(&landscape::GROUND, &mvp, &Fogged::new(Gouraud::colors(SUN), fog, MORNING));
+    scene.draw(landscape::ground(), &mvp, &Fogged::new(Gouraud::colors(SUN), fog, MORNING));
 }
 
 #[inline(never)]
 fn pines<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
     let shader = Fogged::new(Flat::colors(SUN), fog, MORNING);
-    for tree in &landscape::TREES {
+    for tree in landscape::trees() {
         let mvp = in_place(|| lens.seen(|| *view).compose_affine(&Affine::translation(*tree)));
         scene.draw(&landscape::PINE, &mvp, &shader);
     }
@@ -394,7 +402,7 @@ fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 
 /// The pot, of a material under the day's lights.
 fn lit_pot(turn: Angle, material: &Material) -> LitMaterial<1, 1> {
-    day().on(material, &glass_model(turn, PANES.len() as u16), pot::MESH.bounds())
+    day().on(material, &glass_model(turn, PANES.len() as u16), pot::mesh().bounds())
 }
 
 /// Object space of the pot → clip space.
@@ -412,7 +420,7 @@ fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
         Blend::new(Shaded::new(PerVertex, lit_pot(turn, &body)), Opacity(70))
     });
     for cull in [Cull::Front, Cull::Back] {
-        scene.draw_with(State { cull, ..GLASS }, &pot::MESH, &mvp, &shader);
+        scene.draw_with(State { cull, ..GLASS }, pot::mesh(), &mvp, &shader);
     }
 }
 
@@ -428,7 +436,7 @@ fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
         };
         Blend::new(Shaded::new(PerFragmentNear, lit_pot(turn, &gloss)), zstrip::fragment::Add)
     });
-    scene.draw_with(State { cull: Cull::Back, ..GLASS }, &pot::MESH, &mvp, &shader);
+    scene.draw_with(State { cull: Cull::Back, ..GLASS }, pot::mesh(), &mvp, &shader);
 }
 
 /// Where a spark is, `age` of 1024 steps after it left the lid: a throw in its own direction.

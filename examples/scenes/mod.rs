@@ -1,6 +1,7 @@
 //! Scenes that the examples, the firmware and the tests share: the same geometry, and so the same picture, everywhere.
 //!
-//! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
+//! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash. Those that take
+//! it long are behind functions, with constants of their own: they are computed for the programs that draw them.
 #![allow(dead_code)] // each program uses its part
 #![allow(long_running_const_eval)] // a landscape is computed
 
@@ -231,7 +232,7 @@ fn turned(turn: Angle) -> Projective {
 /// Many triangles of about 2 px.
 pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = turned_at(scene.screen(), 4, turn);
-    scene.draw_with(BOTH_SIDES, &soup::TINY, &mvp, &LIT);
+    scene.draw_with(BOTH_SIDES, soup::tiny(), &mvp, &LIT);
 }
 
 /// Three planks that each cover the next one: no order of drawing is right, only depth is.

@@ -106,7 +106,7 @@ const fn slab(x: usize, y: usize) -> [usize; 3] {
     }
 }
 
-static FLOOR: [u8; FLOOR_BYTES] = {
+const fn floor_bytes() -> [u8; FLOOR_BYTES] {
     let mut bytes = [0; FLOOR_BYTES];
     let mut at = 0;
     let mut level = 0;
@@ -130,25 +130,28 @@ static FLOOR: [u8; FLOOR_BYTES] = {
         level += 1;
     }
     bytes
-};
+}
 
 type Level = Image<'static, Rgb565Texel>;
 
 /// The floor's mip chain.
-pub static FLOOR_LEVELS: [Level; LEVELS] = {
-    let mut levels = [level(0, 64); LEVELS];
-    let (mut at, mut side, mut k) = (0, TILES, 0);
-    while k < LEVELS {
-        levels[k] = level(at, side);
-        at += 2 * side * side;
-        side /= 2;
-        k += 1;
+pub fn floor_levels() -> &'static [Level; LEVELS] {
+    const {
+        let bytes: &'static [u8; FLOOR_BYTES] = const { &floor_bytes() };
+        let mut levels = [level(bytes, 0, 64); LEVELS];
+        let (mut at, mut side, mut k) = (0, TILES, 0);
+        while k < LEVELS {
+            levels[k] = level(bytes, at, side);
+            at += 2 * side * side;
+            side /= 2;
+            k += 1;
+        }
+        &{ levels }
     }
-    levels
-};
+}
 
-const fn level(at: usize, side: usize) -> Level {
-    let (_, rest) = FLOOR.split_at(at);
+const fn level(bytes: &'static [u8; FLOOR_BYTES], at: usize, side: usize) -> Level {
+    let (_, rest) = bytes.split_at(at);
     let (bytes, _) = rest.split_at(2 * side * side);
     match Image::new(bytes, (side as u16, side as u16), Rgb565Texel) {
         Ok(image) => image,
@@ -241,8 +244,8 @@ fn seen(screen: (u16, u16), turn: Angle) -> Projective {
 
 #[inline(never)]
 fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
-    let floor = if mips { Textured::mipmapped(&FLOOR_LEVELS).ok() } else { None };
-    let floor = floor.unwrap_or(Textured::new(&FLOOR_LEVELS[0]));
+    let floor = if mips { Textured::mipmapped(floor_levels()).ok() } else { None };
+    let floor = floor.unwrap_or(Textured::new(&floor_levels()[0]));
     scene.draw(&GROUND, &seen(scene.screen(), turn), &floor.wrap(Repeat).filter(filter));
 }
 

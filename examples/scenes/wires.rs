@@ -6,12 +6,6 @@ use zstrip::geometry::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::math::{Angle, Projective, Scalar, Vec3};
 use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thick};
 
-/// The edges of the torus.
-pub static TORUS: Lines<'static> = match Lines::of_mesh(&torus::QUADS, &torus::EDGES) {
-    Ok(lines) => lines,
-    Err(_) => panic!("edges of another mesh"),
-};
-
 /// Three axes from the origin, as long as the torus is wide.
 pub static AXES: Lines<'static> = Lines::constant(
     Joined::Pairs,
@@ -73,7 +67,7 @@ pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 #[inline(never)]
 fn torus_lines<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
     scene.draw_with(BEHIND_LINES, &torus::MESH, mvp, &DepthOnly);
-    scene.draw_lines(&TORUS, mvp, &Flat::unlit(Rgb888::new(150, 220, 255)));
+    scene.draw_lines(torus::lines(), mvp, &Flat::unlit(Rgb888::new(150, 220, 255)));
 }
 
 #[inline(never)]
