@@ -107,7 +107,7 @@ fn frame(settings: &Settings, number: u32) -> Result<Vec<u8>, Box<dyn Error>> {
 fn torus<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let nearer = Affine::translation(Vec3::from_milli(0, 0, 500)) * scenes::torus_model(turn);
     let mvp = scenes::camera(scene.screen(), Scalar::from_bits(1 << 15), Scalar::from_bits(12 << 16)) * nearer;
-    scene.draw(&scenes::torus::MESH, &mvp, &Gouraud::new(scenes::light().to_object(&nearer), Rgb888::WHITE));
+    scene.draw(&scenes::torus::MESH, &mvp, &Gouraud::new(scenes::LIGHT.to_object(&nearer), Rgb888::WHITE));
 }
 
 /// What the panel shows, enlarged: rows of dots that are on or off.

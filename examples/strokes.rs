@@ -99,7 +99,7 @@ fn torus(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
 }
 
 fn lines_of_torus(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
-    scene.draw_lines(&wires::TORUS, &input.torus, &Flat::unlit(Rgb888::WHITE));
+    scene.draw_lines(scenes::torus::lines(), &input.torus, &Flat::unlit(Rgb888::WHITE));
 }
 
 /// Name, drawing, rows of a strip, lines.

@@ -346,7 +346,7 @@ fn scenes_may_leave_out_what_is_not_visible() {
                     left_out += 1;
                     continue;
                 }
-                scene.draw(torus, &mvp, &Gouraud::new(scenes::light(), Rgb888::WHITE));
+                scene.draw(torus, &mvp, &Gouraud::new(scenes::LIGHT, Rgb888::WHITE));
             }
         });
         (picture, left_out)

@@ -94,17 +94,17 @@ fn visible_edges_have_no_gaps_and_hidden_ones_do_not_shine_through() {
             scene.draw_with(wires::BEHIND_LINES, &torus::MESH, &mvp, &DepthOnly);
             // Without depths of their own, so that lines do not hide each other.
             let state = State { depth: DepthState { write: false, ..DepthState::LESS }, ..State::DEFAULT };
-            scene.draw_lines_with(state, &wires::TORUS, &mvp, &shader, &Thin);
+            scene.draw_lines_with(state, torus::lines(), &mvp, &shader, &Thin);
         });
-        let transform = Transform::new(&mvp, &viewport, wires::TORUS.vertices(), false);
-        let place = |k| match transform.place(&wires::TORUS.vertices().data().positions, k) {
+        let transform = Transform::new(&mvp, &viewport, torus::lines().vertices(), false);
+        let place = |k| match transform.place(&torus::lines().vertices().data().positions, k) {
             Placed::Screen(v) => v,
             Placed::Outside(code) => panic!("{code:?}"),
         };
-        let v: Vec<_> = (0..wires::TORUS.vertices().vertex_count()).map(place).collect();
+        let v: Vec<_> = (0..torus::lines().vertices().vertex_count()).map(place).collect();
         let faces = front_faces(&v);
-        for number in 0..wires::TORUS.count() {
-            let [i, j] = wires::TORUS.line(number).expect("a line");
+        for number in 0..torus::lines().count() {
+            let [i, j] = torus::lines().line(number).expect("a line");
             let (a, b) = (v[usize::from(i)], v[usize::from(j)]);
             let line = Line::new((a.x, a.y), (b.x, b.y));
             // Those that could cover a sample near the line.

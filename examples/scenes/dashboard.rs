@@ -33,7 +33,8 @@ pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Ang
     gauge(overlay, Point::new(74, 100), "km/h", speed, 200);
     let power = 47 + wave(turn + Angle(9000), 2, 38);
     gauge(overlay, Point::new(246, 100), "kW", power, 100);
-    overlay.draw(&Image::new(&ImageRawLE::<Rgb565>::new(&WEATHER, WEATHER_SIZE as u32), Point::new(140, 34)));
+    overlay
+        .draw(&Image::new(&ImageRawLE::<Rgb565>::new(const { &picture() }, WEATHER_SIZE as u32), Point::new(140, 34)));
     label(overlay, Point::new(160, 84), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, "19 C");
     plot(overlay, Rectangle::new(Point::new(10, 176), Size::new(186, 54)), turn);
     for (k, (name, color)) in [("cell", GREEN), ("coil", AMBER), ("oil", BLUE)].into_iter().enumerate() {
@@ -163,7 +164,7 @@ fn bar<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, at: Point, name
 const WEATHER_SIZE: usize = 40;
 
 /// The sun behind a cloud, computed by the compiler: each pixel from 16 samples.
-static WEATHER: [u8; WEATHER_SIZE * WEATHER_SIZE * 2] = {
+const fn picture() -> [u8; WEATHER_SIZE * WEATHER_SIZE * 2] {
     let mut bytes = [0; WEATHER_SIZE * WEATHER_SIZE * 2];
     let mut k = 0;
     while k < WEATHER_SIZE * WEATHER_SIZE {
@@ -180,7 +181,7 @@ static WEATHER: [u8; WEATHER_SIZE * WEATHER_SIZE * 2] = {
         k += 1;
     }
     bytes
-};
+}
 
 /// What is at a place of the weather, in eighths of a pixel.
 const fn weather(x: i32, y: i32) -> [i32; 3] {

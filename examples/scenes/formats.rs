@@ -1,14 +1,11 @@
 //! Scenes in formats other than RGB565: dithered ones, and strips packed for panels.
 
-use super::{room, torus_gouraud};
-use core::convert::Infallible;
+use super::{in_place, room, torus_gouraud};
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8};
 use zstrip::fragment::PixelFormat;
 use zstrip::math::Angle;
-use zstrip::output::{
-    Buffers, Dither, Dithered, PackedFormat, Packer, Pages, Renderer, Rgb332, Rgb565Be, Rows, Strip, StripPixels,
-};
+use zstrip::output::{Buffers, Dither, Dithered, PackedFormat, Packer, Pages, Renderer, Rgb332, Rgb565Be, Rows, Strip};
 
 /// Memory for a frame: colours, packed strips and whatever else a pixel takes are in `color`.
 pub struct Memory<'m> {
@@ -50,16 +47,16 @@ pub const FORMATS: &[FormatInfo] = &[
 ];
 
 /// Draws 320×240 pixels of a format.
-fn direct<P: PixelFormat>(memory: Memory<'_>, sink: &mut Sink<'_>, draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>)) {
+fn direct<P: PixelFormat>(memory: Memory<'_>, sink: &mut Sink<'_>, mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>)) {
     let Memory { color, depth, records } = memory;
     let Ok(color) = bytemuck::try_cast_slice_mut(color) else { return };
-    let Ok(mut renderer) = Renderer::<P>::new((320, 240), Buffers { color, depth, records }) else { return };
-    let to_sink = |strip: &StripPixels<'_, P>| {
-        sink(strip.bytes());
-        Ok::<(), Infallible>(())
-    };
+    let mut renderer = in_place(|| Renderer::<P>::new((320, 240), Buffers { color, depth, records }));
+    let Ok(renderer) = &mut renderer else { return };
+    let mut frame = renderer.begin(P::to_color(P::pack([24, 28, 24])));
     // A frame that fails lacks strips, which shows in its hash.
-    let _ = renderer.frame_to(to_sink, P::to_color(P::pack([24, 28, 24])), draw);
+    while let Ok(Some(strip)) = frame.next_strip(&mut draw) {
+        sink(strip.bytes());
+    }
 }
 
 /// Draws the torus in greys and packs them.
@@ -74,11 +71,10 @@ fn packed<F: PackedFormat>(screen: (u16, u16), dither: Dither<F::Color>, memory:
     let (Some(color), Some(depth)) = (color.get_mut(..width * rows), depth.get_mut(..width * rows)) else { return };
     let Ok(mut renderer) = Renderer::<Gray8>::new(screen, Buffers { color, depth, records }) else { return };
     let Ok(mut packer) = Packer::<F>::new(screen, renderer.strip_rows(), dither, bytes) else { return };
-    let to_sink = |strip: &StripPixels<'_, Gray8>| {
-        sink(packer.pack(strip));
-        Ok::<(), Infallible>(())
-    };
-    let _ = renderer.frame_to(to_sink, Gray8::new(26), |scene| torus_gouraud(scene, Angle(0)));
+    let mut frame = renderer.begin(Gray8::new(26));
+    while let Ok(Some(strip)) = frame.next_strip(|scene| torus_gouraud(scene, Angle(0))) {
+        sink(packer.pack(&strip));
+    }
 }
 
 /// FNV-1a 64 of a frame's bytes.

@@ -52,14 +52,32 @@ pub fn horizon<F: Framebuffer>(scene: &mut Scene<'_, F>, pitch: Angle, roll: Ang
     backdrop(&mut canvas, &world);
     ladder(&mut canvas, &world);
     bezel(&mut canvas, &dial);
+    scale(&mut canvas, &dial, roll);
+    pointers(&mut canvas, &dial, roll);
+    wings(&mut canvas, &dial);
+}
+
+/// The angles of roll.
+#[inline(never)]
+fn scale<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angle) {
     for tens in [-60, -45, -30, -20, -10, 10, 20, 30, 45, 60] {
         let mark = dial.turned(Angle::from_degrees(tens) - roll);
         let length = if tens % 30 == 0 { 30 } else { 16 };
         canvas.line_with(mark.at(0, -214), mark.at(0, -214 - length), WHITE, &Smooth::new(500));
     }
+}
+
+/// Where roll is zero, and what points to the scale.
+#[inline(never)]
+fn pointers<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angle) {
     let zero = dial.turned(-roll);
     canvas.polygon(&[zero.at(0, -214), zero.at(-14, -240), zero.at(14, -240)], WHITE);
     canvas.polygon(&[dial.at(0, -210), dial.at(13, -184), dial.at(-13, -184)], YELLOW);
+}
+
+/// The aircraft.
+#[inline(never)]
+fn wings<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial) {
     for side in [-1, 1] {
         let wing = [dial.at(side * 110, 0), dial.at(side * 44, 0), dial.at(side * 44, 20)];
         canvas.polyline(&wing, Rgb888::new(16, 16, 16), &Smooth::new(1500));
@@ -70,6 +88,7 @@ pub fn horizon<F: Framebuffer>(scene: &mut Scene<'_, F>, pitch: Angle, roll: Ang
 }
 
 /// Sky and ground, each from the horizon to far away.
+#[inline(never)]
 fn backdrop<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, world: &Dial) {
     for (side, [far, near]) in [(-1, SKY), (1, [GROUND[1], GROUND[0]])] {
         let (away, end) = (side * 300, side * 2000);
@@ -85,6 +104,7 @@ fn backdrop<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, world: &Dial) {
 }
 
 /// A line every 5 degrees of pitch.
+#[inline(never)]
 fn ladder<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, world: &Dial) {
     for fives in (-18..=18_i32).filter(|fives| *fives != 0) {
         let y = -32 * fives;
@@ -104,6 +124,7 @@ fn ladder<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, world: &Dial) {
 }
 
 /// The panel around the dial, and its rim.
+#[inline(never)]
 fn bezel<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial) {
     const SIDES: u16 = 48;
     let step = |k: u16| {

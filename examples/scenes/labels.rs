@@ -1,6 +1,6 @@
 //! A torus with the axes of its space and with names in that space: text is hidden by what is in front of it.
 
-use super::{TORUS_COLOR, camera, light, torus};
+use super::{LIGHT, TORUS_COLOR, camera, torus};
 use embedded_graphics::mono_font::{MonoTextStyle, MonoTextStyleBuilder, ascii};
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle};
@@ -57,11 +57,11 @@ pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Ang
         * Affine::rotation_y(turn + Angle::from_degrees(35));
     let mvp = camera(scene.screen(), Scalar::ONE, Scalar::ONE * 12) * model;
 
-    scene.draw(&torus::MESH, &mvp, &Gouraud::new(light().to_object(&model), TORUS_COLOR));
+    scene.draw(&torus::MESH, &mvp, &Gouraud::new(LIGHT.to_object(&model), TORUS_COLOR));
     let grow = Affine::scale(Scalar::from_bits((LENGTH << 16) / 1000));
     for (_, _, rotation, color) in axes() {
         let local = rotation * grow;
-        scene.draw(&ARROW, &(mvp * local), &Flat::new(light().to_object(&(model * local)), color));
+        scene.draw(&ARROW, &(mvp * local), &Flat::new(LIGHT.to_object(&(model * local)), color));
     }
 
     let middle = TextStyleBuilder::new().alignment(Alignment::Center).baseline(Baseline::Middle).build();

@@ -11,16 +11,19 @@ const HALF: i32 = 14;
 
 /// A number from 0 to 65,535 for a point of a lattice.
 const fn lattice(x: i32, z: i32) -> i64 {
-    let mut hash = (x as u32).wrapping_mul(0x9E37_79B1) ^ (z as u32).wrapping_mul(0x85EB_CA77);
-    hash = (hash ^ hash >> 15).wrapping_mul(0x2C1B_3C6D);
-    hash = (hash ^ hash >> 12).wrapping_mul(0x297A_2D39);
+    const LOW: u64 = 0xFFFF_FFFF;
+    let mut hash = ((x as u32 as u64 * 0x9E37_79B1) ^ (z as u32 as u64 * 0x85EB_CA77)) & LOW;
+    hash = ((hash ^ (hash >> 15)) * 0x2C1B_3C6D) & LOW;
+    hash = ((hash ^ (hash >> 12)) * 0x297A_2D39) & LOW;
     (hash >> 16) as i64
 }
 
 /// Smooth noise over lattice cells of `size` / 1000, 0 to 65,535.
 const fn noise(x: i32, z: i32, size: i32) -> i64 {
-    let (i, j) = (x.div_euclid(size), z.div_euclid(size));
-    let (s, t) = (smooth(x.rem_euclid(size), size), smooth(z.rem_euclid(size), size));
+    // Rounded down: what is divided is positive.
+    let below = 128;
+    let (i, j) = ((x + below * size) / size - below, (z + below * size) / size - below);
+    let (s, t) = (smooth(x - i * size, size), smooth(z - j * size, size));
     let upper = lattice(i, j) * (65_536 - s) + lattice(i + 1, j) * s;
     let lower = lattice(i, j + 1) * (65_536 - s) + lattice(i + 1, j + 1) * s;
     (upper / 65_536 * (65_536 - t) + lower / 65_536 * t) / 65_536
@@ -52,8 +55,8 @@ struct Ground {
     colors: [[u8; 3]; VERTICES],
 }
 
-/// Heights of all vertices, computed once: the compiler takes its time for noise.
-const HEIGHTS: [i32; VERTICES] = {
+/// Heights of all vertices.
+const fn heights() -> [i32; VERTICES] {
     let mut heights = [0; VERTICES];
     let mut k = 0;
     while k < VERTICES {
@@ -62,29 +65,30 @@ const HEIGHTS: [i32; VERTICES] = {
         k += 1;
     }
     heights
-};
+}
 
 /// The height of a vertex, or of the nearest one where the row or column is out of the ground.
-const fn vertex_height(column: i32, row: i32) -> i32 {
+const fn vertex_height(heights: &[i32; VERTICES], column: i32, row: i32) -> i32 {
     let last = CELLS as i32;
     let column = if column < 0 { 0 } else { column.saturating_sub((column > last) as i32) };
     let row = if row < 0 { 0 } else { row.saturating_sub((row > last) as i32) };
-    HEIGHTS[row as usize * ROW + column as usize]
+    heights[row as usize * ROW + column as usize]
 }
 
-const fn ground() -> Ground {
+const fn vertices() -> Ground {
+    let heights = heights();
     let mut g = Ground { positions: [[0; 3]; VERTICES], normals: [[0; 3]; VERTICES], colors: [[0; 3]; VERTICES] };
     let mut k = 0;
     while k < VERTICES {
         let (x, z) = place(k);
         let (column, row) = ((k % ROW) as i32, (k / ROW) as i32);
-        let y = HEIGHTS[k];
+        let y = heights[k];
         // 16 units are 2¹⁵.
         g.positions[k] = [(x * 2048 / 1000) as i16, (y * 2048 / 1000) as i16, (z * 2048 / 1000) as i16];
         // Over two cells of 500.
         let slope = [
-            vertex_height(column - 1, row) - vertex_height(column + 1, row),
-            vertex_height(column, row - 1) - vertex_height(column, row + 1),
+            vertex_height(&heights, column - 1, row) - vertex_height(&heights, column + 1, row),
+            vertex_height(&heights, column, row - 1) - vertex_height(&heights, column, row + 1),
         ];
         if let Some(n) = Vec3::from_bits([slope[0] << 8, 1000 << 8, slope[1] << 8]).normalized() {
             let n = n.to_bits();
@@ -127,20 +131,23 @@ const fn indices() -> [u16; 4 * CELLS * CELLS] {
     indices
 }
 
-static ALL: Ground = ground();
-static INDICES: [u16; 4 * CELLS * CELLS] = indices();
-
-pub static GROUND: Mesh<'static> = Mesh::constant(MeshData {
-    topology: Topology::Quads,
-    indices: Some(&INDICES),
-    normals: Some(&ALL.normals),
-    colors: Some(&ALL.colors),
-    ..MeshData::new(Positions::Quantized {
-        points: &ALL.positions,
-        scale: Scalar::from_bits(16 << 16),
-        offset: Vec3::ZERO,
-    })
-});
+/// The ground.
+pub fn ground() -> &'static Mesh<'static> {
+    const {
+        let all: &'static Ground = const { &vertices() };
+        &Mesh::constant(MeshData {
+            topology: Topology::Quads,
+            indices: Some(const { &indices() }),
+            normals: Some(&all.normals),
+            colors: Some(&all.colors),
+            ..MeshData::new(Positions::Quantized {
+                points: &all.positions,
+                scale: Scalar::from_bits(16 << 16),
+                offset: Vec3::ZERO,
+            })
+        })
+    }
+}
 
 /// The water.
 pub static LAKE: Mesh<'static> = Mesh::constant(MeshData {
@@ -156,9 +163,11 @@ pub static LAKE: Mesh<'static> = Mesh::constant(MeshData {
 const PINES: usize = 56;
 
 /// Where pines stand: on grass.
-pub static TREES: [Vec3; PINES] = trees();
+pub fn trees() -> &'static [Vec3; PINES] {
+    const { &places() }
+}
 
-const fn trees() -> [Vec3; PINES] {
+const fn places() -> [Vec3; PINES] {
     let mut trees = [Vec3::ZERO; PINES];
     let (mut tried, mut k) = (0, 0);
     while k < PINES && tried < 1000 {

@@ -1,14 +1,14 @@
 //! Scenes of light: materials under several lights, a landscape in fog, glass and sparks.
 
-use super::{landscape, pot, tiles};
+use super::{UNLIT, in_place, landscape, pot, tiles};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::fragment::{
     AddAlpha, Blend, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud, Matcap, Multiply, Opacity,
     PerFace, PerFragment, PerFragmentNear, PerVertex, PixelFormat, Rgba8888, Shaded, Shader,
 };
 use zstrip::geometry::{
-    Corner, DirectionalLight, Light, Lighting, Material, Mesh, MeshData, PointLight, Positions, Topology, VertexShader,
-    Viewer, sort_back_to_front, view_depth,
+    Corner, DirectionalLight, Light, Lighting, LitMaterial, Material, Mesh, MeshData, PointLight, Positions, Topology,
+    VertexShader, Viewer, sort_back_to_front, view_depth,
 };
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::{Cull, Framebuffer, Scene, State};
@@ -26,10 +26,49 @@ pub enum Shading {
 
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
-/// A camera at `eye` that looks at `target`, and its view transform.
-fn look(screen: (u16, u16), eye: Vec3, target: Vec3, near: Scalar, far: Scalar) -> (Projective, Affine) {
-    let camera = Projective::perspective(Angle::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
-    (camera, Affine::look_at(eye, target, Vec3::Y).unwrap_or(Affine::IDENTITY))
+// Out of line, as in `super`: what matrices, lights and materials are made of is not on the stack while something is drawn.
+
+/// The transform to eye space of an eye that looks at `target`.
+const fn look(eye: Vec3, target: Vec3) -> Affine {
+    match Affine::look_at(eye, target, Vec3::Y) {
+        Ok(view) => view,
+        Err(_) => Affine::IDENTITY,
+    }
+}
+
+/// The numbers of a camera's matrix that are not always the same: a quarter of the matrix.
+#[derive(Clone, Copy)]
+struct Lens {
+    x: i64,
+    y: i64,
+    z: [i64; 2],
+}
+
+impl Lens {
+    #[inline(never)]
+    fn new(screen: (u16, u16), near: Scalar, far: Scalar) -> Self {
+        let camera =
+            Projective::perspective(Angle::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
+        let [[x, ..], [_, y, ..], [.., z, w], _] = camera.to_rows();
+        Self { x, y, z: [z, w] }
+    }
+
+    /// For things that are a few units away.
+    fn close(screen: (u16, u16)) -> Self {
+        Self::new(screen, Scalar::ONE, Scalar::from_bits(16 << 16))
+    }
+
+    /// Eye space → clip space.
+    fn camera(&self) -> Projective {
+        let [z, w] = self.z;
+        Projective::from_rows([[self.x, 0, 0, 0], [0, self.y, 0, 0], [0, 0, z, w], [0, 0, -1 << 32, 0]])
+    }
+
+    /// Takes what a matrix brings to eye space to clip space.
+    #[inline(never)]
+    fn seen(&self, model: impl FnOnce() -> Affine) -> Projective {
+        self.camera().compose_affine(&model())
+    }
 }
 
 /// A point on a circle about the y axis, radius and height in thousandths.
@@ -38,16 +77,32 @@ fn on_circle(angle: Angle, radius: i32, height: i32) -> Vec3 {
     Vec3::from_milli(along(angle.cos()), height, along(angle.sin()))
 }
 
+/// World → eye space by night.
+static BY_NIGHT: Affine = look(Vec3::from_milli(0, 1750, 4300), Vec3::from_milli(120, 180, 0));
+
 /// A glazed pot on a tiled table, under the moon and two lamps.
 pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Shading) {
-    let (near, far) = (Scalar::ONE, Scalar::from_bits(16 << 16));
-    let (camera, view) =
-        look(scene.screen(), Vec3::from_milli(0, 1750, 4300), Vec3::from_milli(120, 180, 0), near, far);
+    draw_backdrop(scene, &NIGHT);
+    table(scene, &BY_NIGHT, || {
+        let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
+        night(turn).on(&of_tiles(wood), &table_model(&BY_NIGHT), tiles::MESH.bounds())
+    });
+    match shading {
+        Shading::PerFace => pot(scene, turn, || Shaded::new(PerFace, glaze(turn))),
+        Shading::PerVertex => pot(scene, turn, || Shaded::new(PerVertex, glaze(turn))),
+        Shading::PerFragment => pot(scene, turn, || Shaded::new(PerFragment, sunlit_glaze(turn))),
+        Shading::PerFragmentNear => pot(scene, turn, || Shaded::new(PerFragmentNear, glaze(turn))),
+        Shading::Matcap => pot(scene, turn, || Matcap::<Rgb888, 64>::new(ball(), &pot_model(turn))),
+    }
+}
+
+/// The moon and the lamps, in eye space.
+fn night(turn: Angle) -> Lighting<1, 2> {
     let lamp = |angle: Angle, radius: i32, height: i32, color: Rgb888, range: i32| {
-        PointLight::new(view * on_circle(angle, radius, height), color, Scalar::from_bits(range << 16))
+        PointLight::new(BY_NIGHT * on_circle(angle, radius, height), color, Scalar::from_bits(range << 16))
     };
-    let moon = view.transform_vector(Vec3::from_ints(-3, 5, 4));
-    let lighting = Lighting {
+    let moon = BY_NIGHT.transform_vector(Vec3::from_ints(-3, 5, 4));
+    Lighting {
         ambient: [34, 34, 52],
         directional: [DirectionalLight::new(moon, Rgb888::new(120, 130, 165))],
         points: [
@@ -55,55 +110,45 @@ pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Sha
             lamp(-turn - turn + Angle::from_degrees(160), 1700, 150, Rgb888::new(40, 130, 255), 4),
         ],
         viewer: Viewer::At(Vec3::ZERO),
-    };
-
-    draw_backdrop(scene, &NIGHT);
-    let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
-    table(scene, &camera, &view, &lighting, &wood);
-    glazed_pot(scene, turn, &camera, &view, lighting, shading);
-}
-
-#[inline(never)]
-fn glazed_pot<F: Framebuffer>(
-    scene: &mut Scene<'_, F>,
-    turn: Angle,
-    camera: &Projective,
-    view: &Affine,
-    lighting: Lighting<1, 2>,
-    shading: Shading,
-) {
-    let model = *view * Affine::rotation_y(turn + Angle::from_degrees(-25));
-    let glaze =
-        Material { two_sided: true, ..Material::glossy(Rgb888::new(200, 60, 50), Rgb888::new(230, 220, 210), 64) };
-    let (mvp, bounds) = (camera.compose_affine(&model), pot::MESH.bounds());
-    let lit = lighting.on(&glaze, &model, bounds);
-    match shading {
-        Shading::PerFace => scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerFace, lit)),
-        Shading::PerVertex => scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerVertex, lit)),
-        Shading::PerFragment => {
-            let Lighting { ambient, directional: [moon], .. } = lighting;
-            let sun = DirectionalLight { color: [235, 225, 210], ..moon };
-            let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
-            scene.draw_with(
-                BOTH_SIDES,
-                &pot::MESH,
-                &mvp,
-                &Shaded::new(PerFragment, lighting.on(&glaze, &model, bounds)),
-            );
-        }
-        Shading::PerFragmentNear => {
-            scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Shaded::new(PerFragmentNear, lit));
-        }
-        Shading::Matcap => {
-            scene.draw_with(BOTH_SIDES, &pot::MESH, &mvp, &Matcap::<Rgb888, 64>::new(&BALL, &model));
-        }
     }
 }
 
-/// A picture of a ball of polished copper in front of a horizon.
-static BALL: [[[u8; 3]; 64]; 64] = ball();
+/// Where the glazed pot is, in eye space.
+fn pot_model(turn: Angle) -> Affine {
+    BY_NIGHT * Affine::rotation_y(turn + Angle::from_degrees(-25))
+}
 
-const fn ball() -> [[[u8; 3]; 64]; 64] {
+/// What the pot is covered with.
+fn glazed() -> Material {
+    Material { two_sided: true, ..Material::glossy(Rgb888::new(200, 60, 50), Rgb888::new(230, 220, 210), 64) }
+}
+
+/// The glaze under the night's lights.
+fn glaze(turn: Angle) -> LitMaterial<1, 2> {
+    night(turn).on(&glazed(), &pot_model(turn), pot::mesh().bounds())
+}
+
+/// The glaze under a sun where the moon is.
+fn sunlit_glaze(turn: Angle) -> LitMaterial<1, 0> {
+    let Lighting { ambient, directional: [moon], .. } = night(turn);
+    let sun = DirectionalLight { color: [235, 225, 210], ..moon };
+    let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
+    lighting.on(&glazed(), &pot_model(turn), pot::mesh().bounds())
+}
+
+/// The pot by a shader.
+#[inline(never)]
+fn pot<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, turn: Angle, shader: impl FnOnce() -> S) {
+    let mvp = in_place(|| Lens::close(scene.screen()).seen(|| pot_model(turn)));
+    scene.draw_with(BOTH_SIDES, pot::mesh(), &mvp, &in_place(shader));
+}
+
+/// A picture of a ball of polished copper in front of a horizon.
+fn ball() -> &'static [[[u8; 3]; 64]; 64] {
+    const { &picture() }
+}
+
+const fn picture() -> [[[u8; 3]; 64]; 64] {
     let mut picture = [[[0; 3]; 64]; 64];
     let mut k = 0;
     while k < 4096 {
@@ -135,16 +180,9 @@ const fn capped(v: i32) -> u8 {
 const MIST_NEAR: Scalar = Scalar::from_bits(1 << 14);
 const MIST_FAR: Scalar = Scalar::from_bits(28 << 16);
 
-static MIST: FogTable = mist(FogCurve::ExponentialSquared { density: Scalar::from_bits(5800) });
-static HAZE: FogTable = mist(FogCurve::Exponential { density: Scalar::from_bits(3600) });
-static BANK: FogTable = mist(FogCurve::Linear { start: Scalar::from_bits(4 << 16), end: Scalar::from_bits(19 << 16) });
-
-const fn mist(curve: FogCurve) -> FogTable {
-    match FogTable::perspective(MIST_NEAR, MIST_FAR, curve) {
-        Ok(table) => table,
-        Err(_) => panic!("near and far"),
-    }
-}
+/// Where a linear fog starts, and where nothing is left.
+const MIST_START: Scalar = Scalar::from_bits(4 << 16);
+const MIST_END: Scalar = Scalar::from_bits(19 << 16);
 
 /// How the fog thickens.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -154,31 +192,67 @@ pub enum Mist {
     Linear,
 }
 
+impl Mist {
+    fn table(self) -> &'static FogTable {
+        match self {
+            Self::Squared => const { &mist(FogCurve::ExponentialSquared { density: Scalar::from_bits(5800) }) },
+            Self::Exponential => const { &mist(FogCurve::Exponential { density: Scalar::from_bits(3600) }) },
+            Self::Linear => const { &mist(FogCurve::Linear { start: MIST_START, end: MIST_END }) },
+        }
+    }
+}
+
+const fn mist(curve: FogCurve) -> FogTable {
+    match FogTable::perspective(MIST_NEAR, MIST_FAR, curve) {
+        Ok(table) => table,
+        Err(_) => panic!("near and far"),
+    }
+}
+
 /// The colour of the fog.
 const MORNING: Rgb888 = Rgb888::new(214, 196, 188);
 
+/// The sun behind it.
+const SUN: Light = Light::from_channels(Vec3::from_milli(-800, 420, 300), [250, 205, 160], [78, 84, 108]);
+
 /// A hilly landscape with a lake in the morning fog, seen from a bird's round flight.
 pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, mist: Mist) {
-    let fog = match mist {
-        Mist::Squared => &MIST,
-        Mist::Exponential => &HAZE,
-        Mist::Linear => &BANK,
-    };
+    let fog = mist.table();
+    draw_backdrop(scene, &SKY);
+    let (lens, view) = (Lens::new(scene.screen(), MIST_NEAR, MIST_FAR), flight(turn));
+    hills(scene, &lens, &view, fog);
+    pines(scene, &lens, &view, fog);
+    lake(scene, &lens, &view, fog);
+}
+
+/// World → the bird's eye space.
+#[inline(never)]
+fn flight(turn: Angle) -> Affine {
     let [x, _, z] = on_circle(turn + Angle::from_degrees(76), 8200, 0).to_bits().map(|c| c / 66);
     // Above what is below, and above the hills on the way to the middle.
     let ground = (4..=8).fold(900, |highest, k| landscape::height(x * k / 8, z * k / 8).max(highest));
     let eye = Vec3::from_milli(x, ground + 1400, z);
-    let ahead = on_circle(turn + Angle::from_degrees(176), 3300, 700);
-    let (camera, view) = look(scene.screen(), eye, ahead, MIST_NEAR, MIST_FAR);
-    let mvp = camera * view;
+    look(eye, on_circle(turn + Angle::from_degrees(176), 3300, 700))
+}
 
-    draw_backdrop(scene, &SKY);
-    let sun = Light::new(Vec3::from_milli(-800, 420, 300), Rgb888::new(250, 205, 160), Rgb888::new(78, 84, 108));
-    scene.draw(&landscape::GROUND, &mvp, &Fogged::new(Gouraud::colors(sun), fog, MORNING));
-    for tree in &landscape::TREES {
-        let model = Affine::translation(*tree);
-        scene.draw(&landscape::PINE, &(mvp * model), &Fogged::new(Flat::colors(sun), fog, MORNING));
+#[inline(never)]
+fn hills<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
+    let mvp = lens.seen(|| *view);
+    scene.draw(landscape::ground(), &mvp, &Fogged::new(Gouraud::colors(SUN), fog, MORNING));
+}
+
+#[inline(never)]
+fn pines<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
+    let shader = Fogged::new(Flat::colors(SUN), fog, MORNING);
+    for tree in landscape::trees() {
+        let mvp = in_place(|| lens.seen(|| *view).compose_affine(&Affine::translation(*tree)));
+        scene.draw(&landscape::PINE, &mvp, &shader);
     }
+}
+
+#[inline(never)]
+fn lake<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
+    let mvp = lens.seen(|| *view);
     let water = Fogged::new(Flat::unlit(Rgb888::new(96, 130, 158)), fog, MORNING);
     scene.draw_with(GLASS, &landscape::LAKE, &mvp, &Blend::new(water, Opacity(165)));
 }
@@ -207,9 +281,11 @@ static NIGHT: Mesh<'static> = backdrop!([6, 8, 22], [44, 34, 66], 180);
 static STUDIO: Mesh<'static> = backdrop!([38, 40, 66], [150, 132, 140], 60);
 
 /// Behind all else.
+#[inline(never)]
 fn draw_backdrop<F: Framebuffer>(scene: &mut Scene<'_, F>, mesh: &Mesh<'_>) {
+    static SCREEN: Projective = Projective::IDENTITY;
     let state = State { depth: DepthState::OFF, cull: Cull::None, ..State::DEFAULT };
-    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+    scene.draw_with(state, mesh, &SCREEN, &UNLIT);
 }
 
 /// Transparent things: tested against depth, seen from both sides, leaving no depth.
@@ -232,115 +308,135 @@ const PANES: [Rgb888; 4] =
 
 const SPARKS: usize = 48;
 
+/// World → eye space of the glass.
+static BY_DAY: Affine = look(Vec3::from_milli(0, 1500, 4700), Vec3::from_milli(0, 330, 0));
+
 /// A glass pot on a lit table, between coloured panes, and a fountain of sparks.
 pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let (near, far) = (Scalar::ONE, Scalar::from_bits(16 << 16));
-    let (camera, view) = look(scene.screen(), Vec3::from_milli(0, 1500, 4700), Vec3::from_milli(0, 330, 0), near, far);
-    let lamp =
-        PointLight::new(view * Vec3::from_milli(0, 1300, 0), Rgb888::new(255, 200, 120), Scalar::from_bits(5 << 16));
-    let lighting = Lighting {
-        ambient: [46, 46, 66],
-        directional: [DirectionalLight::new(
-            view.transform_vector(Vec3::from_ints(-3, 5, 4)),
-            Rgb888::new(90, 95, 115),
-        )],
-        points: [lamp],
-        viewer: Viewer::At(Vec3::ZERO),
-    };
-
     // 1. What is opaque.
     draw_backdrop(scene, &STUDIO);
-    table(scene, &camera, &view, &lighting, &Material::matte(Rgb888::new(215, 210, 200)));
+    table(scene, &BY_DAY, || {
+        let cloth = Material::matte(Rgb888::new(215, 210, 200));
+        day().on(&of_tiles(cloth), &table_model(&BY_DAY), tiles::MESH.bounds())
+    });
     // 2. What is transparent, from back to front.
-    panes_and_pot(scene, turn, &camera, &view, &lighting);
-    // 3. What is added.
-    sparks(scene, turn, &camera, &view);
-}
-
-// Each in a function of its own: what it is made of is on the stack only while it is drawn.
-
-/// The table, of a material whose colours are the tiles' own.
-#[inline(never)]
-fn table<F: Framebuffer, const P: usize>(
-    scene: &mut Scene<'_, F>,
-    camera: &Projective,
-    view: &Affine,
-    lighting: &Lighting<1, P>,
-    wood: &Material,
-) {
-    let model = *view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0));
-    let wood = Material { vertex_colors: true, ..*wood };
-    let shader = Shaded::new(PerFragmentNear, lighting.on(&wood, &model, tiles::MESH.bounds()));
-    scene.draw(&tiles::MESH, &camera.compose_affine(&model), &shader);
-}
-
-/// The panes around the pot, and the pot, the last number.
-#[inline(never)]
-fn panes_and_pot<F: Framebuffer>(
-    scene: &mut Scene<'_, F>,
-    turn: Angle,
-    camera: &Projective,
-    view: &Affine,
-    lighting: &Lighting<1, 1>,
-) {
-    let model = |k: u16| {
-        if usize::from(k) == PANES.len() {
-            return *view * Affine::rotation_y(turn);
-        }
-        let angle = turn + Angle(k * 16_384);
-        *view * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle(0x4000) - angle)
-    };
-    let mut order = [0, 1, 2, 3, 4];
-    sort_back_to_front(&mut order, |k| view_depth(&camera.compose_affine(&model(k)), PANE.bounds()));
-    for k in order {
-        let model = model(k);
+    for k in back_to_front(scene.screen(), turn) {
         match PANES.get(usize::from(k)) {
-            Some(color) => pane(scene, &camera.compose_affine(&model), *color),
+            Some(color) => pane(scene, turn, k, *color),
             None => {
-                let mvp = camera.compose_affine(&model);
-                glass_pot(scene, &mvp, &model, lighting);
-                shine(scene, &mvp, &model, lighting);
+                glass_pot(scene, turn);
+                shine(scene, turn);
             }
         }
     }
+    // 3. What is added.
+    sparks(scene, turn);
+}
+
+/// Daylight and the lamp over the pot, in eye space.
+fn day() -> Lighting<1, 1> {
+    let (sky, lamp) = (Rgb888::new(90, 95, 115), Rgb888::new(255, 200, 120));
+    Lighting {
+        ambient: [46, 46, 66],
+        directional: [DirectionalLight::new(BY_DAY.transform_vector(Vec3::from_ints(-3, 5, 4)), sky)],
+        points: [PointLight::new(BY_DAY * Vec3::from_milli(0, 1300, 0), lamp, Scalar::from_bits(5 << 16))],
+        viewer: Viewer::At(Vec3::ZERO),
+    }
+}
+
+/// Object space of the table → eye space.
+fn table_model(view: &Affine) -> Affine {
+    *view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0))
+}
+
+/// A material whose colours are the tiles' own.
+fn of_tiles(material: Material) -> Material {
+    Material { vertex_colors: true, ..material }
+}
+
+/// The table, of a material under its lights.
+#[inline(never)]
+fn table<F: Framebuffer, const P: usize>(
+    scene: &mut Scene<'_, F>,
+    view: &Affine,
+    wood: impl FnOnce() -> LitMaterial<1, P>,
+) {
+    let mvp = in_place(|| Lens::close(scene.screen()).seen(|| table_model(view)));
+    scene.draw(&tiles::MESH, &mvp, &in_place(|| Shaded::new(PerFragmentNear, wood())));
+}
+
+/// Where a pane is, or the pot, the last number, in eye space.
+fn glass_model(turn: Angle, k: u16) -> Affine {
+    if usize::from(k) == PANES.len() {
+        return BY_DAY * Affine::rotation_y(turn);
+    }
+    let angle = turn + Angle(k * 16_384);
+    BY_DAY * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle(0x4000) - angle)
+}
+
+/// The order of the panes and the pot.
+#[inline(never)]
+fn back_to_front(screen: (u16, u16), turn: Angle) -> [u16; 5] {
+    let lens = Lens::close(screen);
+    let mut order = [0, 1, 2, 3, 4];
+    sort_back_to_front(&mut order, |k| view_depth(&lens.seen(|| glass_model(turn, k)), PANE.bounds()));
+    order
 }
 
 #[inline(never)]
-fn pane<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, color: Rgb888) {
-    scene.draw_with(GLASS, &PANE, mvp, &Blend::new(Flat::unlit(color), Multiply));
+fn pane<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, k: u16, color: Rgb888) {
+    let mvp = in_place(|| Lens::close(scene.screen()).seen(|| glass_model(turn, k)));
+    scene.draw_with(GLASS, &PANE, &mvp, &Blend::new(Flat::unlit(color), Multiply));
 }
 
 #[inline(never)]
-fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, camera: &Projective, view: &Affine) {
+fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let lens = Lens::close(scene.screen());
     for k in 0..SPARKS {
         let age = (turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16)) >> 6;
-        let billboard = Affine::translation(*view * spark(k, i32::from(age)));
+        let mvp = lens.seen(|| Affine::translation(BY_DAY * spark(k, i32::from(age))));
         let ember = Ember { left: 1023 - i32::from(age) };
-        scene.draw_with(GLASS, &GLOW, &camera.compose_affine(&billboard), &Blend::new(ember, AddAlpha));
+        scene.draw_with(GLASS, &GLOW, &mvp, &Blend::new(ember, AddAlpha));
     }
+}
+
+/// The pot, of a material under the day's lights.
+fn lit_pot(turn: Angle, material: &Material) -> LitMaterial<1, 1> {
+    day().on(material, &glass_model(turn, PANES.len() as u16), pot::mesh().bounds())
+}
+
+/// Object space of the pot → clip space.
+#[inline(never)]
+fn pot_seen(screen: (u16, u16), turn: Angle) -> Projective {
+    Lens::close(screen).seen(|| glass_model(turn, PANES.len() as u16))
 }
 
 /// A pot of glass: its inner side and its outer side.
 #[inline(never)]
-fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, model: &Affine, lighting: &Lighting<1, 1>) {
-    let bounds = pot::MESH.bounds();
-    let body = Material { two_sided: true, ..Material::matte(Rgb888::new(150, 205, 200)) };
-    let shader = Blend::new(Shaded::new(PerVertex, lighting.on(&body, model, bounds)), Opacity(70));
+fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = pot_seen(scene.screen(), turn);
+    let shader = in_place(|| {
+        let body = Material { two_sided: true, ..Material::matte(Rgb888::new(150, 205, 200)) };
+        Blend::new(Shaded::new(PerVertex, lit_pot(turn, &body)), Opacity(70))
+    });
     for cull in [Cull::Front, Cull::Back] {
-        scene.draw_with(State { cull, ..GLASS }, &pot::MESH, mvp, &shader);
+        scene.draw_with(State { cull, ..GLASS }, pot::mesh(), &mvp, &shader);
     }
 }
 
 /// Highlights that no transparency dims.
 #[inline(never)]
-fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective, model: &Affine, lighting: &Lighting<1, 1>) {
-    let gloss = Material {
-        ambient: [0; 3],
-        diffuse: [0; 3],
-        ..Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48)
-    };
-    let shine = Shaded::new(PerFragmentNear, lighting.on(&gloss, model, pot::MESH.bounds()));
-    scene.draw_with(State { cull: Cull::Back, ..GLASS }, &pot::MESH, mvp, &Blend::new(shine, zstrip::fragment::Add));
+fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = pot_seen(scene.screen(), turn);
+    let shader = in_place(|| {
+        let gloss = Material {
+            ambient: [0; 3],
+            diffuse: [0; 3],
+            ..Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48)
+        };
+        Blend::new(Shaded::new(PerFragmentNear, lit_pot(turn, &gloss)), zstrip::fragment::Add)
+    });
+    scene.draw_with(State { cull: Cull::Back, ..GLASS }, pot::mesh(), &mvp, &shader);
 }
 
 /// Where a spark is, `age` of 1024 steps after it left the lid: a throw in its own direction.

@@ -1,6 +1,7 @@
 //! Scenes that the examples, the firmware and the tests share: the same geometry, and so the same picture, everywhere.
 //!
-//! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash.
+//! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash. Those that take
+//! it long are behind functions, with constants of their own: they are computed for the programs that draw them.
 #![allow(dead_code)] // each program uses its part
 #![allow(long_running_const_eval)] // a landscape is computed
 
@@ -24,7 +25,7 @@ use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Flat, Gouraud, Shader};
 use zstrip::geometry::Light;
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, FrameError, Renderer, Stats, Strip, StripPixels};
+use zstrip::output::{Buffers, Renderer, Stats, Strip};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// Something to draw.
@@ -87,19 +88,33 @@ pub const SCENES: &[SceneInfo] = &{
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
 
+// What is on the stack while something is drawn is there in addition to all that drawing takes: a matrix has 128 bytes. So
+// matrices and lights are made in functions that are never inlined, and what they are made of is gone when they are used.
+
+/// A call that is not inlined: its result is made where it is to be.
+#[inline(never)]
+fn in_place<T>(make: impl FnOnce() -> T) -> T {
+    make()
+}
+
 /// A camera with a vertical field of view of 60 degrees.
+#[inline(never)]
 pub fn camera((width, height): (u16, u16), near: Scalar, far: Scalar) -> Projective {
     Projective::perspective(Angle::from_degrees(60), (width, height), near, far).unwrap_or(Projective::IDENTITY)
 }
 
-fn standard_camera<F: Framebuffer>(scene: &Scene<'_, F>) -> Projective {
-    camera(scene.screen(), Scalar::ONE, Scalar::from_bits(12 << 16))
+/// Object space → clip space: the camera of most scenes, and what it is multiplied by.
+#[inline(never)]
+fn seen(screen: (u16, u16), times: impl FnOnce(Projective) -> Projective) -> Projective {
+    times(camera(screen, Scalar::ONE, Scalar::from_bits(12 << 16)))
 }
 
 /// White light from the upper right, behind the viewer, beside a dim ambient one; in eye space.
-pub fn light() -> Light {
-    Light::new(Vec3::from_milli(400, 700, 600), Rgb888::new(217, 217, 217), Rgb888::new(38, 38, 38))
-}
+pub const LIGHT: Light = Light::from_channels(Vec3::from_milli(400, 700, 600), [217; 3], [38; 3]);
+
+/// Colours of the mesh under [`LIGHT`], as they are in flat triangles, and without any light.
+static LIT: Flat = Flat::colors(LIGHT);
+static UNLIT: Gouraud = Gouraud::colors_unlit();
 
 /// Where the torus is: tumbling, since a turn about its axis would not show.
 pub fn torus_model(turn: Angle) -> Affine {
@@ -115,9 +130,8 @@ pub fn torus_with<F: Framebuffer, S: Shader<F::Format>>(
     turn: Angle,
     shader: impl FnOnce(Light) -> S,
 ) {
-    let model = torus_model(turn);
-    let mvp = standard_camera(scene) * model;
-    scene.draw(&torus::MESH, &mvp, &shader(light().to_object(&model)));
+    let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
+    scene.draw(&torus::MESH, &mvp, &in_place(|| shader(LIGHT.to_object(&torus_model(turn)))));
 }
 
 /// Orange.
@@ -133,6 +147,7 @@ pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 
 /// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view. It
 /// looks to and fro, by 40 degrees.
+#[inline(never)]
 pub fn room_camera(screen: (u16, u16), turn: Angle) -> Projective {
     let eye = Vec3::from_milli(-1500, 300, 1500);
     let sway = Angle((turn.sin().to_bits() / 9) as u16);
@@ -140,76 +155,108 @@ pub fn room_camera(screen: (u16, u16), turn: Angle) -> Projective {
     camera(screen, Scalar::from_bits(1 << 13), Scalar::from_bits(16 << 16)) * view
 }
 
+/// Takes what a model matrix brings into the room to clip space.
+#[inline(never)]
+fn in_room(screen: (u16, u16), turn: Angle, model: impl FnOnce() -> Affine) -> Projective {
+    room_camera(screen, turn) * model()
+}
+
 /// A room seen from inside, with a chequered floor, a pillar and a torus of half its size.
 pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    walls(scene, turn);
+    pillar(scene, turn);
+    ring(scene, turn);
+}
+
+#[inline(never)]
+fn walls<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let mvp = room_camera(scene.screen(), turn);
-    scene.draw(&polygons::ROOM, &mvp, &Gouraud::colors_unlit());
-    scene.draw(&polygons::FLOOR, &mvp, &Flat::colors(light()));
-    let pillar = Affine::translation(Vec3::from_milli(800, 0, -600));
-    scene.draw(&polygons::PILLAR, &(mvp * pillar), &Flat::colors(light()));
-    let ring = Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
-    scene.draw(
-        &torus::MESH,
-        &(mvp * (ring * Affine::scale(Scalar::from_bits(1 << 15)))),
-        &Gouraud::new(light().to_object(&ring), Rgb888::new(90, 200, 120)),
-    );
+    scene.draw(&polygons::ROOM, &mvp, &UNLIT);
+    scene.draw(&polygons::FLOOR, &mvp, &LIT);
+}
+
+#[inline(never)]
+fn pillar<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let mvp = in_room(scene.screen(), turn, || Affine::translation(Vec3::from_milli(800, 0, -600)));
+    scene.draw(&polygons::PILLAR, &mvp, &LIT);
+}
+
+#[inline(never)]
+fn ring<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+    let model = || Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
+    let mvp = in_room(scene.screen(), turn, || model() * Affine::scale(Scalar::from_bits(1 << 15)));
+    let shader = in_place(|| Gouraud::new(LIGHT.to_object(&model()), Rgb888::new(90, 200, 120)));
+    scene.draw(&torus::MESH, &mvp, &shader);
 }
 
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
 /// Three squares through one another.
 pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene)
-        * Affine::translation(Vec3::from_ints(0, 0, -3))
-        * Affine::rotation_x(Angle::from_degrees(40))
-        * Affine::rotation_y(turn + Angle::from_degrees(25));
-    scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &mvp, &Flat::colors(light()));
+    let mvp = seen(scene.screen(), |camera| {
+        camera
+            * Affine::translation(Vec3::from_ints(0, 0, -3))
+            * Affine::rotation_x(Angle::from_degrees(40))
+            * Affine::rotation_y(turn + Angle::from_degrees(25))
+    });
+    scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &mvp, &LIT);
 }
 
 /// Random triangles of all sizes around the eye.
 pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene) * Affine::rotation_y(turn);
-    scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &Gouraud::colors_unlit());
+    let mvp = seen(scene.screen(), |camera| camera * Affine::rotation_y(turn));
+    scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &UNLIT);
+}
+
+/// [`seen`] so far away, turned on the screen.
+fn turned_at(screen: (u16, u16), distance: i16, turn: Angle) -> Projective {
+    seen(screen, |camera| camera * Affine::translation(Vec3::from_ints(0, 0, -distance)) * Affine::rotation_z(turn))
 }
 
 /// Triangles whose vertices are up to 30,000 px outside of the screen.
 pub fn far<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -4)) * Affine::rotation_z(turn);
-    scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &Gouraud::colors_unlit());
+    let mvp = turned_at(scene.screen(), 4, turn);
+    scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &UNLIT);
 }
 
 /// Triangles in clip space, cut by the near plane or with vertices behind the eye.
 pub fn near<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = Projective::from(Affine::rotation_z(turn));
-    scene.draw_with(BOTH_SIDES, &soup::NEAR, &mvp, &Gouraud::colors_unlit());
+    scene.draw_with(BOTH_SIDES, &soup::NEAR, &turned(turn), &UNLIT);
+}
+
+#[inline(never)]
+fn turned(turn: Angle) -> Projective {
+    Projective::from(Affine::rotation_z(turn))
 }
 
 /// Many triangles of about 2 px.
 pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -4)) * Affine::rotation_z(turn);
-    scene.draw_with(BOTH_SIDES, &soup::TINY, &mvp, &Flat::colors(light()));
+    let mvp = turned_at(scene.screen(), 4, turn);
+    scene.draw_with(BOTH_SIDES, soup::tiny(), &mvp, &LIT);
 }
 
 /// Three planks that each cover the next one: no order of drawing is right, only depth is.
 pub fn cycle<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(turn);
-    scene.draw(&polygons::CYCLE, &mvp, &Gouraud::colors_unlit());
+    let mvp = turned_at(scene.screen(), 3, turn);
+    scene.draw(&polygons::CYCLE, &mvp, &UNLIT);
 }
 
 /// Long triangles thinner than a pixel.
 pub fn slivers<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene) * Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(turn);
-    scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &Gouraud::colors_unlit());
+    let mvp = turned_at(scene.screen(), 3, turn);
+    scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &UNLIT);
 }
 
 /// A grid, a strip, a fan and quads side by side.
 pub fn field<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene)
-        * Affine::translation(Vec3::from_ints(0, 0, -3))
-        * Affine::rotation_x(Angle::from_degrees(-20))
-        * Affine::rotation_z(turn);
+    let mvp = seen(scene.screen(), |camera| {
+        camera
+            * Affine::translation(Vec3::from_ints(0, 0, -3))
+            * Affine::rotation_x(Angle::from_degrees(-20))
+            * Affine::rotation_z(turn)
+    });
     for mesh in [&polygons::GRID, &polygons::STRIP, &polygons::FAN, &polygons::QUADS] {
-        scene.draw_with(BOTH_SIDES, mesh, &mvp, &Gouraud::colors_unlit());
+        scene.draw_with(BOTH_SIDES, mesh, &mvp, &UNLIT);
     }
 }
 
@@ -255,20 +302,18 @@ pub fn frame(
     color: &mut [u16],
     depth: &mut [u16],
     records: &mut [u32],
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
+    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
     sink: &mut impl FnMut(usize, &[u16]),
 ) -> Stats {
-    let Ok(mut renderer) = Renderer::<Rgb565>::new((width as u16, height as u16), Buffers { color, depth, records })
-    else {
-        return Stats::default();
-    };
-    let to_sink = |strip: &StripPixels<'_, Rgb565>| {
-        sink(strip.area().top_left.y as usize, strip.pixels());
-        Ok::<(), core::convert::Infallible>(())
-    };
-    match renderer.frame_to(to_sink, BACKGROUND, draw) {
-        Ok(stats) => stats,
-        Err(FrameError::Sink(never)) => match never {},
-        Err(FrameError::SceneChanged(_)) => Stats::default(),
+    let screen = (width as u16, height as u16);
+    let mut renderer = in_place(|| Renderer::<Rgb565>::new(screen, Buffers { color, depth, records }));
+    let Ok(renderer) = &mut renderer else { return Stats::default() };
+    let mut frame = renderer.begin(BACKGROUND);
+    loop {
+        match frame.next_strip(&mut draw) {
+            Ok(Some(strip)) => sink(strip.area().top_left.y as usize, strip.pixels()),
+            Ok(None) => return frame.stats(),
+            Err(_) => return Stats::default(),
+        }
     }
 }

@@ -1,13 +1,14 @@
 //! 2-D drawing among meshes with what the crate itself brings: areas and pixels, at depths and on top, without fonts or shapes.
 
-use super::{light, standard_camera, torus, torus_model};
+use super::{seen, torus_model, torus_with};
+use core::ops::Range;
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
 use zstrip::embedded_graphics_core::geometry::{Dimensions, Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{PixelColor, Rgb565, Rgb888};
 use zstrip::embedded_graphics_core::primitives::{PointsIter, Rectangle};
 use zstrip::embedded_graphics_core::{Drawable, Pixel};
 use zstrip::fragment::{Compare, DepthState, Gouraud};
-use zstrip::math::{Angle, Vec3};
+use zstrip::math::{Angle, Projective, Vec3};
 use zstrip::{Framebuffer, Scene};
 
 /// A square of 16 × 16 pixels around a point.
@@ -41,26 +42,39 @@ impl<C: PixelColor> Drawable for Marker<C> {
 
 /// Draws a turning torus with markers around it, some of them behind it, and a ramp of colours below.
 pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let model = torus_model(turn);
-    let mvp = standard_camera(scene) * model;
-    for k in 0..24_u16 {
-        let angle = Angle(k * 2731);
-        let [x, y] = [angle.sin(), angle.cos()].map(|v| v.to_bits() / 64 * 104);
-        let Some(place) = scene.project(Vec3::from_bits([x, 0, y]), &mvp) else { continue };
-        let color = Rgb565::new(8 + k as u8, 60 - 2 * k as u8, 28);
-        let marker = Marker { center: place.pixel(), color, stippled: k % 3 == 0 };
-        match k % 4 {
-            0 => scene.overlay().draw(&marker),
-            1 => {
-                let state = DepthState { compare: Compare::GreaterEqual, write: false };
-                scene.at_depth_with(place.z, state).draw(&marker);
-            }
-            _ => scene.at_depth(place.z).draw(&marker),
-        }
-        if k == 12 {
-            scene.draw(&torus::MESH, &mvp, &Gouraud::new(light().to_object(&model), Rgb888::new(200, 90, 160)));
-        }
+    markers(scene, turn, 0..13);
+    torus_with(scene, turn, |light| Gouraud::new(light, Rgb888::new(200, 90, 160)));
+    markers(scene, turn, 13..24);
+    ramp(scene);
+}
+
+#[inline(never)]
+fn markers<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle, range: Range<u16>) {
+    let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
+    for k in range {
+        marker(scene, &mvp, k);
     }
+}
+
+#[inline(never)]
+fn marker<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, mvp: &Projective, k: u16) {
+    let angle = Angle(k * 2731);
+    let [x, y] = [angle.sin(), angle.cos()].map(|v| v.to_bits() / 64 * 104);
+    let Some(place) = scene.project(Vec3::from_bits([x, 0, y]), mvp) else { return };
+    let color = Rgb565::new(8 + k as u8, 60 - 2 * k as u8, 28);
+    let marker = Marker { center: place.pixel(), color, stippled: k.is_multiple_of(3) };
+    match k % 4 {
+        0 => scene.overlay().draw(&marker),
+        1 => {
+            let state = DepthState { compare: Compare::GreaterEqual, write: false };
+            scene.at_depth_with(place.z, state).draw(&marker);
+        }
+        _ => scene.at_depth(place.z).draw(&marker),
+    }
+}
+
+#[inline(never)]
+fn ramp<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>) {
     let ramp = Rectangle::new(Point::new(-20, 226), Size::new(360, 24));
     let colors = (0..360 * 24).map(|k: u32| Rgb565::new((k % 360 / 12) as u8, (k / 360 * 2) as u8, 9));
     let Ok(()) = scene.at_depth(0x8000).fill_contiguous(&ramp, colors);

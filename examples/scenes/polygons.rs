@@ -170,8 +170,8 @@ pub static CYCLE: Mesh<'static> = Mesh::constant(MeshData {
     ..MeshData::new(Positions::Exact(&CYCLE_POSITIONS))
 });
 
-const CYCLE_POSITIONS: [Vec3; 12] = planks();
-const CYCLE_COLORS: [Rgb; 12] = {
+static CYCLE_POSITIONS: [Vec3; 12] = planks();
+static CYCLE_COLORS: [Rgb; 12] = {
     let mut colors = [[0; 3]; 12];
     let mut k = 0;
     while k < 12 {

@@ -157,17 +157,19 @@ const fn indices() -> [u16; 4 * QUADS] {
     indices
 }
 
-static ALL: Vertices = vertices();
-static INDICES: [u16; 4 * QUADS] = indices();
-
 /// The pot, its axis along y; 1.05 is its largest radius.
-pub static MESH: Mesh<'static> = Mesh::constant(MeshData {
-    topology: Topology::Quads,
-    indices: Some(&INDICES),
-    normals: Some(&ALL.normals),
-    ..MeshData::new(Positions::Quantized {
-        points: &ALL.positions,
-        scale: Scalar::from_bits(SCALE),
-        offset: Vec3::ZERO,
-    })
-});
+pub fn mesh() -> &'static Mesh<'static> {
+    const {
+        let all: &'static Vertices = const { &vertices() };
+        &Mesh::constant(MeshData {
+            topology: Topology::Quads,
+            indices: Some(const { &indices() }),
+            normals: Some(&all.normals),
+            ..MeshData::new(Positions::Quantized {
+                points: &all.positions,
+                scale: Scalar::from_bits(SCALE),
+                offset: Vec3::ZERO,
+            })
+        })
+    }
+}

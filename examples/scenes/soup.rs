@@ -90,8 +90,12 @@ const fn flat_giants() -> [Vec3; FAR_CORNERS] {
 const TINY_CORNERS: usize = 3 * 1500;
 
 /// Triangles of about 2 px: 0.04 units at distance 4.
-pub static TINY: Mesh<'static> =
-    list(&around::<TINY_CORNERS>(5, [-2900, -2200, -1000], [2900, 2200, 1000], [10, 40]), &colors::<TINY_CORNERS>(6));
+pub fn tiny() -> &'static Mesh<'static> {
+    const {
+        let corners = const { &around::<TINY_CORNERS>(5, [-2900, -2200, -1000], [2900, 2200, 1000], [10, 40]) };
+        &list(corners, const { &colors::<TINY_CORNERS>(6) })
+    }
+}
 
 const SLIVER_CORNERS: usize = 3 * 100;
 

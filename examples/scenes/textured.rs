@@ -1,6 +1,6 @@
 //! Textures in perspective: wooden crates on a tiled floor, behind a fence of holes.
 
-use super::{camera, light};
+use super::{LIGHT, camera, in_place};
 use zstrip::fragment::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Textured, Tile};
 use zstrip::geometry::{Mesh, MeshData, NORMAL_ONE, Positions, Topology};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
@@ -106,7 +106,7 @@ const fn slab(x: usize, y: usize) -> [usize; 3] {
     }
 }
 
-static FLOOR: [u8; FLOOR_BYTES] = {
+const fn floor_bytes() -> [u8; FLOOR_BYTES] {
     let mut bytes = [0; FLOOR_BYTES];
     let mut at = 0;
     let mut level = 0;
@@ -130,25 +130,28 @@ static FLOOR: [u8; FLOOR_BYTES] = {
         level += 1;
     }
     bytes
-};
+}
 
 type Level = Image<'static, Rgb565Texel>;
 
 /// The floor's mip chain.
-pub static FLOOR_LEVELS: [Level; LEVELS] = {
-    let mut levels = [level(0, 64); LEVELS];
-    let (mut at, mut side, mut k) = (0, TILES, 0);
-    while k < LEVELS {
-        levels[k] = level(at, side);
-        at += 2 * side * side;
-        side /= 2;
-        k += 1;
+pub fn floor_levels() -> &'static [Level; LEVELS] {
+    const {
+        let bytes: &'static [u8; FLOOR_BYTES] = const { &floor_bytes() };
+        let mut levels = [level(bytes, 0, 64); LEVELS];
+        let (mut at, mut side, mut k) = (0, TILES, 0);
+        while k < LEVELS {
+            levels[k] = level(bytes, at, side);
+            at += 2 * side * side;
+            side /= 2;
+            k += 1;
+        }
+        &{ levels }
     }
-    levels
-};
+}
 
-const fn level(at: usize, side: usize) -> Level {
-    let (_, rest) = FLOOR.split_at(at);
+const fn level(bytes: &'static [u8; FLOOR_BYTES], at: usize, side: usize) -> Level {
+    let (_, rest) = bytes.split_at(at);
     let (bytes, _) = rest.split_at(2 * side * side);
     match Image::new(bytes, (side as u16, side as u16), Rgb565Texel) {
         Ok(image) => image,
@@ -233,21 +236,43 @@ fn around(turn: Angle) -> Affine {
         * Affine::rotation_y(turn)
 }
 
-fn lens(screen: (u16, u16)) -> Projective {
-    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16))
+/// Takes what a model matrix brings into the world to clip space.
+#[inline(never)]
+fn seen(screen: (u16, u16), turn: Angle) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * around(turn)
+}
+
+#[inline(never)]
+fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
+    let floor = if mips { Textured::mipmapped(floor_levels()).ok() } else { None };
+    let floor = floor.unwrap_or(Textured::new(&floor_levels()[0]));
+    scene.draw(&GROUND, &seen(scene.screen(), turn), &floor.wrap(Repeat).filter(filter));
+}
+
+/// Where the crates are, in thousandths, and how they are turned, in degrees.
+const CRATES: [[i32; 4]; 3] = [[-700, 500, 0, 20], [650, 500, -400, -35], [-100, 1500, -150, 50]];
+
+/// Object space of a crate → eye space.
+fn crate_model(turn: Angle, [x, y, z, degrees]: [i32; 4]) -> Affine {
+    around(turn) * Affine::translation(Vec3::from_milli(x, y, z)) * Affine::rotation_y(Angle::from_degrees(degrees))
+}
+
+#[inline(never)]
+fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, place: [i32; 4], filter: G) {
+    let wood = in_place(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.to_object(&crate_model(turn, place))));
+    scene.draw(&CRATE, &crate_seen(scene.screen(), turn, place), &wood);
+}
+
+/// Object space of a crate → clip space.
+#[inline(never)]
+fn crate_seen(screen: (u16, u16), turn: Angle, place: [i32; 4]) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * crate_model(turn, place)
 }
 
 fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
-    let (lens, around) = (lens(scene.screen()), around(turn));
-    let floor = if mips { Textured::mipmapped(&FLOOR_LEVELS).ok() } else { None };
-    let floor = floor.unwrap_or(Textured::new(&FLOOR_LEVELS[0]));
-    scene.draw(&GROUND, &(lens * around), &floor.wrap(Repeat).filter(filter));
-    let crates = [(-700, 500, 0, 20), (650, 500, -400, -35), (-100, 1500, -150, 50)];
-    for (x, y, z, degrees) in crates {
-        let place = Affine::translation(Vec3::from_milli(x, y, z));
-        let model = around * place * Affine::rotation_y(Angle::from_degrees(degrees));
-        let wood = Textured::new(&WOODEN).filter(filter).lit(light().to_object(&model));
-        scene.draw(&CRATE, &(lens * model), &wood);
+    floor(scene, turn, mips, filter);
+    for place in CRATES {
+        one_crate(scene, turn, place, filter);
     }
 }
 
@@ -262,18 +287,27 @@ pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, look: Look)
 }
 
 /// A fence behind the crates, seen from both sides.
+#[inline(never)]
 fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let Ok(wire) = Image::new(&WIRE, (16, 16), MaskTexel([150, 160, 170])) else { return };
     let state = State { cull: Cull::None, ..State::DEFAULT };
-    let model = Affine::translation(Vec3::from_milli(0, 0, 1300));
-    scene.draw_with(state, &FENCE, &(lens(scene.screen()) * around(turn) * model), &Textured::new(&wire));
+    scene.draw_with(state, &FENCE, &fence_seen(scene.screen(), turn), &Textured::new(&wire));
+}
+
+#[inline(never)]
+fn fence_seen(screen: (u16, u16), turn: Angle) -> Projective {
+    seen(screen, turn) * Affine::translation(Vec3::from_milli(0, 0, 1300))
 }
 
 /// A crate so close that perspective is strong, and some of it before the near plane.
 pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let lens = camera(scene.screen(), Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16));
-    let model = Affine::translation(Vec3::from_milli(0, 0, -1250))
-        * Affine::rotation_x(Angle::from_degrees(25))
-        * Affine::rotation_y(turn);
-    scene.draw(&CRATE, &(lens * model), &Textured::new(&WOODEN));
+    scene.draw(&CRATE, &close_seen(scene.screen(), turn), &Textured::new(&WOODEN));
+}
+
+#[inline(never)]
+fn close_seen(screen: (u16, u16), turn: Angle) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16))
+        * (Affine::translation(Vec3::from_milli(0, 0, -1250))
+            * Affine::rotation_x(Angle::from_degrees(25))
+            * Affine::rotation_y(turn))
 }

@@ -1,6 +1,6 @@
 //! A torus: radii 1 and 0.4, 32 × 16 quads, axis y.
 
-use zstrip::geometry::{Mesh, MeshData, Positions, Topology, edges};
+use zstrip::geometry::{Lines, Mesh, MeshData, Positions, Topology, edges};
 use zstrip::math::{Angle, Scalar, Vec3};
 
 const AROUND: usize = 32;
@@ -89,7 +89,7 @@ const fn quads() -> [u16; 4 * VERTICES] {
 const fn find_edges() -> [[u16; 2]; 2 * VERTICES] {
     let mut found = [[0; 2]; 2 * VERTICES];
     let mut room = [[0; 2]; 4 * VERTICES];
-    match edges(&QUADS, &mut room) {
+    match edges(quad_mesh(), &mut room) {
         Ok(edges) => {
             assert!(edges.len() == found.len(), "each vertex has four edges, each edge two");
             found.copy_from_slice(edges);
@@ -131,10 +131,10 @@ const fn minus(a: [i32; 3], b: [i32; 3]) -> [i32; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
-const POSITIONS: [[i16; 3]; VERTICES] = positions();
-const NORMALS: [[i16; 3]; VERTICES] = normals();
-const INDICES: [u16; 3 * TRIANGLES] = indices();
-const FACE_NORMALS: [[i16; 3]; TRIANGLES] = face_normals();
+static POSITIONS: [[i16; 3]; VERTICES] = positions();
+static NORMALS: [[i16; 3]; VERTICES] = normals();
+static INDICES: [u16; 3 * TRIANGLES] = indices();
+static FACE_NORMALS: [[i16; 3]; TRIANGLES] = face_normals();
 
 pub static MESH: Mesh<'static> = Mesh::constant(MeshData {
     indices: Some(&INDICES),
@@ -147,19 +147,28 @@ pub static MESH: Mesh<'static> = Mesh::constant(MeshData {
     })
 });
 
-const CORNERS: [u16; 4 * VERTICES] = quads();
-
 /// The torus as quads.
-pub static QUADS: Mesh<'static> = Mesh::constant(MeshData {
-    topology: Topology::Quads,
-    indices: Some(&CORNERS),
-    normals: Some(&NORMALS),
-    ..MeshData::new(Positions::Quantized {
-        points: &POSITIONS,
-        scale: Scalar::from_bits(SCALE as i32),
-        offset: Vec3::ZERO,
-    })
-});
+const fn quad_mesh() -> &'static Mesh<'static> {
+    const {
+        &Mesh::constant(MeshData {
+            topology: Topology::Quads,
+            indices: Some(const { &quads() }),
+            normals: Some(&NORMALS),
+            ..MeshData::new(Positions::Quantized {
+                points: &POSITIONS,
+                scale: Scalar::from_bits(SCALE as i32),
+                offset: Vec3::ZERO,
+            })
+        })
+    }
+}
 
 /// Its edges, each once.
-pub static EDGES: [[u16; 2]; 2 * VERTICES] = find_edges();
+pub fn lines() -> &'static Lines<'static> {
+    const {
+        &match Lines::of_mesh(quad_mesh(), const { &find_edges() }) {
+            Ok(lines) => lines,
+            Err(_) => panic!("edges of another mesh"),
+        }
+    }
+}

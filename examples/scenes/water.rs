@@ -1,9 +1,9 @@
 //! Water: waves by a vertex shader, a crate that floats on them.
 
-use super::{camera, light, textured};
+use super::{LIGHT, camera, in_place, textured};
 use zstrip::fragment::{Fragment, PixelFormat, Shader, Textured};
 use zstrip::geometry::{Corner, Mesh, MeshData, Positions, Topology, VertexShader};
-use zstrip::math::{Affine, Angle, Scalar, Vec3};
+use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
 use zstrip::{Framebuffer, Scene};
 
 /// Squares each way, of 1/4 each.
@@ -95,16 +95,40 @@ impl<P: PixelFormat> Shader<P> for Water {
 
 /// Water with waves of a height in tenths, and a crate on it.
 pub fn water<F: Framebuffer>(scene: &mut Scene<'_, F>, time: Angle, tenths: i32) {
-    let lens = camera(scene.screen(), Scalar::from_bits(1 << 14), Scalar::from_bits(16 << 16));
-    let view =
-        lens * (Affine::rotation_x(Angle::from_degrees(24)) * Affine::translation(Vec3::from_milli(0, -1400, -3000)));
     let water = Water { time, height: tenths * 6554 };
-    scene.draw(&SURFACE, &view, &water);
-    // The crate goes up and down with the water, and leans with its slopes.
+    surface(scene, &water);
+    floating(scene, water);
+}
+
+/// World → clip space.
+#[inline(never)]
+fn above(screen: (u16, u16)) -> Projective {
+    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(16 << 16))
+        * (Affine::rotation_x(Angle::from_degrees(24)) * Affine::translation(Vec3::from_milli(0, -1400, -3000)))
+}
+
+#[inline(never)]
+fn surface<F: Framebuffer>(scene: &mut Scene<'_, F>, water: &Water) {
+    scene.draw(&SURFACE, &above(scene.screen()), water);
+}
+
+/// The crate goes up and down with the water, and leans with its slopes.
+fn crate_model(water: Water) -> Affine {
     let (height, along_x, along_z) = water.wave(0, 0);
     let leaning = Affine::rotation_z(Angle((along_x / 8) as u16)) * Affine::rotation_x(Angle((along_z / -8) as u16));
-    let model = Affine::translation(Vec3::from_bits([0, height + (1 << 14), 0]))
+    Affine::translation(Vec3::from_bits([0, height + (1 << 14), 0]))
         * leaning
-        * Affine::rotation_y(Angle::from_degrees(30));
-    scene.draw(&textured::CRATE, &(view * model), &Textured::new(&textured::WOODEN).lit(light().to_object(&model)));
+        * Affine::rotation_y(Angle::from_degrees(30))
+}
+
+/// Object space of the crate → clip space.
+#[inline(never)]
+fn crate_seen(screen: (u16, u16), water: Water) -> Projective {
+    above(screen) * crate_model(water)
+}
+
+#[inline(never)]
+fn floating<F: Framebuffer>(scene: &mut Scene<'_, F>, water: Water) {
+    let wood = in_place(|| Textured::new(&textured::WOODEN).lit(LIGHT.to_object(&crate_model(water))));
+    scene.draw(&textured::CRATE, &crate_seen(scene.screen(), water), &wood);
 }

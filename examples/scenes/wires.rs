@@ -1,16 +1,10 @@
 //! Lines and points in space: a wireframe with its hidden lines removed, axes, a cloud of points.
 
-use super::{Rgb888, standard_camera, torus, torus_model};
+use super::{Rgb888, seen, torus, torus_model};
 use zstrip::fragment::{Compare, DepthBias, DepthOnly, DepthState, Flat, Gouraud};
 use zstrip::geometry::{Joined, Lines, MeshData, Points, Positions};
-use zstrip::math::{Angle, Scalar, Vec3};
+use zstrip::math::{Angle, Projective, Scalar, Vec3};
 use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thick};
-
-/// The edges of the torus.
-pub static TORUS: Lines<'static> = match Lines::of_mesh(&torus::QUADS, &torus::EDGES) {
-    Ok(lines) => lines,
-    Err(_) => panic!("edges of another mesh"),
-};
 
 /// Three axes from the origin, as long as the torus is wide.
 pub static AXES: Lines<'static> = Lines::constant(
@@ -62,12 +56,37 @@ const HIDDEN: State = State { depth: DepthState { compare: Compare::Greater, wri
 
 /// The torus as a wireframe, with hidden lines removed.
 pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = standard_camera(scene) * torus_model(turn);
-    scene.draw_with(BEHIND_LINES, &torus::MESH, &mvp, &DepthOnly);
-    scene.draw_lines(&TORUS, &mvp, &Flat::unlit(Rgb888::new(150, 220, 255)));
-    scene.draw_lines_with(State::DEFAULT, &AXES, &mvp, &Gouraud::colors_unlit(), &Thick::px(2));
-    scene.draw_lines_with(HIDDEN, &AXES, &mvp, &Flat::colors_unlit(), &Dashed::EVEN);
+    let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
+    torus_lines(scene, &mvp);
+    axes(scene, &mvp);
+    hidden_axes(scene, &mvp);
+    spiral_points(scene, &mvp);
+    thread(scene, &mvp);
+}
+
+#[inline(never)]
+fn torus_lines<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
+    scene.draw_with(BEHIND_LINES, &torus::MESH, mvp, &DepthOnly);
+    scene.draw_lines(torus::lines(), mvp, &Flat::unlit(Rgb888::new(150, 220, 255)));
+}
+
+#[inline(never)]
+fn axes<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
+    scene.draw_lines_with(State::DEFAULT, &AXES, mvp, &Gouraud::colors_unlit(), &Thick::px(2));
+}
+
+#[inline(never)]
+fn hidden_axes<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
+    scene.draw_lines_with(HIDDEN, &AXES, mvp, &Flat::colors_unlit(), &Dashed::EVEN);
+}
+
+#[inline(never)]
+fn spiral_points<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
+    scene.draw_points(State::DEFAULT, &SPIRAL, mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), 3 << 8);
+}
+
+#[inline(never)]
+fn thread<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
     let blended = State { depth: DepthState { compare: Compare::Less, write: false }, ..State::DEFAULT };
-    scene.draw_points(State::DEFAULT, &SPIRAL, &mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), 3 << 8);
-    scene.draw_lines_with(blended, &THREAD, &mvp, &Flat::unlit(Rgb888::new(255, 120, 60)), &Smooth::px(1));
+    scene.draw_lines_with(blended, &THREAD, mvp, &Flat::unlit(Rgb888::new(255, 120, 60)), &Smooth::px(1));
 }

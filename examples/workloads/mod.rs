@@ -18,7 +18,7 @@ use zstrip::fragment::{
 };
 use zstrip::geometry::{Corner, Face, Light, Mesh, MeshData, Positions, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, Renderer, RendererError, Stats, Strip, StripPixels};
+use zstrip::output::{Buffers, Renderer, RendererError, Stats, Strip};
 use zstrip::{Scene, State};
 
 pub const WIDTH: usize = 320;
@@ -86,18 +86,16 @@ fn frame(
 
 /// Buffers that do not hold a row draw nothing.
 fn frame_by<const RECORDS: bool>(
-    renderer: Result<Renderer<'_, Rgb565, true, RECORDS>, RendererError>,
+    mut renderer: Result<Renderer<'_, Rgb565, true, RECORDS>, RendererError>,
     mut sink: impl FnMut(&[u16]),
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, true, RECORDS>>),
+    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, true, RECORDS>>),
 ) -> Stats {
-    let Ok(mut renderer) = renderer else {
-        return Stats::default();
-    };
-    let to_sink = |strip: &StripPixels<'_, Rgb565>| {
+    let Ok(renderer) = &mut renderer else { return Stats::default() };
+    let mut frame = renderer.begin(BACKGROUND);
+    while let Ok(Some(strip)) = frame.next_strip(&mut draw) {
         sink(strip.pixels());
-        Ok::<(), core::convert::Infallible>(())
-    };
-    renderer.frame_to(to_sink, BACKGROUND, draw).unwrap_or_default()
+    }
+    frame.stats()
 }
 
 #[inline(never)]
@@ -157,7 +155,7 @@ pub fn gouraud_torus(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16]))
 #[inline(never)]
 pub fn tiny(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
     let shader = FaceColors(Flat::unlit(Rgb888::new(0, 0, 0)));
-    frame(buffers, &mut sink, &mut |scene| scene.draw(&TINY, &IN_VIEW, &shader))
+    frame(buffers, &mut sink, &mut |scene| scene.draw(tiny_mesh(), &IN_VIEW, &shader))
 }
 
 /// The compiler makes it: 128-bit arithmetic stays out of the firmware.
@@ -450,27 +448,41 @@ const MODEL: Affine = {
     Affine::from_rows(vector(x), vector(y), vector([-zx, -zy, -zz]), vector([0.0, 0.0, -DISTANCE]))
 };
 
-pub static TORUS_POSITIONS: [[f64; 3]; VERTICES] = torus().0;
-pub static TORUS_NORMALS: [[f64; 3]; VERTICES] = torus().1;
-pub static TORUS_INDICES: [u16; 3 * TRIANGLES] = torus_faces().0;
+static TORUS_VERTICES: [[[f64; 3]; VERTICES]; 2] = torus();
+static TORUS_FACES: ([u16; 3 * TRIANGLES], [[f64; 3]; TRIANGLES]) = torus_faces();
+pub static TORUS_POSITIONS: &[[f64; 3]; VERTICES] = &TORUS_VERTICES[0];
+pub static TORUS_NORMALS: &[[f64; 3]; VERTICES] = &TORUS_VERTICES[1];
+pub static TORUS_INDICES: &[u16; 3 * TRIANGLES] = &TORUS_FACES.0;
 /// Pointing outwards.
-pub static TORUS_FACE_NORMALS: [[f64; 3]; TRIANGLES] = torus_faces().1;
+pub static TORUS_FACE_NORMALS: &[[f64; 3]; TRIANGLES] = &TORUS_FACES.1;
 
-/// Positions and normals.
-const fn torus() -> ([[f64; 3]; VERTICES], [[f64; 3]; VERTICES]) {
-    let mut positions = [[0.0; 3]; VERTICES];
-    let mut normals = [[0.0; 3]; VERTICES];
+/// Sines and cosines of so many steps of a turn.
+const fn circle<const N: usize>() -> [(f64, f64); N] {
+    let mut circle = [(0.0, 0.0); N];
     let turn = 2.0 * core::f64::consts::PI;
     let mut k = 0;
+    while k < N {
+        circle[k] = sin_cos(turn * k as f64 / N as f64);
+        k += 1;
+    }
+    circle
+}
+
+/// Positions and normals.
+const fn torus() -> [[[f64; 3]; VERTICES]; 2] {
+    let mut positions = [[0.0; 3]; VERTICES];
+    let mut normals = [[0.0; 3]; VERTICES];
+    let (around, across) = (circle::<AROUND>(), circle::<ACROSS>());
+    let mut k = 0;
     while k < VERTICES {
-        let (su, cu) = sin_cos(turn * (k / ACROSS) as f64 / AROUND as f64);
-        let (sv, cv) = sin_cos(turn * (k % ACROSS) as f64 / ACROSS as f64);
+        let (su, cu) = around[k / ACROSS];
+        let (sv, cv) = across[k % ACROSS];
         let ring = 1.0 + 0.4 * cv;
         positions[k] = [ring * cu, 0.4 * sv, ring * su];
         normals[k] = [cv * cu, sv, cv * su];
         k += 1;
     }
-    (positions, normals)
+    [positions, normals]
 }
 
 /// Indices and face normals: the cross product of a front face's edges points inwards, as space is left-handed.
@@ -522,9 +534,9 @@ const fn to_normals<const N: usize>(normals: &[[f64; 3]; N]) -> [[i16; 3]; N] {
 }
 
 pub static TORUS: Mesh<'static> = Mesh::constant(MeshData {
-    indices: Some(&TORUS_INDICES),
-    normals: Some(&to_normals(&TORUS_NORMALS)),
-    face_normals: Some(&to_normals(&TORUS_FACE_NORMALS)),
+    indices: Some(TORUS_INDICES),
+    normals: Some(&to_normals(TORUS_NORMALS)),
+    face_normals: Some(&to_normals(TORUS_FACE_NORMALS)),
     ..MeshData::new(quantities(&TORUS_POINTS, [0.0; 3], TORUS_HALF))
 });
 
@@ -572,7 +584,7 @@ const TINY_HALF: f64 = 6.25;
 
 type Tiny = ([[i16; 3]; 3 * TINY_TRIANGLES], [[u8; 3]; 3 * TINY_TRIANGLES]);
 
-static TINY_DATA: Tiny = {
+const fn tiny_corners() -> Tiny {
     let mut points = [[0; 3]; 3 * TINY_TRIANGLES];
     let mut colors = [[0; 3]; 3 * TINY_TRIANGLES];
     let mut state = TINY_SEED;
@@ -589,9 +601,12 @@ static TINY_DATA: Tiny = {
         k += 1;
     }
     (points, colors)
-};
+}
 
-pub static TINY: Mesh<'static> = Mesh::constant(MeshData {
-    colors: Some(&TINY_DATA.1),
-    ..MeshData::new(quantities(&TINY_DATA.0, TINY_MIDDLE, TINY_HALF))
-});
+/// Computed for programs that draw it: 30,000 vertices take the compiler a while.
+fn tiny_mesh() -> &'static Mesh<'static> {
+    const {
+        let (points, colors) = const { &tiny_corners() };
+        &Mesh::constant(MeshData { colors: Some(colors), ..MeshData::new(quantities(points, TINY_MIDDLE, TINY_HALF)) })
+    }
+}

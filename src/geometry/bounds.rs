@@ -53,49 +53,19 @@ pub struct BoundsNode {
     pub triangles: u16,
 }
 
-/// Smallest and largest corner of the points seen so far, in 64-bit raw 16.16: any sum below is exact.
-#[derive(Clone, Copy)]
-pub(super) struct Extent {
-    min: [i64; 3],
-    max: [i64; 3],
-}
-
-impl Extent {
-    pub(super) const fn empty() -> Self {
-        Self { min: [i64::MAX; 3], max: [i64::MIN; 3] }
+/// The box between two corners, in 64-bit raw 16.16, its half size rounded up.
+pub(super) const fn bounding_box(min: [i64; 3], max: [i64; 3]) -> BoundingBox {
+    let mut center = [0; 3];
+    let mut half = [0; 3];
+    let mut k = 0;
+    while k < 3 {
+        center[k] = clamp_bits((min[k] + max[k]) >> 1);
+        // The centre may have been clamped or rounded: cover both ends from where it is.
+        let (up, down) = (max[k] - center[k] as i64, center[k] as i64 - min[k]);
+        half[k] = clamp_bits(if up > down { up } else { down });
+        k += 1;
     }
-
-    pub(super) const fn with(mut self, point: [i64; 3]) -> Self {
-        let mut k = 0;
-        while k < 3 {
-            if point[k] < self.min[k] {
-                self.min[k] = point[k];
-            }
-            if point[k] > self.max[k] {
-                self.max[k] = point[k];
-            }
-            k += 1;
-        }
-        self
-    }
-
-    /// The box, its half size rounded up; a point at the origin when nothing was added.
-    pub(super) const fn aabb(&self) -> BoundingBox {
-        let mut center = [0; 3];
-        let mut half = [0; 3];
-        let mut k = 0;
-        while k < 3 {
-            if self.min[k] <= self.max[k] {
-                let middle = (self.min[k] + self.max[k]) >> 1;
-                center[k] = clamp_bits(middle);
-                // The centre may have been clamped or rounded: cover both ends from where it is.
-                let (up, down) = (self.max[k] - center[k] as i64, center[k] as i64 - self.min[k]);
-                half[k] = clamp_bits(if up > down { up } else { down });
-            }
-            k += 1;
-        }
-        BoundingBox { center: Vec3::from_bits(center), half: Vec3::from_bits(half) }
-    }
+    BoundingBox { center: Vec3::from_bits(center), half: Vec3::from_bits(half) }
 }
 
 const fn clamp_bits(value: i64) -> i32 {
@@ -108,23 +78,13 @@ const fn clamp_bits(value: i64) -> i32 {
     }
 }
 
-/// Squared distance of `point` from `center`, both raw 16.16.
-pub(super) const fn distance_squared(point: [i64; 3], center: Vec3) -> u128 {
-    let c = center.to_bits();
-    let mut sum = 0_u128;
-    let mut k = 0;
-    while k < 3 {
-        let d = (point[k] - c[k] as i64).unsigned_abs() as u128;
-        sum += d * d;
-        k += 1;
-    }
-    sum
-}
-
-/// The sphere about `center` whose squared radius is at least `squared`: the radius is rounded up.
+/// The sphere about `center` that reaches a squared distance, in 2⁻⁶², and one unit of 16.16 more, for positions that are
+/// rounded; a point for 0.
 pub(super) const fn sphere(center: Vec3, squared: u128) -> BoundingSphere {
-    let root = squared.isqrt();
-    let radius = if root * root < squared { root + 1 } else { root };
+    let radius = match squared {
+        0 => 0,
+        _ => (squared.isqrt() >> 15) + 2,
+    };
     let radius = if radius > i32::MAX as u128 { i32::MAX } else { radius as i32 };
     BoundingSphere { center, radius: Scalar::from_bits(radius) }
 }

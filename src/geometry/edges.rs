@@ -105,49 +105,66 @@ const fn get(list: &[[u16; 2]], at: usize) -> [u16; 2] {
     if at < list.len() { list[at] } else { [0; 2] }
 }
 
-const fn swap(list: &mut [[u16; 2]], a: usize, b: usize) {
-    let (at_a, at_b) = (get(list, a), get(list, b));
-    if a < list.len() && b < list.len() {
-        (list[a], list[b]) = (at_b, at_a);
-    }
-}
-
 /// Sorts the first `count` entries and leaves out what is there twice: how many are left.
 ///
 /// # Source
 /// Williams 1964, "Heapsort": in place, and fast for any order.
 const fn each_once(list: &mut [[u16; 2]], count: usize) -> usize {
-    let mut start = count / 2;
-    let mut end = count;
+    let list = if count < list.len() { list.split_at_mut(count).0 } else { list };
+    let mut root = list.len() / 2;
+    while root > 0 {
+        root -= 1;
+        let item = list[root];
+        sink(list, root, item);
+    }
+    let mut end = list.len();
     while end > 1 {
-        if start > 0 {
-            start -= 1;
-        } else {
-            end -= 1;
-            swap(list, 0, end);
-        }
-        let mut root = start;
-        while 2 * root + 1 < end {
-            let mut child = 2 * root + 1;
-            if child + 1 < end && key(get(list, child)) < key(get(list, child + 1)) {
-                child += 1;
-            }
-            if key(get(list, root)) >= key(get(list, child)) {
-                break;
-            }
-            swap(list, root, child);
-            root = child;
+        end -= 1;
+        let (heap, rest) = list.split_at_mut(end);
+        if let ([greatest, ..], [last, ..]) = (&*heap, rest) {
+            let item = *last;
+            *last = *greatest;
+            sink(heap, 0, item);
         }
     }
     let (mut kept, mut at) = (0, 0);
-    while at < count {
-        if kept == 0 || key(get(list, kept - 1)) != key(get(list, at)) {
-            swap(list, kept, at);
+    while at < list.len() {
+        if kept == 0 || key(list[kept - 1]) != key(list[at]) {
+            list[kept] = list[at];
             kept += 1;
         }
         at += 1;
     }
     kept
+}
+
+/// Puts an item into a heap, at `root` or below, where those below are in order.
+///
+/// The compiler runs it for edges in flash, step by step: the loop does little.
+const fn sink(heap: &mut [[u16; 2]], mut root: usize, item: [u16; 2]) {
+    let sunk = key(item);
+    let mut child = 2 * root + 1;
+    while child < heap.len() {
+        let [a, b] = heap[child];
+        let mut greater = (a as u32) << 16 | b as u32;
+        if child + 1 < heap.len() {
+            let [a, b] = heap[child + 1];
+            let right = (a as u32) << 16 | b as u32;
+            if greater < right {
+                child += 1;
+                greater = right;
+            }
+        }
+        if sunk >= greater {
+            break;
+        }
+        heap[root] = heap[child];
+        root = child;
+        child = 2 * root + 1;
+    }
+    if root < heap.len() {
+        heap[root] = item;
+    }
 }
 
 #[cfg(test)]

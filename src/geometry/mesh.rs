@@ -3,7 +3,7 @@
 //! After [`Mesh::new`] every index is in range and every attribute is as long as the positions, so that the frame path
 //! needs no error for a mesh.
 
-use super::bounds::{Bounds, BoundsNode, Extent, distance_squared, sphere};
+use super::bounds::{Bounds, BoundsNode, bounding_box, sphere};
 use crate::math::{Scalar, Vec3};
 use core::fmt;
 
@@ -249,7 +249,7 @@ impl<'a> Mesh<'a> {
                 Some(vertex) => return Err(MeshError::Bounds(vertex)),
                 None => bounds,
             },
-            None => find_bounds(&data.positions),
+            None => find_bounds(&data.positions, vertices),
         };
         Ok(Self { data, bounds, triangles: triangles as u16 })
     }
@@ -347,47 +347,56 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// Raw 16.16 coordinates of a vertex, unrounded side outwards: the box of both roundings.
-const fn raw_position(positions: &Positions<'_>, vertex: usize, up: bool) -> [i64; 3] {
+/// Coordinates of a vertex as they are stored.
+const fn stored(positions: &Positions<'_>, vertex: usize) -> [i64; 3] {
     match positions {
-        Positions::Quantized { points, scale, offset } => {
-            let o = offset.to_bits();
-            let mut p = [0; 3];
-            let mut k = 0;
-            while k < 3 {
-                let product = points[vertex][k] as i64 * scale.to_bits() as i64;
-                p[k] = ((product + if up { (1 << 15) - 1 } else { 0 }) >> 15) + o[k] as i64;
-                k += 1;
-            }
-            p
+        Positions::Quantized { points, .. } => {
+            let [x, y, z] = points[vertex];
+            [x as i64, y as i64, z as i64]
         }
         Positions::Exact(points) => {
-            let b = points[vertex].to_bits();
-            [b[0] as i64, b[1] as i64, b[2] as i64]
+            let [x, y, z] = points[vertex].to_bits();
+            [x as i64, y as i64, z as i64]
         }
         Positions::Homogeneous(points) => {
-            let p = points[vertex];
-            [p[0].to_bits() as i64, p[1].to_bits() as i64, p[2].to_bits() as i64]
+            let [x, y, z, _] = points[vertex];
+            [x.to_bits() as i64, y.to_bits() as i64, z.to_bits() as i64]
         }
+    }
+}
+
+/// Stored coordinates times the unit, 2⁻³¹, and the origin, raw 16.16, are the exact position.
+const fn unit_and_origin(positions: &Positions<'_>) -> (i64, [i64; 3]) {
+    match positions {
+        Positions::Quantized { scale, offset, .. } => {
+            let [x, y, z] = offset.to_bits();
+            (scale.to_bits() as i64, [x as i64, y as i64, z as i64])
+        }
+        Positions::Exact(_) | Positions::Homogeneous(_) => (1 << 15, [0; 3]),
     }
 }
 
 /// The first vertex that is not in the box, or not in the sphere, give or take the rounding of quantized positions.
 const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) -> Option<usize> {
+    let (unit, origin) = unit_and_origin(positions);
     let (center, half) = (bounds.aabb.center.to_bits(), bounds.aabb.half.to_bits());
-    let radius = bounds.sphere.radius.to_bits();
+    let (middle, radius) = (bounds.sphere.center.to_bits(), bounds.sphere.radius.to_bits());
     let reach = if radius < 0 { 0 } else { radius as u128 + 2 };
     let mut k = 0;
     while k < vertices {
-        let p = raw_position(positions, k, false);
+        let p = stored(positions, k);
+        let mut squared = 0;
         let mut axis = 0;
         while axis < 3 {
-            if (p[axis] - center[axis] as i64).abs() > half[axis] as i64 + 1 {
+            let at = ((p[axis] * unit) >> 15) + origin[axis];
+            if (at - center[axis] as i64).abs() > half[axis] as i64 + 1 {
                 return Some(k);
             }
+            let away = (at - middle[axis] as i64).unsigned_abs() as u128;
+            squared += away * away;
             axis += 1;
         }
-        if radius != i32::MAX && distance_squared(p, bounds.sphere.center) > reach * reach {
+        if radius != i32::MAX && squared > reach * reach {
             return Some(k);
         }
         k += 1;
@@ -396,32 +405,63 @@ const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) ->
 }
 
 /// Box and sphere of all positions, both about the middle of the box.
-const fn find_bounds(positions: &Positions<'_>) -> Bounds {
-    let vertices = match positions {
-        Positions::Quantized { points, .. } => points.len(),
-        Positions::Exact(points) => points.len(),
-        Positions::Homogeneous(points) => points.len(),
-    };
-    let mut extent = Extent::empty();
-    let mut k = 0;
-    while k < vertices {
-        extent = extent.with(raw_position(positions, k, false)).with(raw_position(positions, k, true));
-        k += 1;
+///
+/// The compiler runs it for `static` meshes of many vertices, step by step: loops over them do little.
+const fn find_bounds(positions: &Positions<'_>, vertices: usize) -> Bounds {
+    if vertices == 0 {
+        return Bounds { aabb: bounding_box([0; 3], [0; 3]), sphere: sphere(Vec3::ZERO, 0) };
     }
-    let aabb = extent.aabb();
-    let mut farthest = 0;
-    let mut k = 0;
+    let (unit, origin) = unit_and_origin(positions);
+    let (mut min, mut max) = (stored(positions, 0), stored(positions, 0));
+    let mut k = 1;
     while k < vertices {
-        let low = distance_squared(raw_position(positions, k, false), aabb.center);
-        let high = distance_squared(raw_position(positions, k, true), aabb.center);
-        // A corner between the two roundings is nearer than one unit more.
-        let d = if low > high { low } else { high };
-        if d > farthest {
-            farthest = d;
+        let [x, y, z] = stored(positions, k);
+        if x < min[0] {
+            min[0] = x;
+        }
+        if x > max[0] {
+            max[0] = x;
+        }
+        if y < min[1] {
+            min[1] = y;
+        }
+        if y > max[1] {
+            max[1] = y;
+        }
+        if z < min[2] {
+            min[2] = z;
+        }
+        if z > max[2] {
+            max[2] = z;
         }
         k += 1;
     }
-    let tight = sphere(aabb.center, farthest);
-    let radius = tight.radius.to_bits().saturating_add(if vertices > 0 { 2 } else { 0 });
-    Bounds { aabb, sphere: super::BoundingSphere { center: aabb.center, radius: Scalar::from_bits(radius) } }
+    // Rounded outwards: quantized positions are rounded wherever they are used.
+    let mut axis = 0;
+    while axis < 3 {
+        min[axis] = ((min[axis] * unit) >> 15) + origin[axis];
+        max[axis] = ((max[axis] * unit + 0x7FFF) >> 15) + origin[axis];
+        axis += 1;
+    }
+    let aabb = bounding_box(min, max);
+    // From the middle, in 2⁻³¹: below 2⁴⁸.
+    let c = aabb.center.to_bits();
+    let unit = unit as i128;
+    let [a, b, c] = [
+        ((origin[0] - c[0] as i64) << 15) as i128,
+        ((origin[1] - c[1] as i64) << 15) as i128,
+        ((origin[2] - c[2] as i64) << 15) as i128,
+    ];
+    let mut farthest = 0;
+    let mut k = 0;
+    while k < vertices {
+        let [x, y, z] = stored(positions, k);
+        let (x, y, z) = (x as i128 * unit + a, y as i128 * unit + b, z as i128 * unit + c);
+        let squared = x * x + y * y + z * z;
+        if squared > farthest {
+            farthest = squared;
+        }
+        k += 1;
+    }
+    Bounds { aabb, sphere: sphere(aabb.center, farthest as u128) }
 }
