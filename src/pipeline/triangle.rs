@@ -19,15 +19,18 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) chosen: &'p Chosen<F, S>,
 }
 
+type Bias = fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32;
+type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode, [u16; 3], usize);
+
 /// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
 pub struct Chosen<F: Framebuffer, S: Shader<F::Format>> {
     /// 9. The spans of a triangle, by a depth test.
     spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings>),
     /// 8. What is added to depths.
-    bias: Option<fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32>,
+    bias: Option<Bias>,
     pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
     /// 4. What is drawn of a clipped triangle before the near and beyond the far plane.
-    pub(super) beyond: Option<fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode, [u16; 3], usize)>,
+    pub(super) beyond: Option<Beyond<F, S>>,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
