@@ -1,5 +1,6 @@
 //! Fills with one value, two or four pixels a word.
 
+use crate::math::SMALL_CORE;
 use bytemuck::Pod;
 
 /// Pixels below which words do not pay.
@@ -52,6 +53,18 @@ fn fill_words<R: Pod>(pixels: &mut [R], value: R, word: u32) {
 /// they are the same, and so keeps each in a register of its own.
 #[inline(never)]
 fn store(a: u32, b: u32, c: u32, d: u32, words: &mut [u32]) {
+    if !SMALL_CORE {
+        let block = [a, b, c, d, a, b, c, d, a, b, c, d, a, b, c, d];
+        if let Some(last) = words.last_chunk_mut::<16>() {
+            // At the end, where it overlaps others: no rest is left.
+            *last = block;
+            for words in words.chunks_exact_mut(16) {
+                let Ok(words) = <&mut [u32; 16]>::try_from(words) else { return };
+                *words = block;
+            }
+            return;
+        }
+    }
     let mut blocks = words.chunks_exact_mut(16);
     for block in &mut blocks {
         let Ok(block) = <&mut [u32; 16]>::try_from(block) else { return };
