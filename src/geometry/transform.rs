@@ -240,7 +240,7 @@ impl Numbers {
     /// Makes a row of the transform, cut by `shift` bits.
     #[inline(never)]
     fn row(&self, row: &[i64; 4], shift: i32, short: bool, to: &mut Row) {
-        to.translation = scale(self.translation(row), shift);
+        *to = Row { entries: [[0; 2]; 4], translation: scale(self.translation(row), shift) };
         for (entry, e) in to.entries.iter_mut().zip(self.entries(row)) {
             // 16 fractional bits: e / 2³¹ · 2¹⁶.
             let e = scale(e, shift + 15);
@@ -303,7 +303,7 @@ impl Transform {
         let shift = excess(&[view.rows.iter().fold(0, |reach, row| reach | numbers.reach(row))], 53);
         let least_w = view.least_w(&mesh.bounds().aabb);
         self.short = numbers.quantized && scale(least_w, shift) >= Self::SHORT_W;
-        self.scale = view.scale - shift;
+        (self.scale, self.uniform) = (view.scale - shift, None);
         for (row, from) in self.rows.iter_mut().zip(&view.rows) {
             numbers.row(from, shift, self.short, row);
         }
