@@ -18,59 +18,53 @@ pub struct Corrected<'a, V: Varyings> {
     steps: &'a Steps<V>,
     /// d q, linear ones, q.
     at: V,
-    /// The same in 64 bits, for triangles that take them: the values are the `base` of planes.
-    wide: V::Correction,
+    /// The pixel: where the planes are taken for triangles that take 64 bits.
+    position: (i32, i32),
 }
 
 impl<'a, V: Varyings> Corrected<'a, V> {
     /// At the first pixel of a span.
     #[inline]
     pub fn new(varyings: V, steps: &'a Steps<V>, position: (i32, i32)) -> Self {
-        let mut wide = steps.correction;
-        if let Some((PerspectiveClass::Wide, w, lanes)) = wide.lanes() {
-            for plane in lanes.iter_mut().map(|lane| &mut lane.plane).chain([w]) {
-                let (x, y) = (i64::from(position.0), i64::from(position.1));
-                plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(x)).wrapping_add(plane.dy.wrapping_mul(y));
-            }
-        }
-        Self { steps, at: varyings, wide }
+        Self { steps, at: varyings, position }
     }
 
     /// Goes on by as many pixels.
     #[inline]
     pub fn advance(&mut self, pixels: i32) {
-        for (value, step) in self.at.as_mut().iter_mut().zip(self.steps.d_dx.as_ref()) {
-            *value = value.wrapping_add(step.wrapping_mul(pixels));
-        }
-        if let Some((PerspectiveClass::Wide, w, lanes)) = self.wide.lanes() {
-            for plane in lanes.iter_mut().map(|lane| &mut lane.plane).chain([w]) {
-                plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(i64::from(pixels)));
-            }
-        }
+        self.at.advance(&self.steps.d_dx, pixels);
+        self.position.0 = self.position.0.wrapping_add(pixels);
     }
 
     /// The varyings here.
     #[inline]
     pub fn varyings(&self) -> V {
         let mut varyings = self.at;
-        let lanes = self.wide.varyings();
-        match self.steps.correction.class() {
-            PerspectiveClass::Affine => correct(varyings.as_mut(), lanes, |h, _| h),
+        self.correct(&mut varyings);
+        varyings
+    }
+
+    /// Puts the varyings here in the place of what is linear.
+    #[inline(never)]
+    fn correct(&self, varyings: &mut V) {
+        let correction = &self.steps.correction;
+        let (lanes, values) = (correction.varyings(), varyings.as_mut());
+        match correction.class() {
+            PerspectiveClass::Affine => correct(values, lanes, |h, _| h),
             PerspectiveClass::Narrow => {
-                let [.., q] = varyings.as_ref() else { return varyings };
-                let q = Divisor::new(*q as u32);
-                correct(varyings.as_mut(), lanes, |dq, _| q.divide(dq));
+                let [.., q] = *values else { return };
+                let q = Divisor::new(q as u32);
+                correct(values, lanes, |dq, _| q.divide(dq));
             }
             PerspectiveClass::Wide => {
-                let q = self.wide.wide_w().base as u64;
+                let q = correction.wide_w().at(self.position) as u64;
                 let shift = q.leading_zeros() & 63;
                 let q = Divisor::new(((q << shift) >> 32) as u32);
-                correct(varyings.as_mut(), lanes, |_, lane| {
-                    q.divide_shifted(((lane.plane.base << shift) >> 32) as i32)
+                correct(values, lanes, |_, lane| {
+                    q.divide_shifted(((lane.plane.at(self.position) << shift) >> 32) as i32)
                 });
             }
         }
-        varyings
     }
 }
 
@@ -111,35 +105,61 @@ pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: Dept
     test: D,
 ) {
     const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };
-    let Fragments { mut color, mut depth, mut z, varyings, steps, mut position } = span;
-    let (side, level) = (steps.side, steps.level);
+    let Fragments { mut color, mut depth, z, varyings, steps, position } = span;
     let mut ahead = Corrected::new(varyings, steps, position);
-    let mut varyings = ahead.varyings();
+    let mut next = ahead.varyings();
+    let mut run = Run { face, z, varyings: next, change: next, steps, position, test };
     while !color.is_empty() {
         // Where the step ends: at the next pixel that is divided, or the last one.
         let pixels = color.len().min(S::STEP);
         let way = if color.len() > S::STEP { S::STEP } else { pixels - 1 };
+        run.varyings = next;
         ahead.advance(way as i32);
-        let next = ahead.varyings();
-        let mut change = next;
-        for (change, from) in change.as_mut().iter_mut().zip(varyings.as_ref()) {
+        next = ahead.varyings();
+        run.change = next;
+        for (change, from) in run.change.as_mut().iter_mut().zip(run.varyings.as_ref()) {
             *change = if way == 0 { 0 } else { nth(change.wrapping_sub(*from), way) };
         }
         let Some((colors, color_rest)) = core::mem::take(&mut color).split_at_mut_checked(pixels) else { return };
         let Some((depths, depth_rest)) = core::mem::take(&mut depth).split_at_mut_checked(pixels) else { return };
         (color, depth) = (color_rest, depth_rest);
+        run.draw(shader, colors, depths);
+    }
+}
+
+/// Pixels between two that are divided.
+struct Run<'a, V: Varyings, D> {
+    face: u32,
+    z: u32,
+    varyings: V,
+    change: V,
+    steps: &'a Steps<V>,
+    position: (i32, i32),
+    test: D,
+}
+
+impl<V: Varyings, D: DepthTest> Run<'_, V, D> {
+    /// Draws them. Out of line, for what divides needs no stack meanwhile.
+    #[inline(never)]
+    fn draw<P: PixelFormat, S: Shader<P, Varyings = V> + ?Sized>(
+        &mut self,
+        shader: &S,
+        colors: &mut [P::Raw],
+        depths: &mut [D::Stored],
+    ) {
+        let Self { face, z, varyings, change, steps, position, test } = self;
         for (color, stored) in colors.iter_mut().zip(depths) {
-            let depth = (z >> 16) as u16;
+            let depth = (*z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
-                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+                let (side, level) = (steps.side, steps.level);
+                let fragment = Fragment { face: *face, varyings: &*varyings, position: *position, depth, side, level };
                 if shader.paint(&fragment, color) {
                     test.write(depth, stored);
                 }
             }
             position.0 = position.0.wrapping_add(1);
-            z = z.wrapping_add_signed(steps.dz_dx);
-            varyings.step(&change);
+            *z = z.wrapping_add_signed(steps.dz_dx);
+            varyings.step(change);
         }
-        varyings = next;
     }
 }

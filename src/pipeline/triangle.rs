@@ -3,10 +3,15 @@
 use super::assembly::Assembly;
 use super::scan::Seen;
 use super::{State, Target};
-use crate::fragment::{AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
-use crate::geometry::{Correction, DepthRange, DepthScale, Outcode, ScreenVertex, Transform, Varyings, signed_area};
+use crate::fragment::{
+    AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps,
+};
+use crate::geometry::{
+    Correction, DepthRange, DepthScale, FEW, Outcode, ScreenVertex, Transform, Varyings, signed_area,
+};
 use crate::output::Framebuffer;
-use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, homogenize, widen};
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
+use core::ops::Range;
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -19,15 +24,18 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) chosen: &'p Chosen<F, S>,
 }
 
+type Bias = fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32;
+type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode, [u16; 3], usize);
+
 /// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
 pub struct Chosen<F: Framebuffer, S: Shader<F::Format>> {
     /// 9. The spans of a triangle, by a depth test.
     spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings>),
     /// 8. What is added to depths.
-    bias: Option<fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32>,
+    bias: Option<Bias>,
     pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
     /// 4. What is drawn of a clipped triangle before the near and beyond the far plane.
-    pub(super) beyond: Option<fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode, [u16; 3], usize)>,
+    pub(super) beyond: Option<Beyond<F, S>>,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
@@ -170,6 +178,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// 9. Spans, between two edges from row to row.
     #[inline(never)]
     fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+        if S::Varyings::LEN > FEW {
+            return self.spans_apart(set_up, test);
+        }
         let SetUp { v, area, face, depth, corner, d_dy, steps } = set_up;
         let columns = self.clip.x.clone();
         let width = usize::from(self.screen.0);
@@ -233,6 +244,41 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 values.step(d_dy);
             }
         }
+    }
+
+    /// Stage 9 for many varyings, whose fragments take longer than all of this: nothing is kept from span to span but the edges, for
+    /// the stack that it takes.
+    #[inline(always)]
+    fn spans_apart<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+        let mut nothing = [(); MAX_SPAN];
+        let mut spans = Spans::new(set_up.v, set_up.area, &self.clip.y);
+        while let Some((y, x)) = spans.next_in(&self.clip.x) {
+            let shader = self.shader;
+            // 10, 11. Depth test and fragments.
+            shader.span(set_up.face, self.span_at::<D>(set_up, y, x, &mut nothing), test);
+        }
+    }
+
+    /// What there is of a span to draw.
+    #[inline(never)]
+    fn span_at<'a, D: DepthTest>(
+        &'a mut self,
+        set_up: &'a SetUp<'_, S::Varyings>,
+        y: i32,
+        x: Range<i32>,
+        nothing: &'a mut [(); MAX_SPAN],
+    ) -> Fragments<'a, F::Format, S::Varyings, D::Stored> {
+        let SetUp { depth: plane, corner, d_dy, steps, .. } = set_up;
+        let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);
+        let color = self.target.framebuffer.span(y as u32, x.start as usize, x.len());
+        let depth = D::stored(self.target.depth, nothing, row.wrapping_add(x.start as usize), color.len());
+        // The half rounds.
+        let z = plane.base.wrapping_add(1 << 15).wrapping_add_signed(plane.dy.wrapping_mul(y));
+        let z = z.wrapping_add_signed(plane.dx.wrapping_mul(x.start));
+        let mut span = Fragments { color, depth, z, varyings: *corner, steps, position: (x.start, y) };
+        span.varyings.advance(d_dy, y);
+        span.varyings.advance(&steps.d_dx, x.start);
+        span
     }
 }
 
