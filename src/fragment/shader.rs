@@ -120,12 +120,23 @@ const CHUNK: usize = 16;
 pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    mut span: Fragments<'_, P, S::Varyings, D::Stored>,
+    span: Fragments<'_, P, S::Varyings, D::Stored>,
     test: D,
 ) {
     if S::Varyings::PERSPECTIVE > 0 {
-        return corrected_fragments(shader, face, span, test);
+        corrected_fragments(shader, face, span, test);
+    } else {
+        uncorrected_fragments(shader, face, span, test);
     }
+}
+
+#[inline(always)]
+fn uncorrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
+    shader: &S,
+    face: u32,
+    mut span: Fragments<'_, P, S::Varyings, D::Stored>,
+    test: D,
+) {
     // Varyings stay where they are.
     let Fragments { ref mut color, ref mut depth, z, ref mut varyings, steps, position } = span;
     let mut pixels = Pixels { face, z, varyings, steps, position, test: AnyDepth::new(DepthState::OFF) };
