@@ -194,11 +194,11 @@ fn sampled_normals_are_lit_as_in_double_precision() {
                     let float_of = |c: [i32; 3]| c.map(|c| f64::from(c) / 256.0);
                     let (exact, edge) = reference(&distant, &material, normal, position, color);
                     if edge > 1.0 / 2048.0 {
-                        far.add(float_of(lit_far.far(n, color)), exact);
+                        far.add(float_of(lit_far.far(&n, color)), exact);
                     }
                     let (exact, edge) = reference(&lighting, &material, normal, position, color);
                     if edge > 1.0 / 512.0 {
-                        near.add(float_of(lit.near(n, lit.local(p), color)), exact);
+                        near.add(float_of(lit.near(&n, &lit.local(p), color)), exact);
                     } else {
                         skipped += 1;
                     }

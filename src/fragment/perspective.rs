@@ -18,59 +18,50 @@ pub struct Corrected<'a, V: Varyings> {
     steps: &'a Steps<V>,
     /// d q, linear ones, q.
     at: V,
-    /// The same in 64 bits, for triangles that take them: the values are the `base` of planes.
-    wide: V::Correction,
+    /// The pixel: where the planes are taken for triangles that take 64 bits.
+    position: (i32, i32),
 }
 
 impl<'a, V: Varyings> Corrected<'a, V> {
     /// At the first pixel of a span.
     #[inline]
     pub fn new(varyings: V, steps: &'a Steps<V>, position: (i32, i32)) -> Self {
-        let mut wide = steps.correction;
-        if let Some((PerspectiveClass::Wide, w, lanes)) = wide.lanes() {
-            for plane in lanes.iter_mut().map(|lane| &mut lane.plane).chain([w]) {
-                let (x, y) = (i64::from(position.0), i64::from(position.1));
-                plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(x)).wrapping_add(plane.dy.wrapping_mul(y));
-            }
-        }
-        Self { steps, at: varyings, wide }
+        Self { steps, at: varyings, position }
     }
 
     /// Goes on by as many pixels.
     #[inline]
     pub fn advance(&mut self, pixels: i32) {
-        for (value, step) in self.at.as_mut().iter_mut().zip(self.steps.d_dx.as_ref()) {
-            *value = value.wrapping_add(step.wrapping_mul(pixels));
-        }
-        if let Some((PerspectiveClass::Wide, w, lanes)) = self.wide.lanes() {
-            for plane in lanes.iter_mut().map(|lane| &mut lane.plane).chain([w]) {
-                plane.base = plane.base.wrapping_add(plane.dx.wrapping_mul(i64::from(pixels)));
-            }
-        }
+        self.at.advance(&self.steps.d_dx, pixels);
+        self.position.0 = self.position.0.wrapping_add(pixels);
     }
 
     /// The varyings here.
     #[inline]
     pub fn varyings(&self) -> V {
         let mut varyings = self.at;
-        let lanes = self.wide.varyings();
-        match self.steps.correction.class() {
-            PerspectiveClass::Affine => correct(varyings.as_mut(), lanes, |h, _| h),
-            PerspectiveClass::Narrow => {
-                let [.., q] = varyings.as_ref() else { return varyings };
-                let q = Divisor::new(*q as u32);
-                correct(varyings.as_mut(), lanes, |dq, _| q.divide(dq));
-            }
-            PerspectiveClass::Wide => {
-                let q = self.wide.wide_w().base as u64;
-                let shift = q.leading_zeros() & 63;
-                let q = Divisor::new(((q << shift) >> 32) as u32);
-                correct(varyings.as_mut(), lanes, |_, lane| {
-                    q.divide_shifted(((lane.plane.base << shift) >> 32) as i32)
-                });
-            }
-        }
+        correct_at(self.steps, self.position, &mut varyings);
         varyings
+    }
+}
+
+/// Puts the varyings at a pixel in the place of what is linear.
+#[inline(never)]
+fn correct_at<V: Varyings>(steps: &Steps<V>, position: (i32, i32), varyings: &mut V) {
+    let (lanes, values) = (steps.correction.varyings(), varyings.as_mut());
+    match steps.correction.class() {
+        PerspectiveClass::Affine => correct(values, lanes, |h, _| h),
+        PerspectiveClass::Narrow => {
+            let [.., q] = *values else { return };
+            let q = Divisor::new(q as u32);
+            correct(values, lanes, |dq, _| q.divide(dq));
+        }
+        PerspectiveClass::Wide => {
+            let q = steps.correction.wide_w().at(position) as u64;
+            let shift = q.leading_zeros() & 63;
+            let q = Divisor::new(((q << shift) >> 32) as u32);
+            correct(values, lanes, |_, lane| q.divide_shifted(((lane.plane.at(position) << shift) >> 32) as i32));
+        }
     }
 }
 
@@ -107,39 +98,68 @@ pub(super) fn nth(difference: i32, n: usize) -> i32 {
 pub(super) fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    span: Fragments<'_, P, S::Varyings, D::Stored>,
+    mut span: Fragments<'_, P, S::Varyings, D::Stored>,
     test: D,
 ) {
     const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };
-    let Fragments { mut color, mut depth, mut z, varyings, steps, mut position } = span;
-    let (side, level) = (steps.side, steps.level);
-    let mut ahead = Corrected::new(varyings, steps, position);
-    let mut varyings = ahead.varyings();
-    while !color.is_empty() {
-        // Where the step ends: at the next pixel that is divided, or the last one.
-        let pixels = color.len().min(S::STEP);
-        let way = if color.len() > S::STEP { S::STEP } else { pixels - 1 };
-        ahead.advance(way as i32);
-        let next = ahead.varyings();
-        let mut change = next;
-        for (change, from) in change.as_mut().iter_mut().zip(varyings.as_ref()) {
-            *change = if way == 0 { 0 } else { nth(change.wrapping_sub(*from), way) };
+    let mut varyings = span.varyings;
+    correct_at(span.steps, span.position, &mut varyings);
+    let mut run = Run { span: &mut span, face, varyings, change: varyings, next: varyings, test };
+    while !run.span.color.is_empty() {
+        let pixels = run.aim(S::STEP);
+        run.draw(shader, pixels);
+    }
+}
+
+/// Pixels between two that are divided.
+struct Run<'a, 's, P: PixelFormat, V: Varyings, D: DepthTest> {
+    /// What is left of the span. Varyings are what is linear, at the end of the run.
+    span: &'a mut Fragments<'s, P, V, D::Stored>,
+    face: u32,
+    varyings: V,
+    change: V,
+    /// The varyings at the end of the run.
+    next: V,
+    test: D,
+}
+
+impl<P: PixelFormat, V: Varyings, D: DepthTest> Run<'_, '_, P, V, D> {
+    /// Aims at where the next run ends: at the next pixel that is divided, or the last one. Yields how many pixels it has.
+    #[inline(never)]
+    fn aim(&mut self, step: usize) -> usize {
+        let Self { span, varyings, change, next, .. } = self;
+        let pixels = span.color.len().min(step);
+        let way = if span.color.len() > step { step } else { pixels.wrapping_sub(1) };
+        *varyings = *next;
+        span.varyings.advance(&span.steps.d_dx, way as i32);
+        *next = span.varyings;
+        correct_at(span.steps, (span.position.0.wrapping_add(way as i32), span.position.1), next);
+        let ends = varyings.as_ref().iter().zip(next.as_ref());
+        for (change, (from, to)) in change.as_mut().iter_mut().zip(ends) {
+            *change = if way == 0 { 0 } else { nth(to.wrapping_sub(*from), way) };
         }
-        let Some((colors, color_rest)) = core::mem::take(&mut color).split_at_mut_checked(pixels) else { return };
-        let Some((depths, depth_rest)) = core::mem::take(&mut depth).split_at_mut_checked(pixels) else { return };
-        (color, depth) = (color_rest, depth_rest);
+        pixels
+    }
+
+    /// Draws that many pixels. Out of line, for what divides needs no stack meanwhile.
+    #[inline(never)]
+    fn draw<S: Shader<P, Varyings = V> + ?Sized>(&mut self, shader: &S, pixels: usize) {
+        let Self { span, face, varyings, change, test, .. } = self;
+        let Some((colors, rest)) = core::mem::take(&mut span.color).split_at_mut_checked(pixels) else { return };
+        let Some((depths, depth_rest)) = core::mem::take(&mut span.depth).split_at_mut_checked(pixels) else { return };
+        (span.color, span.depth) = (rest, depth_rest);
         for (color, stored) in colors.iter_mut().zip(depths) {
-            let depth = (z >> 16) as u16;
+            let depth = (span.z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
-                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+                let (position, side, level) = (span.position, span.steps.side, span.steps.level);
+                let fragment = Fragment { face: *face, varyings: &*varyings, position, depth, side, level };
                 if shader.paint(&fragment, color) {
                     test.write(depth, stored);
                 }
             }
-            position.0 = position.0.wrapping_add(1);
-            z = z.wrapping_add_signed(steps.dz_dx);
-            varyings.step(&change);
+            span.position.0 = span.position.0.wrapping_add(1);
+            span.z = span.z.wrapping_add_signed(span.steps.dz_dx);
+            varyings.step(change);
         }
-        varyings = next;
     }
 }

@@ -85,7 +85,7 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerFace, D, P> {
         let [a, b, c] = face.corners().map(|corner| self.material.local(corner.position()));
         // Thirds, near enough: 21,845 / 2¹⁶, of sums below 2¹⁷ / 2³.
         let third = |k: usize| (((a[k] + b[k] + c[k]) >> 3) * 21_845) >> 13;
-        let [r, g, b] = self.material.near(normal, [third(0), third(1), third(2)], face.provoking().color());
+        let [r, g, b] = self.material.near(&normal, &[third(0), third(1), third(2)], face.provoking().color());
         u32::from_be_bytes([0, round(r), round(g), round(b)])
     }
 }
@@ -116,7 +116,7 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerVertex, D, P> {
         if self.material.is_two_sided() {
             normal = self.material.towards_viewer(normal, p);
         }
-        self.material.near(normal, p, vertex.color()).map(squeeze)
+        self.material.near(&normal, &p, vertex.color()).map(squeeze)
     }
 
     #[inline]
@@ -225,7 +225,7 @@ impl<Format: PixelFormat, const D: usize> Shader<Format> for Shaded<PerFragment,
         let [x, y, z] = *fragment.varyings;
         let turned = self.material.is_two_sided() && fragment.side == Side::Back;
         let [red, green, blue, _] = fragment.face.to_le_bytes();
-        let [r, g, b] = self.material.far(fragment_normal(x, y, z, turned), [red, green, blue]);
+        let [r, g, b] = self.material.far(&fragment_normal(x, y, z, turned), [red, green, blue]);
         Some(Format::pack_at([round(r), round(g), round(b)], fragment.position))
     }
 }
@@ -271,7 +271,7 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
         let turned = self.material.is_two_sided() && fragment.side == Side::Back;
         let [red, green, blue, _] = fragment.face.to_le_bytes();
         let normal = fragment_normal(x, y, z, turned);
-        let [r, g, b] = self.material.near(normal, [px >> 14, py >> 14, pz >> 14], [red, green, blue]);
+        let [r, g, b] = self.material.near(&normal, &[px >> 14, py >> 14, pz >> 14], [red, green, blue]);
         Some(Format::pack_at([round(r), round(g), round(b)], fragment.position))
     }
 }

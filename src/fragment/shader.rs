@@ -113,7 +113,7 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 }
 
 /// Pixels of a span that are drawn at a time where there are no depths.
-const CHUNK: usize = 32;
+const CHUNK: usize = 16;
 
 /// Draws a span fragment by fragment.
 #[inline]
@@ -124,49 +124,74 @@ pub(super) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     test: D,
 ) {
     if S::Varyings::PERSPECTIVE > 0 {
-        return corrected_fragments(shader, face, span, test);
+        corrected_fragments(shader, face, span, test);
+    } else {
+        uncorrected_fragments(shader, face, span, test);
     }
-    let (first, Fragments { mut color, depth, z, mut varyings, steps, position }) = (span.position.0, span);
+}
+
+#[inline(always)]
+fn uncorrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
+    shader: &S,
+    face: u32,
+    mut span: Fragments<'_, P, S::Varyings, D::Stored>,
+    test: D,
+) {
+    // Varyings stay where they are.
+    let Fragments { ref mut color, ref mut depth, z, ref mut varyings, steps, position } = span;
+    let mut pixels = Pixels { face, z, varyings, steps, position, test: AnyDepth::new(DepthState::OFF) };
+    if !D::ENABLED {
+        return fragments_without_depth(shader, color, &mut pixels);
+    }
     if let Some((test, depth)) = test.any(depth) {
-        return linear_fragments(shader, face, Fragments { color, depth, z, varyings, steps, position }, test);
+        pixels.test = test;
+        linear_fragments(shader, color, depth, &mut pixels);
     }
-    // The same loop, with depths that are nobody's.
-    let (mut position, mut nothing) = (position, [0; CHUNK]);
-    let always = AnyDepth::new(DepthState::OFF);
-    while !color.is_empty() {
-        let pixels = color.len().min(CHUNK);
-        let Some((chunk, rest)) = core::mem::take(&mut color).split_at_mut_checked(pixels) else { return };
-        color = rest;
-        let depth = &mut nothing;
-        let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(position.0.wrapping_sub(first)));
-        linear_fragments(shader, face, Fragments { color: chunk, depth, z, varyings, steps, position }, always);
-        position.0 = position.0.wrapping_add(pixels as i32);
-        for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-            *value = value.wrapping_add(step.wrapping_mul(pixels as i32));
-        }
+}
+
+/// The same loop, with depths that are nobody's.
+#[inline(never)]
+fn fragments_without_depth<P: PixelFormat, S: Shader<P> + ?Sized>(
+    shader: &S,
+    color: &mut [P::Raw],
+    pixels: &mut Pixels<'_, S::Varyings>,
+) {
+    let mut nothing = [0; CHUNK];
+    for chunk in color.chunks_mut(CHUNK) {
+        linear_fragments(shader, chunk, &mut nothing, pixels);
     }
+}
+
+/// Where [`linear_fragments`] is, and how it goes on.
+struct Pixels<'a, V: Varyings> {
+    face: u32,
+    z: u32,
+    varyings: &'a mut V,
+    steps: &'a Steps<V>,
+    position: (i32, i32),
+    test: AnyDepth,
 }
 
 /// Draws a span fragment by fragment, in the one loop that a shader is compiled into.
 #[inline(never)]
 fn linear_fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
-    face: u32,
-    span: Fragments<'_, P, S::Varyings, u16>,
-    test: AnyDepth,
+    color: &mut [P::Raw],
+    depth: &mut [u16],
+    pixels: &mut Pixels<'_, S::Varyings>,
 ) {
-    let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
-    let (side, level) = (steps.side, steps.level);
+    let Pixels { face, z, varyings, steps, position, test } = pixels;
     for (color, stored) in color.iter_mut().zip(depth) {
-        let depth = (z >> 16) as u16;
+        let depth = (*z >> 16) as u16;
         if test.passes(depth, *stored) {
-            let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+            let (side, level) = (steps.side, steps.level);
+            let fragment = Fragment { face: *face, varyings: &**varyings, position: *position, depth, side, level };
             if shader.paint(&fragment, color) {
                 test.write(depth, stored);
             }
         }
         position.0 = position.0.wrapping_add(1);
-        z = z.wrapping_add_signed(steps.dz_dx);
+        *z = z.wrapping_add_signed(steps.dz_dx);
         varyings.step(&steps.d_dx);
     }
 }

@@ -3,8 +3,9 @@
 //! All of it is given in eye space, or in any other that a model matrix leads to, and is taken to a mesh's own space once a
 //! draw by [`Lighting::on`], because normals and positions are given there.
 
-use super::lit_material::{LitDirection, LitMaterial, LitPoint, LitViewer};
-use super::{Bounds, LocalSpace, Material};
+use super::lit_material::{LitColors, LitDirection, LitMaterial, LitPoint, LitViewer, short};
+use super::local_space::ToLocal;
+use super::{Bounds, Material};
 use crate::math::{Affine, Scalar, Vec3, unit_vector};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
@@ -91,8 +92,8 @@ fn channels(color: Rgb888) -> [u8; 3] {
 }
 
 /// The product of two colours, 8.8, cut: 255 · 255 becomes 255.
-fn product(a: [u8; 3], b: [u8; 3]) -> [i32; 3] {
-    let channel = |a: u8, b: u8| i32::from(a) * i32::from(b) * 256 / 255;
+fn product(a: [u8; 3], b: [u8; 3]) -> [u16; 3] {
+    let channel = |a: u8, b: u8| (u32::from(a) * u32::from(b) * 256 / 255) as u16;
     [channel(a[0], b[0]), channel(a[1], b[1]), channel(a[2], b[2])]
 }
 
@@ -106,19 +107,22 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
     /// # Format
     /// Directions within 2⁻¹⁴; positions of lights within 2⁻¹⁵ of the extent of the mesh, and at most 16,384 extents away.
     pub fn on(&self, material: &Material, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
-        let space = LocalSpace::new(model, bounds);
-        let (diffuse, specular) = (material.diffuse, material.specular);
+        let space = ToLocal::new(model, bounds);
+        let colors = |light: [u8; 3]| LitColors {
+            diffuse: product(material.diffuse, light),
+            specular: product(material.specular, light),
+        };
         let (toward, viewer) = match self.viewer {
             Viewer::Toward(direction) => {
                 let direction = space.direction(direction);
-                (direction, LitViewer::Toward(direction))
+                (direction, LitViewer::Toward(short(direction)))
             }
             Viewer::At(position) => {
                 let position = space.position(position);
                 let bits = widest(position).max(1 << 15);
                 // With the mesh's own 2¹⁵ and the sign, differences fit 15 bits.
                 let shift = 18 - bits.leading_zeros().min(18);
-                (unit_vector(position.map(|c| c >> shift)), LitViewer::At { position, shift })
+                (unit_vector(position.map(|c| c >> shift)), LitViewer::At { position, shift: shift as u8 })
             }
         };
         LitMaterial {
@@ -127,25 +131,19 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
                 let direction = space.direction(light.direction);
                 let [l, v] = [direction, toward];
                 LitDirection {
-                    direction,
-                    half: unit_vector([l[0] + v[0], l[1] + v[1], l[2] + v[2]].map(|c| c >> 1)),
-                    diffuse: product(diffuse, light.color),
-                    specular: product(specular, light.color),
+                    direction: short(direction),
+                    half: short(unit_vector([l[0] + v[0], l[1] + v[1], l[2] + v[2]].map(|c| c >> 1))),
+                    colors: colors(light.color),
                 }
             }),
             points: self.points.map(|light| {
-                LitPoint::new(
-                    space.position(light.position),
-                    space.length(light.range),
-                    product(diffuse, light.color),
-                    product(specular, light.color),
-                )
+                LitPoint::new(space.position(light.position), space.length(light.range), colors(light.color))
             }),
             viewer,
             shininess: if material.specular == [0; 3] { 0 } else { material.shininess },
             two_sided: material.two_sided,
             vertex_colors: material.vertex_colors,
-            space,
+            space: space.local(),
         }
     }
 }

@@ -18,7 +18,7 @@ use crate::math::{Vec3, unit_vector};
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LitMaterial<const D: usize, const P: usize> {
     /// Light from everywhere on the material, 8.8 a channel.
-    pub(super) ambient: [i32; 3],
+    pub(super) ambient: [u16; 3],
     pub(super) directional: [LitDirection; D],
     pub(super) points: [LitPoint; P],
     pub(super) viewer: LitViewer,
@@ -29,21 +29,41 @@ pub struct LitMaterial<const D: usize, const P: usize> {
     pub(super) space: LocalSpace,
 }
 
-/// A directional light on a material: unit vectors 2.14, colours 8.8.
+/// A vector in 2.14.
+type Short = [i16; 3];
+
+/// A vector in 2.14, of length 1 or little more.
+pub(super) const fn short([x, y, z]: [i32; 3]) -> Short {
+    [x as i16, y as i16, z as i16]
+}
+
+/// The same in words.
+#[inline(always)]
+fn long([x, y, z]: Short) -> [i32; 3] {
+    [i32::from(x), i32::from(y), i32::from(z)]
+}
+
+/// A light's colours on a material, 8.8.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct LitColors {
+    pub(super) diffuse: [u16; 3],
+    pub(super) specular: [u16; 3],
+}
+
+/// A directional light on a material: unit vectors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LitDirection {
-    pub(super) direction: [i32; 3],
+    pub(super) direction: Short,
     /// Halfway to a far viewer.
-    pub(super) half: [i32; 3],
-    pub(super) diffuse: [i32; 3],
-    pub(super) specular: [i32; 3],
+    pub(super) half: Short,
+    pub(super) colors: LitColors,
 }
 
 /// Where highlights are seen from: 2.14, or local units to be shifted so that the difference to any position has 15 bits.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LitViewer {
-    Toward([i32; 3]),
-    At { position: [i32; 3], shift: u32 },
+    Toward(Short),
+    At { position: [i32; 3], shift: u8 },
 }
 
 /// A point light on a material.
@@ -52,14 +72,13 @@ pub(super) struct LitPoint {
     /// Local units, below 2²⁹, and the range in them.
     position: [i32; 3],
     range: i32,
-    /// Shifts, one of them 0, that make 2¹⁴ to 2¹⁵ of the range.
-    left: u32,
-    right: u32,
-    /// The shifted range squared, and 2³⁰ / (that / 2¹⁴).
-    squared: u32,
+    /// 2³⁰ / (the shifted range squared / 2¹⁴).
     inverse: u32,
-    diffuse: [i32; 3],
-    specular: [i32; 3],
+    /// The shifted range, and shifts, one of them 0, that make it 2¹⁴ to 2¹⁵.
+    scaled: u16,
+    left: u8,
+    right: u8,
+    colors: LitColors,
 }
 
 /// The number 1 in 2.14.
@@ -69,38 +88,37 @@ const ONE: i32 = NORMAL_ONE as i32;
 const WHITE: i32 = 255 << 8;
 
 impl LitPoint {
-    pub(super) fn new(position: [i32; 3], range: i32, diffuse: [i32; 3], specular: [i32; 3]) -> Self {
+    pub(super) fn new(position: [i32; 3], range: i32, colors: LitColors) -> Self {
         let range = range.max(1);
         let zeros = range.leading_zeros();
-        let (left, right) = (zeros.saturating_sub(17), 17_u32.saturating_sub(zeros));
-        let scaled = ((range << left.min(14)) >> right) as u32;
-        let squared = scaled.wrapping_mul(scaled);
-        let inverse = (1_u32 << 30).checked_div(squared >> 14).unwrap_or(0);
-        Self { position, range, left: left.min(14), right, squared, inverse, diffuse, specular }
+        let (left, right) = (zeros.saturating_sub(17).min(14), 17_u32.saturating_sub(zeros));
+        let scaled = ((range << left) >> right) as u32;
+        let inverse = (1_u32 << 30).checked_div(scaled.wrapping_mul(scaled) >> 14).unwrap_or(0);
+        Self { position, range, inverse, scaled: scaled as u16, left: left as u8, right: right as u8, colors }
     }
 
-    /// Unit vector from `p` to the light, and how much of it is left there, both 2.14; `None` out of its range.
+    /// Puts the unit vector from `p` to the light into `direction`, 2.14; how much of it is left there, 2.14. 0 out of its range.
     ///
     /// # Format
     /// `p` in local units, below 2¹⁶. What is left is within 2⁻¹² of the exact value for the rounded positions.
-    #[inline]
-    fn from(&self, p: [i32; 3]) -> Option<([i32; 3], i32)> {
+    #[inline(never)]
+    fn from(&self, p: &[i32; 3], direction: &mut [i32; 3]) -> i32 {
         let [x, y, z] = self.position;
         let [x, y, z] = [x.wrapping_sub(p[0]), y.wrapping_sub(p[1]), z.wrapping_sub(p[2])];
         let range = self.range;
         if x.abs() >= range || y.abs() >= range || z.abs() >= range {
-            return None;
+            return 0;
         }
-        let near = |c: i32| (c << self.left) >> self.right;
+        let near = |c: i32| (c << (self.left & 31)) >> (self.right & 31);
         let (x, y, z) = (near(x), near(y), near(z));
         // Each at most 2¹⁵: below 3 · 2³⁰.
         let squared = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).wrapping_add(z.wrapping_mul(z)) as u32;
-        if squared >= self.squared {
-            return None;
-        }
+        let scaled = u32::from(self.scaled);
+        let Some(difference) = scaled.wrapping_mul(scaled).checked_sub(squared) else { return 0 };
+        *direction = unit_vector([x, y, z]);
         // The difference / 2¹⁴ is at most what `inverse` divides by: below 2³⁰.
-        let left = (((self.squared - squared) >> 14).wrapping_mul(self.inverse) >> 16) as i32;
-        Some((unit_vector([x, y, z]), left.wrapping_mul(left) >> 14))
+        let left = ((difference >> 14).wrapping_mul(self.inverse) >> 16) as i32;
+        left.wrapping_mul(left) >> 14
     }
 }
 
@@ -128,24 +146,26 @@ pub(super) fn power(x: i32, n: u8) -> i32 {
 
 /// n · l of vectors in 2.14, cut to 2.14, between 0 and 1.
 #[inline(always)]
-fn cosine(n: [i32; 3], l: [i32; 3]) -> i32 {
+fn cosine(n: &[i32; 3], l: [i32; 3]) -> i32 {
     let dot = n[0].wrapping_mul(l[0]).wrapping_add(n[1].wrapping_mul(l[1])).wrapping_add(n[2].wrapping_mul(l[2]));
     (dot >> 14).clamp(0, ONE)
 }
 
-/// A sum of light: what the surface's colour takes part in, and highlights. 8.8.
-#[derive(Clone, Copy)]
-struct Sum {
+/// A point of a surface that is looked at, and the sum of its light: what the surface's colour takes part in, and highlights.
+/// Vectors 2.14, light 8.8.
+struct Look<'n> {
+    normal: &'n [i32; 3],
+    viewer: [i32; 3],
     body: [i32; 3],
     shine: [i32; 3],
 }
 
 /// `sum += color · factor`, 2.14.
 #[inline(always)]
-fn add(sum: &mut [i32; 3], color: &[i32; 3], factor: i32) {
-    sum[0] += (color[0] * factor) >> 14;
-    sum[1] += (color[1] * factor) >> 14;
-    sum[2] += (color[2] * factor) >> 14;
+fn add(sum: &mut [i32; 3], color: &[u16; 3], factor: i32) {
+    sum[0] += (i32::from(color[0]) * factor) >> 14;
+    sum[1] += (i32::from(color[1]) * factor) >> 14;
+    sum[2] += (i32::from(color[2]) * factor) >> 14;
 }
 
 impl<const D: usize, const P: usize> LitMaterial<D, P> {
@@ -170,20 +190,28 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// The normal that is turned towards the viewer, seen from the point `p` (local units) of the surface: where a vertex
     /// belongs to faces on both sides.
     pub fn towards_viewer(&self, normal: [i32; 3], p: [i32; 3]) -> [i32; 3] {
-        let [x, y, z] = self.viewer(p);
+        let [x, y, z] = self.viewer(&p);
         let dot =
             normal[0].wrapping_mul(x).wrapping_add(normal[1].wrapping_mul(y)).wrapping_add(normal[2].wrapping_mul(z));
         if dot < 0 { normal.map(i32::wrapping_neg) } else { normal }
     }
 
-    #[inline]
-    fn viewer(&self, p: [i32; 3]) -> [i32; 3] {
+    #[inline(never)]
+    fn viewer(&self, p: &[i32; 3]) -> [i32; 3] {
         match self.viewer {
-            LitViewer::Toward(direction) => direction,
+            LitViewer::Toward(direction) => long(direction),
             LitViewer::At { position: e, shift } => {
+                let shift = shift & 31;
                 unit_vector([(e[0] - p[0]) >> shift, (e[1] - p[1]) >> shift, (e[2] - p[2]) >> shift])
             }
         }
+    }
+
+    /// Nothing but the ambient light.
+    #[inline(always)]
+    fn look<'n>(&self, normal: &'n [i32; 3]) -> Look<'n> {
+        let [r, g, b] = self.ambient;
+        Look { normal, viewer: [0; 3], body: [i32::from(r), i32::from(g), i32::from(b)], shine: [0; 3] }
     }
 
     /// Red, green, blue under the ambient and the directional lights, seen from far away, whatever the viewer is.
@@ -191,21 +219,22 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// # Format
     /// `normal` 2.14, of length 1; result 8.8, at most 255. `color` is that of the vertex, or white.
     #[inline]
-    pub fn far(&self, normal: [i32; 3], color: [u8; 3]) -> [i32; 3] {
-        let mut sum = Sum { body: self.ambient, shine: [0; 3] };
+    pub fn far(&self, normal: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
+        let mut look = self.look(normal);
         for light in &self.directional {
-            self.add_far(&mut sum, light, normal);
+            self.add_far(&mut look, light);
         }
-        self.total(sum, color)
+        self.total(&look, color)
     }
 
     #[inline(always)]
-    fn add_far(&self, sum: &mut Sum, light: &LitDirection, normal: [i32; 3]) {
-        let facing = cosine(normal, light.direction);
+    fn add_far(&self, look: &mut Look<'_>, light: &LitDirection) {
+        let facing = cosine(look.normal, long(light.direction));
         if facing > 0 {
-            add(&mut sum.body, &light.diffuse, facing);
+            add(&mut look.body, &light.colors.diffuse, facing);
             if self.shininess != 0 {
-                add(&mut sum.shine, &light.specular, power(cosine(normal, light.half), self.shininess));
+                let shine = power(cosine(look.normal, long(light.half)), self.shininess);
+                add(&mut look.shine, &light.colors.specular, shine);
             }
         }
     }
@@ -214,52 +243,49 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     ///
     /// # Format
     /// As [`far`](Self::far).
-    #[inline]
-    pub fn near(&self, normal: [i32; 3], p: [i32; 3], color: [u8; 3]) -> [i32; 3] {
-        let mut sum = Sum { body: self.ambient, shine: [0; 3] };
+    #[inline(never)]
+    pub fn near(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
+        let mut look = self.look(normal);
         let seen_from_afar = matches!(self.viewer, LitViewer::Toward(_));
-        let viewer = if self.shininess != 0 { self.viewer(p) } else { [0; 3] };
+        if self.shininess != 0 {
+            look.viewer = self.viewer(p);
+        }
         for light in &self.directional {
             if seen_from_afar {
-                self.add_far(&mut sum, light, normal);
+                self.add_far(&mut look, light);
             } else {
-                self.add_near(&mut sum, normal, viewer, light.direction, ONE, (&light.diffuse, &light.specular));
+                self.add_near(&mut look, &long(light.direction), ONE, &light.colors);
             }
         }
         for light in &self.points {
-            if let Some((direction, fade)) = light.from(p) {
-                self.add_near(&mut sum, normal, viewer, direction, fade, (&light.diffuse, &light.specular));
+            let mut direction = [0; 3];
+            let fade = light.from(p, &mut direction);
+            if fade > 0 {
+                self.add_near(&mut look, &direction, fade, &light.colors);
             }
         }
-        self.total(sum, color)
+        self.total(&look, color)
     }
 
-    #[inline]
-    fn add_near(
-        &self,
-        sum: &mut Sum,
-        normal: [i32; 3],
-        viewer: [i32; 3],
-        direction: [i32; 3],
-        fade: i32,
-        (diffuse, specular): (&[i32; 3], &[i32; 3]),
-    ) {
-        let facing = cosine(normal, direction);
+    #[inline(never)]
+    fn add_near(&self, look: &mut Look<'_>, direction: &[i32; 3], fade: i32, colors: &LitColors) {
+        let facing = cosine(look.normal, *direction);
         if facing > 0 {
-            add(&mut sum.body, diffuse, (facing * fade) >> 14);
+            add(&mut look.body, &colors.diffuse, (facing * fade) >> 14);
             if self.shininess != 0 {
-                let [l, v] = [direction, viewer];
+                let (l, v) = (direction, &look.viewer);
                 // Below 2¹⁵ even where both are the same.
-                let half = unit_vector([l[0] + v[0], l[1] + v[1], l[2] + v[2]].map(|c| c - (c >> 6)));
-                let shine = power(cosine(normal, half), self.shininess);
-                add(&mut sum.shine, specular, (shine * fade) >> 14);
+                let half = |k: usize| l[k] + v[k] - ((l[k] + v[k]) >> 6);
+                let half = unit_vector([half(0), half(1), half(2)]);
+                let shine = power(cosine(look.normal, half), self.shininess);
+                add(&mut look.shine, &colors.specular, (shine * fade) >> 14);
             }
         }
     }
 
     #[inline(always)]
-    fn total(&self, sum: Sum, color: [u8; 3]) -> [i32; 3] {
-        let Sum { body, shine } = sum;
+    fn total(&self, look: &Look<'_>, color: [u8; 3]) -> [i32; 3] {
+        let Look { body, shine, .. } = look;
         let [r, g, b] = if self.vertex_colors {
             let times = |light: i32, c: u8| {
                 // By 255: 1 / 256 + 1 / 256² of it.
@@ -268,7 +294,7 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
             };
             [times(body[0], color[0]), times(body[1], color[1]), times(body[2], color[2])]
         } else {
-            body
+            *body
         };
         [(r + shine[0]).min(WHITE), (g + shine[1]).min(WHITE), (b + shine[2]).min(WHITE)]
     }

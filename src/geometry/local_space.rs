@@ -8,7 +8,12 @@ use crate::math::{Affine, Scalar, Vec3};
 pub struct LocalSpace {
     center: [i32; 3],
     /// Shift that makes 2²⁸ to 2²⁹ of the longest half side in 16.16.
-    shift: i32,
+    shift: i8,
+}
+
+/// The way from the lights' space to a [`LocalSpace`].
+pub(super) struct ToLocal {
+    local: LocalSpace,
     /// The columns of the model matrix at length 1, 16.16, and what the model scales by, 16.16 and `extra` bits.
     columns: [[i32; 3]; 3],
     scale: i64,
@@ -29,6 +34,20 @@ fn shifted(value: i64, shift: i32) -> i32 {
 }
 
 impl LocalSpace {
+    const fn shift(&self) -> i32 {
+        self.shift as i32
+    }
+
+    /// A position of the mesh, 2¹⁴ local units: below 2²⁹.
+    #[inline]
+    pub fn fine(&self, position: Vec3) -> [i32; 3] {
+        let p = position.to_bits();
+        let along = |k: usize| shifted(i64::from(p[k]) - i64::from(self.center[k]), self.shift());
+        [along(0), along(1), along(2)]
+    }
+}
+
+impl ToLocal {
     /// Of a mesh in `bounds`, for lights in the space that `model` leads to.
     pub(super) fn new(model: &Affine, bounds: &Bounds) -> Self {
         let [x, y, z] = bounds.aabb.half.to_bits();
@@ -40,13 +59,17 @@ impl LocalSpace {
         let extra = (widest.leading_zeros().saturating_sub(15)).min(12);
         let longer = columns.map(|c| Vec3::from_bits([c[0] << extra, c[1] << extra, c[2] << extra]));
         Self {
-            center: bounds.aabb.center.to_bits(),
-            shift: reach.leading_zeros() as i32 - 3,
+            local: LocalSpace { center: bounds.aabb.center.to_bits(), shift: reach.leading_zeros() as i8 - 3 },
             columns: longer.map(|c| c.normalized().map_or([0; 3], |unit| unit.to_bits())),
             scale: i64::from(longer[0].length().to_bits().max(1)),
             extra,
             translation: [tx, ty, tz],
         }
+    }
+
+    /// Where it leads.
+    pub(super) const fn local(&self) -> LocalSpace {
+        self.local
     }
 
     /// Sums of products of the columns and a vector, 32.32.
@@ -73,7 +96,7 @@ impl LocalSpace {
     fn scaled(&self, value: i64) -> i32 {
         // 32.32 by 16.16 and `extra` bits: below 2⁶³ for |value| < 2⁵¹.
         let quotient = (value << self.extra).checked_div(self.scale).unwrap_or(0);
-        shifted(quotient, self.shift - 14)
+        shifted(quotient, self.local.shift() - 14)
     }
 
     /// A point of the lights' space in local units, saturated at ±2²⁹.
@@ -81,19 +104,11 @@ impl LocalSpace {
         let p = point.to_bits();
         let [tx, ty, tz] = self.translation.map(i64::from);
         let rotated = self.rotated([i64::from(p[0]) - tx, i64::from(p[1]) - ty, i64::from(p[2]) - tz]);
-        let center = |k: usize| shifted(i64::from(self.center[k]), self.shift - 14);
+        let center = |k: usize| shifted(i64::from(self.local.center[k]), self.local.shift() - 14);
         [
             self.scaled(rotated[0]).wrapping_sub(center(0)),
             self.scaled(rotated[1]).wrapping_sub(center(1)),
             self.scaled(rotated[2]).wrapping_sub(center(2)),
         ]
-    }
-
-    /// A position of the mesh, 2¹⁴ local units: below 2²⁹.
-    #[inline]
-    pub fn fine(&self, position: Vec3) -> [i32; 3] {
-        let p = position.to_bits();
-        let along = |k: usize| shifted(i64::from(p[k]) - i64::from(self.center[k]), self.shift);
-        [along(0), along(1), along(2)]
     }
 }

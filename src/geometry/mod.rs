@@ -42,6 +42,7 @@ pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
 pub(crate) use project::{area_of, small};
 pub use sort::{Order, SortError, Sortable, far_to_near, painters_order};
 pub use transform::{Placed, Transform, View, place};
+pub(crate) use varyings::FEW;
 pub use varyings::{Correction, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
 pub use vertex::{Corner, Face, Side, VertexShader};
 pub use viewport::{Viewport, ViewportError};

@@ -57,7 +57,7 @@ impl<const N: usize> Varyings for [i32; N] {
 
     #[inline(always)]
     fn step(&mut self, change: &Self) {
-        advance(self, change, 1);
+        step(self, change);
     }
 
     #[inline(always)]
@@ -66,9 +66,35 @@ impl<const N: usize> Varyings for [i32; N] {
     }
 }
 
-/// Adds `pixels` times `changes`, modulo 2³². Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+/// The most values that are kept in registers. More of them are changed where they are, by functions of their own: the loops
+/// around would otherwise hold copies of them, and of their changes, on the stack.
+pub(crate) const FEW: usize = 3;
+
+/// Adds `changes`, modulo 2³².
+#[inline(always)]
+fn step<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
+    if N > FEW { step_apart(values, changes) } else { advance_here(values, changes, 1) }
+}
+
+/// Adds `pixels` times `changes`, modulo 2³².
 #[inline(always)]
 fn advance<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
+    if N > FEW { advance_apart(values, changes, pixels) } else { advance_here(values, changes, pixels) }
+}
+
+#[inline(never)]
+fn step_apart<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
+    advance_here(values, changes, 1);
+}
+
+#[inline(never)]
+fn advance_apart<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
+    advance_here(values, changes, pixels);
+}
+
+/// Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+#[inline(always)]
+fn advance_here<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
     let (values, changes) = (values.as_mut_slice(), changes.as_slice());
     if !matches!(N, 1..=8) {
         for (value, change) in values.iter_mut().zip(changes) {
@@ -158,7 +184,7 @@ impl<const P: usize, const N: usize> AsMut<[i32]> for Perspective<P, N> {
 impl<const P: usize, const N: usize> Varyings for Perspective<P, N> {
     #[inline(always)]
     fn step(&mut self, change: &Self) {
-        advance(&mut self.0, &change.0, 1);
+        step(&mut self.0, &change.0);
     }
 
     #[inline(always)]
@@ -240,6 +266,11 @@ pub struct WidePlane {
 impl WidePlane {
     /// Zero everywhere.
     pub const ZERO: Self = Self { base: 0, dx: 0, dy: 0 };
+
+    /// The value at a pixel.
+    pub(crate) const fn at(&self, (x, y): (i32, i32)) -> i64 {
+        self.base.wrapping_add(self.dx.wrapping_mul(x as i64)).wrapping_add(self.dy.wrapping_mul(y as i64))
+    }
 }
 
 /// What belongs to a perspective-correct varying: it is `base` + (h >> `shift`), h being interpolated.

@@ -3,10 +3,15 @@
 use super::assembly::Assembly;
 use super::scan::Seen;
 use super::{State, Target};
-use crate::fragment::{AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, NoDepth, Shader, Steps};
-use crate::geometry::{Correction, DepthRange, DepthScale, Outcode, ScreenVertex, Transform, Varyings, signed_area};
+use crate::fragment::{
+    AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps,
+};
+use crate::geometry::{
+    Correction, DepthRange, DepthScale, FEW, Outcode, ScreenVertex, Transform, Varyings, signed_area,
+};
 use crate::output::Framebuffer;
-use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, homogenize, widen};
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
+use core::ops::Range;
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -173,6 +178,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// 9. Spans, between two edges from row to row.
     #[inline(never)]
     fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+        if S::Varyings::LEN > FEW {
+            return self.spans_apart(set_up, test);
+        }
         let SetUp { v, area, face, depth, corner, d_dy, steps } = set_up;
         let columns = self.clip.x.clone();
         let width = usize::from(self.screen.0);
@@ -236,6 +244,41 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 values.step(d_dy);
             }
         }
+    }
+
+    /// Stage 9 for many varyings, whose fragments take longer than all of this: nothing is kept from span to span but the edges, for
+    /// the stack that it takes.
+    #[inline(always)]
+    fn spans_apart<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+        let mut nothing = [(); MAX_SPAN];
+        let mut spans = Spans::new(set_up.v, set_up.area, &self.clip.y);
+        while let Some((y, x)) = spans.next_in(&self.clip.x) {
+            let shader = self.shader;
+            // 10, 11. Depth test and fragments.
+            shader.span(set_up.face, self.span_at::<D>(set_up, y, x, &mut nothing), test);
+        }
+    }
+
+    /// What there is of a span to draw.
+    #[inline(never)]
+    fn span_at<'a, D: DepthTest>(
+        &'a mut self,
+        set_up: &'a SetUp<'_, S::Varyings>,
+        y: i32,
+        x: Range<i32>,
+        nothing: &'a mut [(); MAX_SPAN],
+    ) -> Fragments<'a, F::Format, S::Varyings, D::Stored> {
+        let SetUp { depth: plane, corner, d_dy, steps, .. } = set_up;
+        let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);
+        let color = self.target.framebuffer.span(y as u32, x.start as usize, x.len());
+        let depth = D::stored(self.target.depth, nothing, row.wrapping_add(x.start as usize), color.len());
+        // The half rounds.
+        let z = plane.base.wrapping_add(1 << 15).wrapping_add_signed(plane.dy.wrapping_mul(y));
+        let z = z.wrapping_add_signed(plane.dx.wrapping_mul(x.start));
+        let mut span = Fragments { color, depth, z, varyings: *corner, steps, position: (x.start, y) };
+        span.varyings.advance(d_dy, y);
+        span.varyings.advance(&steps.d_dx, x.start);
+        span
     }
 }
 

@@ -43,12 +43,18 @@ impl Edge {
     /// [`ShortDivisor`], and 1 / D, more than 2^(z + 5), is 128 units of h. On up to 32 rows, h is off by less than 0.55 a row
     /// and 5 in all, cut by less than 1 a row; the start is cut by 1: the sum is in -56..=23, and what is taken off at the
     /// start makes that -104..=-25.
-    #[inline(never)]
+    #[inline]
     pub fn new(a: &ScreenVertex, b: &ScreenVertex, row: i32) -> Self {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
         let p = 256 * row + 128 - a.y;
         let usual = (((dx + (1 << 14)) as u32) < 1 << 15) & (((dy - 1) as u32) < (1 << 13) - 1);
         if !usual || dx.unsigned_abs() * dy as u32 >= 1 << 26 {
+            if dy <= 0 {
+                return Self::EMPTY;
+            }
+            if dx.unsigned_abs() >> 17 != 0 || dy >> 19 != 0 {
+                return Self::huge(a.x, dx, dy, p);
+            }
             return Self::large(a.x, dx, dy, p);
         }
         let divisor = ShortDivisor::new(dy as u32);
@@ -81,12 +87,6 @@ impl Edge {
     /// is below |dx| 2⁴⁵.
     #[inline(never)]
     fn large(x: i32, dx: i32, dy: i32, p: i32) -> Self {
-        if dy <= 0 {
-            return Self::EMPTY;
-        }
-        if dx.unsigned_abs() >> 17 != 0 || dy >> 19 != 0 {
-            return Self::huge(x, dx, dy, p);
-        }
         let z = leading_zeros_long(dy as u64) - 32;
         let inverse = reciprocal((dy as u32) << z);
         let h = mul_high_apart(dx << 12, inverse);

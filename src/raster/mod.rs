@@ -17,4 +17,4 @@ pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
 pub use perspective::{homogenize, widen};
 pub use point::square;
-pub use triangle::{Outline, PixelRect, first_centre, pixel_rect, spans};
+pub use triangle::{Outline, PixelRect, Spans, first_centre, pixel_rect, spans};

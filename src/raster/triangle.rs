@@ -70,23 +70,53 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 /// ```
 #[inline]
 pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl FnMut(i32, Range<i32>)) {
-    let outline = Outline::new(v, area, &clip.y);
-    let (mut left, mut right) = (outline.side(false, outline.top), outline.side(true, outline.top));
-    for y in outline.top..outline.end {
-        if y == outline.bend {
-            let edge = outline.side(outline.bend_right, y);
-            if outline.bend_right {
-                right = edge;
-            } else {
-                left = edge;
+    let mut spans = Spans::new(v, area, &clip.y);
+    while let Some((y, x)) = spans.next_in(&clip.x) {
+        span(y, x);
+    }
+}
+
+/// The spans of a triangle, one by one: all that walks is in one place, and what it takes to walk is not on the stack while a
+/// span is drawn.
+#[derive(Debug)]
+pub struct Spans<'v> {
+    outline: Outline<'v>,
+    left: Edge,
+    right: Edge,
+    /// The next row.
+    y: i32,
+}
+
+impl<'v> Spans<'v> {
+    /// The spans in the rows of `clip`. Other parameters are those of [`spans`].
+    #[inline]
+    pub fn new(v: &'v [ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
+        let outline = Outline::new(v, area, clip);
+        // Edges are made at their first row.
+        Self { y: outline.top, outline, left: Edge::EMPTY, right: Edge::EMPTY }
+    }
+
+    /// The next span in these columns that is not empty: its row, and what of it is in them.
+    #[inline(never)]
+    pub fn next_in(&mut self, columns: &Range<i32>) -> Option<(i32, Range<i32>)> {
+        while self.y < self.outline.end {
+            let y = self.y;
+            let [top, bend] = [self.outline.top, self.outline.bend].map(|row| y == row);
+            if top || bend && !self.outline.bend_right {
+                self.left = self.outline.side(false, y);
+            }
+            if top || bend && self.outline.bend_right {
+                self.right = self.outline.side(true, y);
+            }
+            let x = self.left.pixel().max(columns.start)..self.right.pixel().min(columns.end);
+            self.left.step();
+            self.right.step();
+            self.y = y + 1;
+            if x.start < x.end {
+                return Some((y, x));
             }
         }
-        let x = left.pixel().max(clip.x.start)..right.pixel().min(clip.x.end);
-        if x.start < x.end {
-            span(y, x);
-        }
-        left.step();
-        right.step();
+        None
     }
 }
 
