@@ -27,7 +27,7 @@ pub struct Chosen<F: Framebuffer, S: Shader<F::Format>> {
     bias: Option<fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32>,
     pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
     /// 4. What is drawn of a clipped triangle before the near and beyond the far plane.
-    pub(super) beyond: Option<fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode, [u16; 3], usize)>,
+    pub(super) beyond: Option<fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode)>,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
@@ -40,7 +40,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
         spans: spans_by_state,
         bias: Some(biased),
         depth_scale: Some(Transform::set_depth_scale),
-        beyond: Some(|assembly, seen, codes, corners, number| assembly.beyond(seen, codes, corners, number)),
+        beyond: Some(|assembly, seen, codes| assembly.beyond(seen, codes)),
     };
 
     /// For a state.
