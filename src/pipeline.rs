@@ -105,7 +105,7 @@ pub struct Scene<'a, F> {
     pub(crate) viewport: Viewport,
     pub(crate) phase: Phase,
     pub(crate) records: Records<'a>,
-    pub(crate) strips: StripRows,
+    pub(crate) strips: &'a StripRows,
     /// Rows of the band that is recorded, replayed or drawn.
     pub(crate) band: Range<i32>,
     pub(crate) target: Target<'a, F>,

@@ -184,11 +184,26 @@ impl Progress {
     }
 }
 
+impl Progress {
+    /// Goes on to the next strip.
+    #[inline]
+    fn end_strip(&mut self, rows: u16, phase: Phase) {
+        if phase == Phase::Direct {
+            self.strips = 1;
+            self.stats.direct_strips = self.stats.direct_strips.wrapping_add(1);
+        }
+        self.row += rows;
+        self.stats.strips = self.stats.strips.wrapping_add(1);
+    }
+}
+
 impl Engine<'_> {
-    /// Draws the next strip of so many rows, of which there must be one, into rows of `framebuffer`, which hold the background already.
+    /// Draws the next strip of so many rows, of which there must be one, into rows of `framebuffer`, which hold the background already;
+    /// the number of the draw that differed is an error.
     ///
     /// If it is not in the records, a band that begins with it is recorded first: all the rest of the screen, or half of
     /// what was tried last, until it fits. Where not even one strip does, it is drawn directly.
+    #[inline]
     fn next_strip<F: Framebuffer>(
         &mut self,
         progress: &mut Progress,
@@ -196,70 +211,87 @@ impl Engine<'_> {
         rows: u16,
         draw: &mut dyn FnMut(&mut Scene<'_, F>),
     ) -> Result<(), u16> {
-        let row = progress.row;
-        let grid = self.grid;
-        let pixels = usize::from(grid.viewport.width()) * usize::from(rows);
         if F::DEPTH {
+            let pixels = usize::from(self.grid.viewport.width()) * usize::from(rows);
             clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
         }
         loop {
-            let mut records = Records::new(self.records, &mut progress.layout);
-            let (phase, band) = if !F::RECORDS {
-                (Phase::Direct, (row, row + rows))
-            } else if row < progress.band.1 {
-                records.begin_replay(grid.strips.of(u32::from(row - progress.band.0)));
-                (Phase::Replay, progress.band)
-            } else if progress.strips == 0 {
-                records.clear();
-                (Phase::Direct, (row, row + rows))
-            } else {
-                progress.strips = progress.strips.min(grid.strips_from(row));
-                records.begin_band(usize::from(progress.strips));
-                (Phase::Record, grid.band(row, progress.strips))
-            };
-            let mut scene = Scene {
-                screen: grid.screen(),
-                viewport: grid.viewport,
-                phase,
-                records,
-                strips: grid.strips,
-                band: i32::from(band.0)..i32::from(band.1),
-                target: Target { framebuffer, depth: self.depth, rows: i32::from(row)..i32::from(row + rows) },
-                stats: &mut progress.stats,
-                draws: 0,
-                changed: None,
-            };
-            // Records that cannot even hold the lists need no walk to overflow.
-            if !scene.overflowed() {
-                scene.stats.walks = scene.stats.walks.wrapping_add(1);
-                draw(&mut scene);
-            }
-            let (draws, changed) = (scene.draws, scene.changed);
-            if F::RECORDS && phase == Phase::Record {
-                if scene.overflowed() {
-                    progress.stats.overflows = progress.stats.overflows.wrapping_add(1);
-                    progress.strips /= 2;
-                } else {
-                    (progress.band, progress.draws) = (band, draws);
-                }
-                continue;
-            }
-            let missing = phase == Phase::Replay && draws != progress.draws;
-            if let (true, Some(draw)) = (F::RECORDS, changed.or(missing.then(|| draws.min(progress.draws)))) {
+            let phase = if F::RECORDS { self.begin_walk(progress, rows) } else { Phase::Direct };
+            if let Some(draw) = self.walk(progress, framebuffer, rows, phase, draw) {
                 // What is left in the records is of no use: the frame is over.
-                progress.row = grid.viewport.height();
+                progress.row = self.grid.viewport.height();
                 return Err(draw);
             }
-            if phase == Phase::Direct {
-                if F::RECORDS {
-                    progress.strips = 1;
-                }
-                progress.stats.direct_strips = progress.stats.direct_strips.wrapping_add(1);
+            if phase != Phase::Record {
+                progress.end_strip(rows, phase);
+                return Ok(());
             }
-            progress.row += rows;
-            progress.stats.strips = progress.stats.strips.wrapping_add(1);
-            return Ok(());
         }
+    }
+
+    /// What the next walk does, with the records made ready for it.
+    #[inline(never)]
+    fn begin_walk(&mut self, progress: &mut Progress, rows: u16) -> Phase {
+        let Progress { row, band, strips, layout, .. } = progress;
+        let mut records = Records::new(self.records, layout);
+        if *row < band.1 {
+            records.begin_replay(self.grid.strips.of(u32::from(*row - band.0)));
+            return Phase::Replay;
+        }
+        if *strips == 0 {
+            *band = (*row, *row + rows);
+            records.clear();
+            return Phase::Direct;
+        }
+        *strips = self.grid.strips_from(*row).min(*strips);
+        *band = self.grid.band(*row, *strips);
+        records.begin_band(usize::from(*strips));
+        Phase::Record
+    }
+
+    /// A walk over the scene; the number of the draw that differed from the walk before.
+    #[inline(never)]
+    fn walk<F: Framebuffer>(
+        &mut self,
+        progress: &mut Progress,
+        framebuffer: &mut F,
+        rows: u16,
+        phase: Phase,
+        draw: &mut dyn FnMut(&mut Scene<'_, F>),
+    ) -> Option<u16> {
+        let rows = i32::from(progress.row)..i32::from(progress.row + rows);
+        let mut scene = Scene {
+            screen: self.grid.screen(),
+            viewport: self.grid.viewport,
+            phase,
+            records: Records::new(self.records, &mut progress.layout),
+            strips: &self.grid.strips,
+            band: if F::RECORDS { i32::from(progress.band.0)..i32::from(progress.band.1) } else { rows.clone() },
+            target: Target { framebuffer, depth: self.depth, rows },
+            stats: &mut progress.stats,
+            draws: 0,
+            changed: None,
+        };
+        // Records that cannot even hold the lists need no walk to overflow.
+        if !scene.overflowed() {
+            scene.stats.walks = scene.stats.walks.wrapping_add(1);
+            draw(&mut scene);
+        }
+        if !F::RECORDS {
+            return None;
+        }
+        let (draws, changed) = (scene.draws, scene.changed);
+        match scene.phase {
+            Phase::Record if scene.overflowed() => {
+                scene.stats.overflows = scene.stats.overflows.wrapping_add(1);
+                progress.strips /= 2;
+                progress.band.1 = progress.band.0;
+            }
+            Phase::Record => progress.draws = draws,
+            Phase::Replay if draws != progress.draws => return changed.or(Some(draws.min(progress.draws))),
+            Phase::Replay | Phase::Direct => {}
+        }
+        changed
     }
 }
 
@@ -407,10 +439,11 @@ impl<'b, P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Renderer<'b, P,
     ) -> Result<Stats, FrameError<K::Error>> {
         let Frame { renderer: Self { engine, color }, background, mut progress } = self.begin(background);
         loop {
-            let strip = strip_into(engine, &mut progress, color, background, &mut draw);
-            sink.strip(&strip.map_err(FrameError::SceneChanged)?).map_err(FrameError::Sink)?;
-            if progress.row >= engine.grid.viewport.height() {
-                return Ok(progress.stats);
+            match next_strip(engine, &mut progress, color, background, &mut draw) {
+                Ok(Some(strip)) => sink.strip(&strip).map_err(FrameError::Sink)?,
+                Ok(None) => return Ok(progress.stats),
+                Err(FrameError::SceneChanged(draw)) => return Err(FrameError::SceneChanged(draw)),
+                Err(FrameError::Sink(never)) => match never {},
             }
         }
     }
@@ -478,6 +511,9 @@ impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Frame<'_, '_, P, DE
 }
 
 /// Draws the next strip of a frame into `color`, if there is one.
+///
+/// The closure is called through a pointer, once a strip or so: whatever many frames draw, this is linked once.
+#[inline(never)]
 fn next_strip<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
     engine: &mut Engine<'_>,
     progress: &mut Progress,
@@ -485,32 +521,18 @@ fn next_strip<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
     background: P::Raw,
     draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
 ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
-    if progress.row >= engine.grid.viewport.height() {
+    let (width, row) = (engine.grid.viewport.width(), progress.row);
+    if row >= engine.grid.viewport.height() {
         return Ok(None);
     }
-    strip_into(engine, progress, color, background, draw).map(Some).map_err(FrameError::SceneChanged)
-}
-
-/// Draws the next strip of a frame, of which there must be one, into `color`; the number of the draw that differed is an error.
-///
-/// The closure is called through a pointer, once a strip or so: whatever many frames draw, this is linked once.
-#[inline(never)]
-fn strip_into<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
-    engine: &mut Engine<'_>,
-    progress: &mut Progress,
-    color: &'c mut [P::Raw],
-    background: P::Raw,
-    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
-) -> Result<StripPixels<'c, P>, u16> {
-    let (width, row) = (engine.grid.viewport.width(), progress.row);
     let rows = engine.grid.rows_at(row);
     let length = (usize::from(width) * usize::from(rows)).min(color.len());
     let color = color.get_mut(..length).unwrap_or_default();
     clear(color, background);
     let mut strip = Strip::<P, DEPTH, RECORDS>::new(&mut *color, width, u32::from(row));
-    engine.next_strip(progress, &mut strip, rows, draw)?;
+    engine.next_strip(progress, &mut strip, rows, draw).map_err(FrameError::SceneChanged)?;
     let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(u32::from(width), u32::from(rows)));
-    Ok(StripPixels::new(area, color))
+    Ok(Some(StripPixels::new(area, color)))
 }
 
 /// Draws frames straight into a framebuffer, with a depth buffer as high as the screen, or only a strip of it, or none.

@@ -13,14 +13,21 @@ use crate::output::{Framebuffer, Slot};
 use crate::raster::PixelRect;
 use core::ops::Range;
 
-/// A corner of a clipped polygon on the screen. What is interpolated is made of it when it is drawn, or recorded: there may be ten.
-#[derive(Clone, Copy, Debug)]
+/// Corners of a clipped polygon that are kept at once: the first, and the next three. Triangles and quadrilaterals have no more.
+const FAN: usize = 4;
+
+/// A corner of a clipped polygon on the screen. What is interpolated is made of it when it is drawn, or recorded.
+#[derive(Clone, Copy)]
 struct FanCorner {
     slot: Slot,
     /// Parts of the triangle's corners in it, see [`ClipCorner`](crate::geometry::ClipCorner).
     weights: [i32; 3],
     /// See [`inverse_w`]; 0 where nothing is perspective-correct.
     inverse_w: u32,
+}
+
+impl FanCorner {
+    const NONE: Self = Self { slot: Slot::NONE, weights: [0; 3], inverse_w: 0 };
 }
 
 /// One draw.
@@ -70,11 +77,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let first = numbers.start;
         let mut scan = Scan::new(self.mesh, numbers);
         while !self.scene.overflowed() {
-            match scan.next(&self.scene.records, self.culling, &self.clip, self.scene.stats) {
-                Stop::Seen => self.shade_face(&scan.seen, scan.corners, scan.number),
-                Stop::Unplaced => self.unplaced(&mut scan.seen, scan.corners, scan.number),
-                Stop::End => break,
+            let stop = scan.next(&self.scene.records, self.culling, &self.clip, self.scene.stats);
+            if stop == Stop::End {
+                break;
             }
+            self.shade_stop(stop, &mut scan.seen);
         }
         self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add((scan.next_number() - first) as u32);
     }
@@ -84,64 +91,75 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     fn each_triangle(&mut self, numbers: Range<usize>) {
         let mut seen = Seen::NONE;
         for number in numbers {
-            let Some(corners) = self.mesh.any_triangle(number) else { return };
+            let Some([i, j, k]) = self.mesh.any_triangle(number) else { return };
             if self.scene.overflowed() {
                 return;
             }
             self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
-            if S::CULL_DISTANCES > 0 && self.is_culled_by_distance(corners) {
+            if S::CULL_DISTANCES > 0 && self.is_culled_by_distance([i, j, k]) {
                 self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             } else {
-                self.unplaced(&mut seen, corners, number);
+                (seen.number, seen.corners) = (number, [i, j, k]);
+                self.shade_stop(Stop::Unplaced, &mut seen);
             }
         }
     }
 
-    /// A triangle that has a vertex which is not shaded yet, or not on the screen.
+    /// A triangle that may be seen, or that has to be looked at.
+    #[inline(always)]
+    fn shade_stop(&mut self, stop: Stop, seen: &mut Seen) {
+        match if stop == Stop::Unplaced { self.look_at(seen) } else { stop } {
+            Stop::Seen => self.shade_face(seen),
+            // 4. Clipping.
+            Stop::Clipped(codes) => {
+                self.part(seen, codes, Part::Between);
+                if let Some(beyond) = self.chosen.beyond {
+                    beyond(self, seen, codes);
+                }
+            }
+            Stop::Unplaced | Stop::End => {}
+        }
+    }
+
+    /// A triangle that has a vertex which is not shaded yet, or not on the screen: what else it is; the end, if it cannot be seen.
     #[inline(never)]
-    fn unplaced(&mut self, seen: &mut Seen, corners: [u16; 3], number: usize) {
+    fn look_at(&mut self, seen: &mut Seen) -> Stop {
         // 3. Vertex stage, once a vertex where there are records to keep the result.
-        let mut slots = [Slot::NONE; 3];
         let mut visible = true;
         let (mut common, mut all) = (!self.state.range.clamped().0, 0);
-        for (slot, index) in slots.iter_mut().zip(&corners) {
-            *slot = self.slot(*index);
+        for (v, index) in seen.v.iter_mut().zip(&seen.corners) {
+            let slot = self.slot(*index);
+            *v = slot.screen();
             visible &= slot.is_on_screen();
             common &= slot.outcode();
             all |= slot.outcode();
         }
         if visible {
-            if seen.set(&slots, self.culling, &self.clip, self.scene.stats) {
-                self.shade_face(seen, corners, number);
-            }
+            if seen.find(self.culling, &self.clip, self.scene.stats) { Stop::Seen } else { Stop::End }
         } else if common != 0 {
             self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            Stop::End
         } else {
-            // 4. Clipping.
             self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
-            let all = Outcode(all);
-            self.part(seen, all, corners, number, Part::Between);
-            if let Some(beyond) = self.chosen.beyond {
-                beyond(self, seen, all, corners, number);
-            }
+            Stop::Clipped(Outcode(all))
         }
     }
 
     /// A triangle on the screen.
     #[inline(never)]
-    fn shade_face(&mut self, seen: &Seen, corners: [u16; 3], number: usize) {
-        let word = self.face(seen, corners, number);
+    fn shade_face(&mut self, seen: &Seen) {
+        let word = self.face(seen);
         if self.scene.is_recording() {
-            self.record(seen.row, corners, word);
+            self.record(seen.row, seen.corners, word);
         } else {
-            let [i, j, k] = corners;
+            let [i, j, k] = seen.corners;
             self.draw(seen, &mut [self.varyings(i), self.varyings(j), self.varyings(k)], word);
         }
     }
 
     #[inline(never)]
-    fn face(&self, seen: &Seen, corners: [u16; 3], number: usize) -> u32 {
-        self.shader.face(&Face::new(self.mesh, number, corners, self.state.side(seen.area)))
+    fn face(&self, seen: &Seen) -> u32 {
+        self.shader.face(&Face::new(self.mesh, seen.number, seen.corners, self.state.side(seen.area)))
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
@@ -193,57 +211,71 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     /// The parts of a triangle that have their depth clamped.
-    pub(super) fn beyond(&mut self, seen: &mut Seen, codes: Outcode, corners: [u16; 3], number: usize) {
+    pub(super) fn beyond(&mut self, seen: &mut Seen, codes: Outcode) {
         for part in self.state.range.parts_beyond(codes) {
-            self.part(seen, codes, corners, number, part);
+            self.part(seen, codes, part);
         }
     }
 
     #[inline]
-    fn part(&mut self, seen: &mut Seen, codes: Outcode, corners: [u16; 3], number: usize, part: Part) {
+    fn part(&mut self, seen: &mut Seen, codes: Outcode, part: Part) {
         if S::CLIP_DISTANCES > 0 {
-            self.cut_part::<DISTANCE_CORNERS>(seen, codes, corners, number, part);
+            self.cut_part::<DISTANCE_CORNERS>(seen, codes, part);
         } else {
-            self.cut_part::<CLIPPED_CORNERS>(seen, codes, corners, number, part);
+            self.cut_part::<CLIPPED_CORNERS>(seen, codes, part);
         }
     }
 
     /// A part of a triangle, which has up to `N` corners when it has been clipped: a fan of triangles.
+    ///
+    /// Where it has more corners than are kept, it is cut again for the next ones: that is rare, and the stack is short.
     #[inline(never)]
-    fn cut_part<const N: usize>(
-        &mut self,
-        seen: &mut Seen,
-        codes: Outcode,
-        corners: [u16; 3],
-        number: usize,
-        part: Part,
-    ) {
-        let mut fan = heapless::Vec::<FanCorner, N>::new();
-        self.cut::<N>(corners, codes, part, &mut fan);
-        let recording = self.scene.is_recording();
-        let (mut v, mut indices) = ([Slot::NONE; 3], [0; 3]);
-        for (place, corner) in fan.iter().enumerate() {
-            if recording {
-                indices[2] = self.scene.records.push_vertex();
-                let varyings = self.corner_varyings(corners, corner);
-                self.scene.records.keep::<S>(usize::from(indices[2]), corner.slot, &varyings);
-            }
-            v[2] = corner.slot;
-            if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
-                if seen.set(&v, self.culling, &self.clip, self.scene.stats) {
-                    let word = self.face(seen, corners, number);
-                    if recording {
-                        self.record(seen.row, indices, word);
-                    } else {
-                        let varyings = |corner| self.corner_varyings(corners, corner);
-                        let mut varyings = [varyings(first), varyings(last), varyings(corner)];
-                        self.draw(seen, &mut varyings, word);
+    fn cut_part<const N: usize>(&mut self, seen: &mut Seen, codes: Outcode, part: Part) {
+        let mut fan = [FanCorner::NONE; FAN];
+        let mut indices = [0; 3];
+        let mut before = 0;
+        loop {
+            let count = self.cut::<N>(seen.corners, codes, part, before, &mut fan);
+            // The first one, and the last one before, are there already.
+            for (place, corner) in fan.iter().enumerate().take(count - before).skip(before.min(2)) {
+                seen.v[2] = corner.slot.screen();
+                if self.scene.is_recording() {
+                    indices[2] = self.keep(seen.corners, corner);
+                }
+                if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
+                    if seen.find(self.culling, &self.clip, self.scene.stats) {
+                        if self.scene.is_recording() {
+                            self.record(seen.row, indices, self.face(seen));
+                        } else {
+                            self.draw_corners(seen, [first, last, corner]);
+                        }
                     }
                 }
+                let place = usize::from(place > 0);
+                (seen.v[place], indices[place]) = (seen.v[2], indices[2]);
             }
-            let place = usize::from(place > 0);
-            (v[place], indices[place]) = (v[2], indices[2]);
+            before += FAN - 2;
+            if count <= before + 2 {
+                return;
+            }
         }
+    }
+
+    /// Puts a corner of a clipped triangle into the records.
+    #[inline(never)]
+    fn keep(&mut self, corners: [u16; 3], corner: &FanCorner) -> u16 {
+        let index = self.scene.records.push_vertex();
+        let varyings = self.corner_varyings(corners, corner);
+        self.scene.records.keep::<S>(usize::from(index), corner.slot, &varyings);
+        index
+    }
+
+    /// A triangle of a fan.
+    #[inline(never)]
+    fn draw_corners(&mut self, seen: &Seen, corners: [&FanCorner; 3]) {
+        let word = self.face(seen);
+        let varyings = |k: usize| self.corner_varyings(seen.corners, corners[k]);
+        self.draw(seen, &mut [varyings(0), varyings(1), varyings(2)], word);
     }
 
     /// The varyings at a corner of a clipped triangle.
@@ -270,16 +302,18 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         all.skip(S::CLIP_DISTANCES).take(S::CULL_DISTANCES).any(|sign| sign < 0)
     }
 
-    /// What is left of a part of a triangle, on the screen. In a function of its own, so that the polygon in clip space
-    /// has left the stack when it is drawn.
+    /// What is left of a part of a triangle, on the screen: its first corner, and those behind place `before`, as many as there
+    /// is room for; how many there are in all. In a function of its own, so that the polygon in clip space has left the
+    /// stack when it is drawn.
     #[inline(never)]
     fn cut<const N: usize>(
         &self,
         corners: [u16; 3],
         codes: Outcode,
         part: Part,
-        fan: &mut heapless::VecView<FanCorner>,
-    ) {
+        before: usize,
+        fan: &mut [FanCorner; FAN],
+    ) -> usize {
         let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; N]>::new();
         for (k, index) in corners.iter().enumerate() {
             polygon.set(k, &self.transformed(usize::from(*index)));
@@ -292,7 +326,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                 polygon.cut_by_distance([i, j, k]);
             }
         }
-        place(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, fan);
+        place(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, before, fan)
     }
 
     /// The varyings of a vertex, with 1 / w if they take it.
@@ -323,18 +357,33 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 }
 
-/// The corners of a polygon, on the screen.
+/// Corners of a polygon on the screen, see [`Assembly::cut`].
 #[inline(never)]
-fn place(polygon: &Polygon, transform: &Transform, perspective: bool, fan: &mut heapless::VecView<FanCorner>) {
+fn place(
+    polygon: &Polygon,
+    transform: &Transform,
+    perspective: bool,
+    before: usize,
+    fan: &mut [FanCorner; FAN],
+) -> usize {
+    let (mut count, mut fan) = (0, fan.iter_mut());
     for corner in polygon.corners() {
-        let vertex = corner.vertex();
-        if let Some(placed) = transform.project(&vertex) {
-            let inverse_w = if perspective { inverse_w(&vertex) } else { 0 };
-            // There are no more corners than places.
-            let slot = Slot::new(&Placed::Screen(placed));
-            let _ = fan.push(FanCorner { slot, weights: corner.weights(), inverse_w });
+        if count == 0 || count > before {
+            if let Some(to) = fan.next() {
+                let vertex = corner.vertex();
+                // All of them can be projected, as what is behind the eye has been cut away.
+                if let Some(placed) = transform.project(&vertex) {
+                    to.slot = Slot::new(&Placed::Screen(placed));
+                }
+                to.weights = corner.weights();
+                if perspective {
+                    to.inverse_w = inverse_w(&vertex);
+                }
+            }
         }
+        count += 1;
     }
+    count
 }
 
 /// The varyings as the records would give them back.

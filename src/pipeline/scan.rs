@@ -1,7 +1,7 @@
 //! Stages 2 and 5: a mesh's triangles one after the other, without those that cannot be seen. The same code for all shaders.
 
 use super::{Cull, State, Winding};
-use crate::geometry::{Mesh, ScreenVertex, Side, Topology, area_of, signed_area};
+use crate::geometry::{Mesh, Outcode, ScreenVertex, Side, Topology, area_of, signed_area};
 use crate::output::{Records, Slot, Stats};
 use crate::raster::{PixelRect, pixel_rect};
 use core::ops::Range;
@@ -14,16 +14,15 @@ pub(super) struct Scan<'m> {
     list: ChunksExact<'m, u16>,
     next: usize,
     end: usize,
-    /// Number and vertices of the triangle that was found.
-    pub(super) number: usize,
-    pub(super) corners: [u16; 3],
-    /// Where it is, if all its vertices are on the screen.
     pub(super) seen: Seen,
 }
 
-/// A triangle on the screen that may have pixels.
-#[derive(Clone, Copy)]
+/// A triangle that was found: one on the screen that may have pixels, or one that has to be looked at.
 pub(super) struct Seen {
+    /// Its number in the mesh, and its vertices.
+    pub(super) number: usize,
+    pub(super) corners: [u16; 3],
+    /// Where it is; a part of it, if it has to be clipped.
     pub(super) v: [ScreenVertex; 3],
     /// Twice the signed area; not 0.
     pub(super) area: i64,
@@ -38,6 +37,8 @@ pub(super) enum Stop {
     Seen,
     /// One with a vertex that is not shaded yet, or not on the screen.
     Unplaced,
+    /// One to be clipped, by these planes and by clip distances.
+    Clipped(Outcode),
     /// There are no more.
     End,
 }
@@ -77,15 +78,12 @@ impl Culling {
 
 impl Seen {
     /// Nothing yet.
-    pub(super) const NONE: Self = Self { v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
+    pub(super) const NONE: Self =
+        Self { number: 0, corners: [0; 3], v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
 
-    /// Becomes a triangle with these vertices, and tells whether it may be seen: stage 5, culling by winding, and of what covers
-    /// no pixel of `clip`.
+    /// Whether what is at `v` may be seen: stage 5, culling by winding, and of what covers no pixel of `clip`.
     #[inline(never)]
-    pub(super) fn set(&mut self, slots: &[Slot; 3], culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
-        for (v, slot) in self.v.iter_mut().zip(slots) {
-            *v = slot.screen();
-        }
+    pub(super) fn find(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
         let [a, b, c] = &self.v;
         self.area = signed_area(a, b, c);
         if culling.leaves_out(self.area) {
@@ -127,15 +125,7 @@ impl<'m> Scan<'m> {
         };
         let list = indices.and_then(|indices| indices.get(3 * numbers.start..3 * numbers.end));
         let list = list.unwrap_or_default().chunks_exact(3);
-        Self {
-            mesh,
-            list,
-            next: numbers.start,
-            end: numbers.end.min(mesh.triangle_count()),
-            number: 0,
-            corners: [0; 3],
-            seen: Seen::NONE,
-        }
+        Self { mesh, list, next: numbers.start, end: numbers.end.min(mesh.triangle_count()), seen: Seen::NONE }
     }
 
     /// The number of the next triangle.
@@ -168,7 +158,7 @@ impl<'m> Scan<'m> {
             number += 1;
             let (a, b, c) = (slot(i), slot(j), slot(k));
             if !(a.is_on_screen() && b.is_on_screen() && c.is_on_screen()) {
-                self.corners = [i, j, k];
+                self.seen.corners = [i, j, k];
                 break Stop::Unplaced;
             }
             // 5. Culling by winding, as early as can be.
@@ -177,7 +167,7 @@ impl<'m> Scan<'m> {
                 stats.back_facing = stats.back_facing.wrapping_add(1);
                 continue;
             }
-            self.corners = [i, j, k];
+            self.seen.corners = [i, j, k];
             self.seen.v = [a.screen(), b.screen(), c.screen()];
             self.seen.area = area;
             if self.seen.has_pixels(clip, stats) {
@@ -186,7 +176,7 @@ impl<'m> Scan<'m> {
         };
         self.list = list;
         self.next = number;
-        self.number = number.wrapping_sub(1);
+        self.seen.number = number.wrapping_sub(1);
         stop
     }
 

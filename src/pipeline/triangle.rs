@@ -25,7 +25,7 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
 }
 
 type Bias = fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32;
-type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode, [u16; 3], usize);
+type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode);
 
 /// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
 pub struct Chosen<F: Framebuffer, S: Shader<F::Format>> {
@@ -48,7 +48,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
         spans: spans_by_state,
         bias: Some(biased),
         depth_scale: Some(Transform::set_depth_scale),
-        beyond: Some(|assembly, seen, codes, corners, number| assembly.beyond(seen, codes, corners, number)),
+        beyond: Some(|assembly, seen, codes| assembly.beyond(seen, codes)),
     };
 
     /// For a state.
