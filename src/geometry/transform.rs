@@ -141,7 +141,10 @@ impl View {
         let factors = [(width, x), (-height, y), (1 << 10, 0), (1 << 10, 0)];
         for ((to, row), (size, offset)) in self.rows.iter_mut().zip(mvp.rows()).zip(&factors) {
             for ((to, r), w) in to.iter_mut().zip(row).zip(w) {
-                *to = i64::from(*size) * scale(*r, shift) + i64::from(*offset) * scale(*w, shift);
+                *to = i64::from(*size) * scale(*r, shift);
+                if *offset != 0 {
+                    *to += i64::from(*offset) * scale(*w, shift);
+                }
             }
         }
         let more = excess(self.rows.as_flattened(), 45);
@@ -218,8 +221,10 @@ impl Numbers {
     #[inline(never)]
     fn translation(&self, row: &[i64; 4]) -> i64 {
         let mut t = if self.homogeneous { 0 } else { row[3] };
-        for (r, offset) in row.iter().zip(&self.offset) {
-            t += times(*r, (*offset).into());
+        if self.quantized {
+            for (r, offset) in row.iter().zip(&self.offset) {
+                t += times(*r, (*offset).into());
+            }
         }
         t
     }
@@ -240,7 +245,8 @@ impl Numbers {
     /// Makes a row of the transform, cut by `shift` bits.
     #[inline(never)]
     fn row(&self, row: &[i64; 4], shift: i32, short: bool, to: &mut Row) {
-        *to = Row { entries: [[0; 2]; 4], translation: scale(self.translation(row), shift) };
+        to.translation = scale(self.translation(row), shift);
+        to.entries[3] = [0; 2];
         for (entry, e) in to.entries.iter_mut().zip(self.entries(row)) {
             // 16 fractional bits: e / 2³¹ · 2¹⁶.
             let e = scale(e, shift + 15);
