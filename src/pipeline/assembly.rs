@@ -17,17 +17,24 @@ use core::ops::Range;
 const FAN: usize = 4;
 
 /// A corner of a clipped polygon on the screen. What is interpolated is made of it when it is drawn, or recorded.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 struct FanCorner {
-    slot: Slot,
+    /// Words of a [`Slot`].
+    slot: [u32; 2],
     /// Parts of the triangle's corners in it, see [`ClipCorner`](crate::geometry::ClipCorner).
     weights: [i32; 3],
     /// See [`inverse_w`]; 0 where nothing is perspective-correct.
     inverse_w: u32,
 }
 
-impl FanCorner {
-    const NONE: Self = Self { slot: Slot::NONE, weights: [0; 3], inverse_w: 0 };
+/// A part of a polygon that is drawn as a fan of triangles.
+#[derive(Default)]
+// Cleared by the same routine as 64-bit numbers are.
+#[repr(align(8))]
+struct Fan {
+    corners: [FanCorner; FAN],
+    /// Those of a triangle, in the records.
+    indices: [u16; 3],
 }
 
 /// One draw.
@@ -74,7 +81,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Where places are kept: those that may be seen.
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
-        let first = numbers.start;
         let mut scan = Scan::new(self.mesh, numbers);
         while !self.scene.overflowed() {
             let stop = scan.next(&self.scene.records, self.culling, &self.clip, self.scene.stats);
@@ -83,7 +89,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             }
             self.shade_stop(stop, &mut scan.seen);
         }
-        self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add((scan.next_number() - first) as u32);
     }
 
     /// Where there is nothing to scan: places are not kept, or cull distances come before them.
@@ -231,28 +236,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Where it has more corners than are kept, it is cut again for the next ones: that is rare, and the stack is short.
     #[inline(never)]
     fn cut_part<const N: usize>(&mut self, seen: &mut Seen, codes: Outcode, part: Part) {
-        let mut fan = [FanCorner::NONE; FAN];
-        let mut indices = [0; 3];
+        let mut fan = Fan::default();
         let mut before = 0;
         loop {
-            let count = self.cut::<N>(seen.corners, codes, part, before, &mut fan);
+            let count = self.cut::<N>(seen.corners, codes, part, before, &mut fan.corners);
             // The first one, and the last one before, are there already.
-            for (place, corner) in fan.iter().enumerate().take(count - before).skip(before.min(2)) {
-                seen.v[2] = corner.slot.screen();
-                if self.scene.is_recording() {
-                    indices[2] = self.keep(seen.corners, corner);
-                }
-                if let (2.., Some(first), Some(last)) = (place, fan.first(), fan.get(place.wrapping_sub(1))) {
-                    if seen.find(self.culling, &self.clip, self.scene.stats) {
-                        if self.scene.is_recording() {
-                            self.record(seen.row, indices, self.face(seen));
-                        } else {
-                            self.draw_corners(seen, [first, last, corner]);
-                        }
-                    }
-                }
-                let place = usize::from(place > 0);
-                (seen.v[place], indices[place]) = (seen.v[2], indices[2]);
+            for place in before.min(2)..FAN.min(count - before) {
+                self.fan_corner(seen, &mut fan, place);
             }
             before += FAN - 2;
             if count <= before + 2 {
@@ -261,21 +251,40 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
+    /// A corner of a fan, and the triangle that it is the last of.
+    #[inline(never)]
+    fn fan_corner(&mut self, seen: &mut Seen, fan: &mut Fan, place: usize) {
+        let Some(corner) = fan.corners.get(place) else { return };
+        seen.v[2] = Slot::from_words(corner.slot).screen();
+        if self.scene.is_recording() {
+            fan.indices[2] = self.keep(seen.corners, corner);
+        }
+        if place >= 2 && seen.find(self.culling, &self.clip, self.scene.stats) {
+            if self.scene.is_recording() {
+                self.record(seen.row, fan.indices, self.face(seen));
+            } else {
+                self.draw_corners(seen, &fan.corners, place);
+            }
+        }
+        let place = usize::from(place > 0);
+        (seen.v[place], fan.indices[place]) = (seen.v[2], fan.indices[2]);
+    }
+
     /// Puts a corner of a clipped triangle into the records.
     #[inline(never)]
     fn keep(&mut self, corners: [u16; 3], corner: &FanCorner) -> u16 {
         let index = self.scene.records.push_vertex();
         let varyings = self.corner_varyings(corners, corner);
-        self.scene.records.keep::<S>(usize::from(index), corner.slot, &varyings);
+        self.scene.records.keep::<S>(usize::from(index), Slot::from_words(corner.slot), &varyings);
         index
     }
 
     /// A triangle of a fan.
     #[inline(never)]
-    fn draw_corners(&mut self, seen: &Seen, corners: [&FanCorner; 3]) {
-        let word = self.face(seen);
-        let varyings = |k: usize| self.corner_varyings(seen.corners, corners[k]);
-        self.draw(seen, &mut [varyings(0), varyings(1), varyings(2)], word);
+    fn draw_corners(&mut self, seen: &Seen, corners: &[FanCorner; FAN], last: usize) {
+        let varyings = |k: usize| corners.get(k).map_or(S::Varyings::ZERO, |k| self.corner_varyings(seen.corners, k));
+        let mut varyings = [varyings(0), varyings(last - 1), varyings(last)];
+        self.draw(seen, &mut varyings, self.face(seen));
     }
 
     /// The varyings at a corner of a clipped triangle.
@@ -316,7 +325,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     ) -> usize {
         let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; N]>::new();
         for (k, index) in corners.iter().enumerate() {
-            polygon.set(k, &self.transformed(usize::from(*index)));
+            self.set_corner(polygon, k, *index);
         }
         polygon.clip(codes, part);
         if S::CLIP_DISTANCES > 0 {
@@ -327,6 +336,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             }
         }
         place(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, before, fan)
+    }
+
+    /// Sets a corner of a triangle that is to be clipped. In a function of its own for the stack.
+    #[inline(never)]
+    fn set_corner(&self, polygon: &mut Polygon, k: usize, index: u16) {
+        polygon.set(k, &self.transformed(usize::from(index)));
     }
 
     /// The varyings of a vertex, with 1 / w if they take it.
@@ -373,7 +388,7 @@ fn place(
                 let vertex = corner.vertex();
                 // All of them can be projected, as what is behind the eye has been cut away.
                 if let Some(placed) = transform.project(&vertex) {
-                    to.slot = Slot::new(&Placed::Screen(placed));
+                    to.slot = Slot::new(&Placed::Screen(placed)).words();
                 }
                 to.weights = corner.weights();
                 if perspective {

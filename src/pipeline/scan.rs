@@ -5,13 +5,12 @@ use crate::geometry::{Mesh, Outcode, ScreenVertex, Side, Topology, area_of, sign
 use crate::output::{Records, Slot, Stats};
 use crate::raster::{PixelRect, pixel_rect};
 use core::ops::Range;
-use core::slice::ChunksExact;
 
 /// Where a walk over triangles is, and the last one it found.
 pub(super) struct Scan<'m> {
     mesh: &'m Mesh<'m>,
     /// Those to come, if the mesh is an indexed list.
-    list: ChunksExact<'m, u16>,
+    list: &'m [u16],
     next: usize,
     end: usize,
     pub(super) seen: Seen,
@@ -124,13 +123,13 @@ impl<'m> Scan<'m> {
             _ => None,
         };
         let list = indices.and_then(|indices| indices.get(3 * numbers.start..3 * numbers.end));
-        let list = list.unwrap_or_default().chunks_exact(3);
-        Self { mesh, list, next: numbers.start, end: numbers.end.min(mesh.triangle_count()), seen: Seen::NONE }
-    }
-
-    /// The number of the next triangle.
-    pub(super) const fn next_number(&self) -> usize {
-        self.next
+        Self {
+            mesh,
+            list: list.unwrap_or_default(),
+            next: numbers.start,
+            end: numbers.end.min(mesh.triangle_count()),
+            seen: Seen::NONE,
+        }
     }
 
     /// Goes on to the next triangle that may be seen, or that has to be looked at.
@@ -144,12 +143,15 @@ impl<'m> Scan<'m> {
     ) -> Stop {
         let vertices = records.positions();
         let slot = |index: u16| vertices.get(usize::from(index)).map_or(Slot::NONE, |words| Slot::from_words(*words));
-        let mut list = self.list.clone();
+        let mut list = self.list;
         let mut number = self.next;
         let stop = loop {
             // 2. Primitive assembly. The usual mesh by the shortest way.
-            let (i, j, k) = match list.next() {
-                Some([i, j, k]) => (*i, *j, *k),
+            let (i, j, k) = match list.split_first_chunk() {
+                Some(([i, j, k], rest)) => {
+                    list = rest;
+                    (*i, *j, *k)
+                }
                 _ => match self.other(number) {
                     Some([i, j, k]) => (i, j, k),
                     None => break Stop::End,
@@ -175,6 +177,7 @@ impl<'m> Scan<'m> {
             }
         };
         self.list = list;
+        stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
         self.next = number;
         self.seen.number = number.wrapping_sub(1);
         stop
