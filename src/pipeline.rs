@@ -131,6 +131,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         self.draw_by(&state, &Chosen::of(&state), mesh, mvp, shader);
     }
 
+    // In its caller: a call less that is on the stack of everything below.
+    #[inline(always)]
     fn draw_by<S: Shader<F::Format>>(
         &mut self,
         state: &State,
