@@ -271,7 +271,7 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
         let turned = self.material.is_two_sided() && fragment.side == Side::Back;
         let [red, green, blue, _] = fragment.face.to_le_bytes();
         let normal = fragment_normal(x, y, z, turned);
-        let [r, g, b] = self.material.near(&normal, &[px >> 14, py >> 14, pz >> 14], [red, green, blue]);
+        let [r, g, b] = self.material.near_here(&normal, &[px >> 14, py >> 14, pz >> 14], [red, green, blue]);
         Some(Format::pack_at([round(r), round(g), round(b)], fragment.position))
     }
 }

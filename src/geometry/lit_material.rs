@@ -245,6 +245,12 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// As [`far`](Self::far).
     #[inline(never)]
     pub fn near(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
+        self.near_here(normal, p, color)
+    }
+
+    /// The same in the function that asks for it.
+    #[inline(always)]
+    pub(crate) fn near_here(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
         let mut look = self.look(normal);
         let seen_from_afar = matches!(self.viewer, LitViewer::Toward(_));
         if self.shininess != 0 {

@@ -11,7 +11,6 @@ use crate::geometry::{
 };
 use crate::output::Framebuffer;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
-use core::ops::Range;
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](super::stroke::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -140,7 +139,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 d_dx: S::Varyings::ZERO,
                 words: [0; 2],
                 side: self.state.side(area),
-                level: self.shader.level(varyings, area.unsigned_abs()),
+                level: 0,
                 correction: <S::Varyings as Varyings>::Correction::NONE,
             },
         };
@@ -154,6 +153,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     #[inline(never)]
     fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings>, varyings: &mut [S::Varyings; 3]) {
         let SetUp { v, area, depth, corner, d_dy, steps, .. } = set_up;
+        steps.level = self.shader.level(varyings, area.unsigned_abs());
         let gradients = Gradients::new(v, *area, self.screen);
         *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
         steps.dz_dx = depth.dx;
@@ -252,22 +252,22 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     fn spans_apart<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
         let mut nothing = [(); MAX_SPAN];
         let mut spans = Spans::new(set_up.v, set_up.area, &self.clip.y);
-        while let Some((y, x)) = spans.next_in(&self.clip.x) {
-            let shader = self.shader;
+        let shader = self.shader;
+        while spans.next_in(&self.clip.x) {
             // 10, 11. Depth test and fragments.
-            shader.span(set_up.face, self.span_at::<D>(set_up, y, x, &mut nothing), test);
+            shader.span(set_up.face, self.span_at::<D>(set_up, &spans, &mut nothing), test);
         }
     }
 
-    /// What there is of a span to draw.
+    /// What there is to draw of a span.
     #[inline(never)]
     fn span_at<'a, D: DepthTest>(
         &'a mut self,
         set_up: &'a SetUp<'_, S::Varyings>,
-        y: i32,
-        x: Range<i32>,
+        spans: &Spans<'_>,
         nothing: &'a mut [(); MAX_SPAN],
     ) -> Fragments<'a, F::Format, S::Varyings, D::Stored> {
+        let (y, x) = (spans.y, &spans.x);
         let SetUp { depth: plane, corner, d_dy, steps, .. } = set_up;
         let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);
         let color = self.target.framebuffer.span(y as u32, x.start as usize, x.len());

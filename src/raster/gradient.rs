@@ -127,7 +127,8 @@ impl Gradients {
     #[inline(never)]
     fn steep(&self, v0: i32, numerators: &[i64; 2], scale: u32) -> PlaneEquation {
         // Bits cut from what was rounded down leave what is rounded down.
-        let plane = self.exact(v0, numerators);
+        let mut plane = WidePlane::ZERO;
+        self.exact(v0, numerators, &mut plane);
         let cut = |value: i64| (value >> (32 - scale)) as u32;
         PlaneEquation { dx: cut(plane.dx) as i32, dy: cut(plane.dy) as i32, base: cut(plane.base) }
     }
@@ -171,31 +172,28 @@ impl Gradients {
     /// # Format
     /// The difference to the origin is Σ n to, of up to 84 bits, from two halves of each n.
     #[inline(never)]
-    fn exact(&self, v0: i32, &[a, b]: &[i64; 2]) -> WidePlane {
+    fn exact(&self, v0: i32, &[a, b]: &[i64; 2], plane: &mut WidePlane) {
         let (x, y) = (i64::from(self.to.0), i64::from(self.to.1));
         let low = i64::from(a as u32) * x + i64::from(b as u32) * y;
         let high = (a >> 32) * x + (b >> 32) * y + (low >> 32);
-        WidePlane {
-            base: (i64::from(v0) << 32).wrapping_add(self.divided(high, low as u32)),
-            dx: self.divided(a >> 24, (a as u32) << 8),
-            dy: self.divided(b >> 24, (b as u32) << 8),
-        }
+        plane.base = (i64::from(v0) << 32).wrapping_add(self.divided(high, low as u32));
+        plane.dx = self.divided(a >> 24, (a as u32) << 8);
+        plane.dy = self.divided(b >> 24, (b as u32) << 8);
     }
 
     /// (`high` 2³² + `low`) 2³² / |area|, rounded down, modulo 2⁶⁴.
-    #[inline(never)]
+    #[inline(always)]
     fn divided(&self, high: i64, low: u32) -> i64 {
         divide_modulo(high, low, self.area.unsigned_abs())
     }
 
-    /// The plane through the values at the three vertices with 32 fractional bits, modulo 2⁶⁴, by long division; each of its
-    /// three numbers is rounded down before it is carried from the origin to the screen's corner.
+    /// Makes `plane` the plane through the values at the three vertices with 32 fractional bits, modulo 2⁶⁴, by long division; each
+    /// of its three numbers is rounded down before it is carried from the origin to the screen's corner.
     #[inline(never)]
-    pub fn plane_wide(&self, values: [i32; 3]) -> WidePlane {
-        let plane = self.exact(values[0], &self.numerators(values));
-        let along = |change: i64, origin: i32| change.wrapping_mul(origin.into());
-        let base = plane.base.wrapping_sub(along(plane.dx, self.origin.0)).wrapping_sub(along(plane.dy, self.origin.1));
-        WidePlane { base, ..plane }
+    pub fn plane_wide(&self, values: [i32; 3], plane: &mut WidePlane) {
+        self.exact(values[0], &self.numerators(values), plane);
+        let (x, y) = (i64::from(self.origin.0), i64::from(self.origin.1));
+        plane.base = plane.base.wrapping_sub(plane.dx.wrapping_mul(x)).wrapping_sub(plane.dy.wrapping_mul(y));
     }
 }
 

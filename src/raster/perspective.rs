@@ -40,10 +40,10 @@ pub fn widen<C: Correction>(gradients: &Gradients, values: &[&[i32]; 3], correct
 fn planes(gradients: &Gradients, values: &[&[i32]; 3], wide_w: &mut WidePlane, lanes: &mut [Lane]) {
     let [a, b, c] = *values;
     for (((lane, a), b), c) in lanes.iter_mut().zip(a).zip(b).zip(c) {
-        lane.plane = gradients.plane_wide([*a, *b, *c]);
+        gradients.plane_wide([*a, *b, *c], &mut lane.plane);
     }
     if let ([.., a], [.., b], [.., c]) = (a, b, c) {
-        *wide_w = gradients.plane_wide([*a, *b, *c]);
+        gradients.plane_wide([*a, *b, *c], wide_w);
     }
 }
 

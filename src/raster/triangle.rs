@@ -71,8 +71,8 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 #[inline]
 pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl FnMut(i32, Range<i32>)) {
     let mut spans = Spans::new(v, area, &clip.y);
-    while let Some((y, x)) = spans.next_in(&clip.x) {
-        span(y, x);
+    while spans.next_in(&clip.x) {
+        span(spans.y, spans.x.clone());
     }
 }
 
@@ -83,40 +83,43 @@ pub struct Spans<'v> {
     outline: Outline<'v>,
     left: Edge,
     right: Edge,
-    /// The next row.
-    y: i32,
+    /// The span's row.
+    pub y: i32,
+    /// Its columns.
+    pub x: Range<i32>,
 }
 
 impl<'v> Spans<'v> {
-    /// The spans in the rows of `clip`. Other parameters are those of [`spans`].
+    /// Before the first span in the rows of `clip`. Other parameters are those of [`spans`].
     #[inline]
     pub fn new(v: &'v [ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
         let outline = Outline::new(v, area, clip);
         // Edges are made at their first row.
-        Self { y: outline.top, outline, left: Edge::EMPTY, right: Edge::EMPTY }
+        Self { y: outline.top.wrapping_sub(1), outline, left: Edge::EMPTY, right: Edge::EMPTY, x: 0..0 }
     }
 
-    /// The next span in these columns that is not empty: its row, and what of it is in them.
+    /// Goes on to the next span in these columns that is not empty, if there is one.
     #[inline(never)]
-    pub fn next_in(&mut self, columns: &Range<i32>) -> Option<(i32, Range<i32>)> {
-        while self.y < self.outline.end {
-            let y = self.y;
-            let [top, bend] = [self.outline.top, self.outline.bend].map(|row| y == row);
+    pub fn next_in(&mut self, columns: &Range<i32>) -> bool {
+        loop {
+            self.y = self.y.wrapping_add(1);
+            if self.y >= self.outline.end {
+                return false;
+            }
+            let (top, bend) = (self.y == self.outline.top, self.y == self.outline.bend);
             if top || bend && !self.outline.bend_right {
-                self.left = self.outline.side(false, y);
+                self.left = self.outline.side(false, self.y);
             }
             if top || bend && self.outline.bend_right {
-                self.right = self.outline.side(true, y);
+                self.right = self.outline.side(true, self.y);
             }
-            let x = self.left.pixel().max(columns.start)..self.right.pixel().min(columns.end);
+            self.x = self.left.pixel().max(columns.start)..self.right.pixel().min(columns.end);
             self.left.step();
             self.right.step();
-            self.y = y + 1;
-            if x.start < x.end {
-                return Some((y, x));
+            if self.x.start < self.x.end {
+                return true;
             }
         }
-        None
     }
 }
 
