@@ -1,6 +1,7 @@
 //! Scenes of light: materials under several lights, a landscape in fog, glass and sparks.
 
-use super::{UNLIT, in_place, landscape, pot, tiles};
+use super::kept::kept;
+use super::{UNLIT, landscape, pot, tiles};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::fragment::{
     AddAlpha, Blend, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud, Matcap, Multiply, Opacity,
@@ -139,8 +140,8 @@ fn sunlit_glaze(turn: Angle) -> LitMaterial<1, 0> {
 /// The pot by a shader.
 #[inline(never)]
 fn pot<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, turn: Angle, shader: impl FnOnce() -> S) {
-    let mvp = in_place(|| Lens::close(scene.screen()).seen(|| pot_model(turn)));
-    scene.draw_with(BOTH_SIDES, pot::mesh(), &mvp, &in_place(shader));
+    let mvp = kept(|| Lens::close(scene.screen()).seen(|| pot_model(turn)));
+    scene.draw_with(BOTH_SIDES, pot::mesh(), &mvp, &*kept(shader));
 }
 
 /// A picture of a ball of polished copper in front of a horizon.
@@ -219,7 +220,7 @@ const SUN: Light = Light::from_channels(Vec3::from_milli(-800, 420, 300), [250, 
 pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, mist: Mist) {
     let fog = mist.table();
     draw_backdrop(scene, &SKY);
-    let (lens, view) = (Lens::new(scene.screen(), MIST_NEAR, MIST_FAR), flight(turn));
+    let (lens, view) = (kept(|| Lens::new(scene.screen(), MIST_NEAR, MIST_FAR)), kept(|| flight(turn)));
     hills(scene, &lens, &view, fog);
     pines(scene, &lens, &view, fog);
     lake(scene, &lens, &view, fog);
@@ -237,22 +238,22 @@ fn flight(turn: Angle) -> Affine {
 
 #[inline(never)]
 fn hills<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
-    let mvp = lens.seen(|| *view);
-    scene.draw(landscape::ground(), &mvp, &Fogged::new(Gouraud::colors(SUN), fog, MORNING));
+    let mvp = kept(|| lens.seen(|| *view));
+    scene.draw(landscape::ground(), &mvp, &*kept(|| Fogged::new(Gouraud::colors(SUN), fog, MORNING)));
 }
 
 #[inline(never)]
 fn pines<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
-    let shader = Fogged::new(Flat::colors(SUN), fog, MORNING);
+    let shader = kept(|| Fogged::new(Flat::colors(SUN), fog, MORNING));
     for tree in landscape::trees() {
-        let mvp = in_place(|| lens.seen(|| *view).compose_affine(&Affine::translation(*tree)));
-        scene.draw(&landscape::PINE, &mvp, &shader);
+        let mvp = kept(|| lens.seen(|| *view).compose_affine(&Affine::translation(*tree)));
+        scene.draw(&landscape::PINE, &mvp, &*shader);
     }
 }
 
 #[inline(never)]
 fn lake<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
-    let mvp = lens.seen(|| *view);
+    let mvp = kept(|| lens.seen(|| *view));
     let water = Fogged::new(Flat::unlit(Rgb888::new(96, 130, 158)), fog, MORNING);
     scene.draw_with(GLASS, &landscape::LAKE, &mvp, &Blend::new(water, Opacity(165)));
 }
@@ -361,8 +362,8 @@ fn table<F: Framebuffer, const P: usize>(
     view: &Affine,
     wood: impl FnOnce() -> LitMaterial<1, P>,
 ) {
-    let mvp = in_place(|| Lens::close(scene.screen()).seen(|| table_model(view)));
-    scene.draw(&tiles::MESH, &mvp, &in_place(|| Shaded::new(PerFragmentNear, wood())));
+    let mvp = kept(|| Lens::close(scene.screen()).seen(|| table_model(view)));
+    scene.draw(&tiles::MESH, &mvp, &*kept(|| Shaded::new(PerFragmentNear, wood())));
 }
 
 /// Where a pane is, or the pot, the last number, in eye space.
@@ -385,7 +386,7 @@ fn back_to_front(screen: (u16, u16), turn: Angle) -> [u16; 5] {
 
 #[inline(never)]
 fn pane<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, k: u16, color: Rgb888) {
-    let mvp = in_place(|| Lens::close(scene.screen()).seen(|| glass_model(turn, k)));
+    let mvp = kept(|| Lens::close(scene.screen()).seen(|| glass_model(turn, k)));
     scene.draw_with(GLASS, &PANE, &mvp, &Blend::new(Flat::unlit(color), Multiply));
 }
 
@@ -394,7 +395,7 @@ fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let lens = Lens::close(scene.screen());
     for k in 0..SPARKS {
         let age = (turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16)) >> 6;
-        let mvp = lens.seen(|| Affine::translation(BY_DAY * spark(k, i32::from(age))));
+        let mvp = kept(|| lens.seen(|| Affine::translation(BY_DAY * spark(k, i32::from(age)))));
         let ember = Ember { left: 1023 - i32::from(age) };
         scene.draw_with(GLASS, &GLOW, &mvp, &Blend::new(ember, AddAlpha));
     }
@@ -414,21 +415,21 @@ fn pot_seen(screen: (u16, u16), turn: Angle) -> Projective {
 /// A pot of glass: its inner side and its outer side.
 #[inline(never)]
 fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = pot_seen(scene.screen(), turn);
-    let shader = in_place(|| {
+    let mvp = kept(|| pot_seen(scene.screen(), turn));
+    let shader = kept(|| {
         let body = Material { two_sided: true, ..Material::matte(Rgb888::new(150, 205, 200)) };
         Blend::new(Shaded::new(PerVertex, lit_pot(turn, &body)), Opacity(70))
     });
     for cull in [Cull::Front, Cull::Back] {
-        scene.draw_with(State { cull, ..GLASS }, pot::mesh(), &mvp, &shader);
+        scene.draw_with(State { cull, ..GLASS }, pot::mesh(), &mvp, &*shader);
     }
 }
 
 /// Highlights that no transparency dims.
 #[inline(never)]
 fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = pot_seen(scene.screen(), turn);
-    let shader = in_place(|| {
+    let mvp = kept(|| pot_seen(scene.screen(), turn));
+    let shader = kept(|| {
         let gloss = Material {
             ambient: [0; 3],
             diffuse: [0; 3],
@@ -436,7 +437,7 @@ fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
         };
         Blend::new(Shaded::new(PerFragmentNear, lit_pot(turn, &gloss)), zstrip::fragment::Add)
     });
-    scene.draw_with(State { cull: Cull::Back, ..GLASS }, pot::mesh(), &mvp, &shader);
+    scene.draw_with(State { cull: Cull::Back, ..GLASS }, pot::mesh(), &mvp, &*shader);
 }
 
 /// Where a spark is, `age` of 1024 steps after it left the lid: a throw in its own direction.

@@ -8,6 +8,7 @@
 pub mod dashboard;
 pub mod formats;
 pub mod horizon;
+pub mod kept;
 pub mod labels;
 pub mod landscape;
 pub mod light;
@@ -21,6 +22,7 @@ pub mod torus;
 pub mod water;
 pub mod wires;
 
+use kept::kept;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::fragment::{Flat, Gouraud, Shader};
 use zstrip::geometry::Light;
@@ -88,8 +90,8 @@ pub const SCENES: &[SceneInfo] = &{
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
 
-// What is on the stack while something is drawn is there in addition to all that drawing takes: a matrix has 128 bytes. So
-// matrices and lights are made in functions that are never inlined, and what they are made of is gone when they are used.
+// What is on the stack while something is drawn is there in addition to all that drawing takes. So matrices and materials are
+// made in functions that are never inlined, what they are made of is gone when they are used, and they are kept elsewhere.
 
 /// A call that is not inlined: its result is made where it is to be.
 #[inline(never)]
@@ -130,7 +132,7 @@ pub fn torus_with<F: Framebuffer, S: Shader<F::Format>>(
     turn: Angle,
     shader: impl FnOnce(Light) -> S,
 ) {
-    let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
+    let mvp = kept(|| seen(scene.screen(), |camera| camera * torus_model(turn)));
     scene.draw(&torus::MESH, &mvp, &in_place(|| shader(LIGHT.to_object(&torus_model(turn)))));
 }
 
@@ -170,41 +172,43 @@ pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 
 #[inline(never)]
 fn walls<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = room_camera(scene.screen(), turn);
+    let mvp = kept(|| room_camera(scene.screen(), turn));
     scene.draw(&polygons::ROOM, &mvp, &UNLIT);
     scene.draw(&polygons::FLOOR, &mvp, &LIT);
 }
 
 #[inline(never)]
 fn pillar<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = in_room(scene.screen(), turn, || Affine::translation(Vec3::from_milli(800, 0, -600)));
+    let mvp = kept(|| in_room(scene.screen(), turn, || Affine::translation(Vec3::from_milli(800, 0, -600))));
     scene.draw(&polygons::PILLAR, &mvp, &LIT);
 }
 
 #[inline(never)]
 fn ring<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let model = || Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
-    let mvp = in_room(scene.screen(), turn, || model() * Affine::scale(Scalar::from_bits(1 << 15)));
-    let shader = in_place(|| Gouraud::new(LIGHT.to_object(&model()), Rgb888::new(90, 200, 120)));
-    scene.draw(&torus::MESH, &mvp, &shader);
+    let mvp = kept(|| in_room(scene.screen(), turn, || model() * Affine::scale(Scalar::from_bits(1 << 15))));
+    let shader = kept(|| Gouraud::new(LIGHT.to_object(&model()), Rgb888::new(90, 200, 120)));
+    scene.draw(&torus::MESH, &mvp, &*shader);
 }
 
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
 /// Three squares through one another.
 pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = seen(scene.screen(), |camera| {
-        camera
-            * Affine::translation(Vec3::from_ints(0, 0, -3))
-            * Affine::rotation_x(Angle::from_degrees(40))
-            * Affine::rotation_y(turn + Angle::from_degrees(25))
+    let mvp = kept(|| {
+        seen(scene.screen(), |camera| {
+            camera
+                * Affine::translation(Vec3::from_ints(0, 0, -3))
+                * Affine::rotation_x(Angle::from_degrees(40))
+                * Affine::rotation_y(turn + Angle::from_degrees(25))
+        })
     });
     scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &mvp, &LIT);
 }
 
 /// Random triangles of all sizes around the eye.
 pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = seen(scene.screen(), |camera| camera * Affine::rotation_y(turn));
+    let mvp = kept(|| seen(scene.screen(), |camera| camera * Affine::rotation_y(turn)));
     scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &UNLIT);
 }
 
@@ -215,13 +219,13 @@ fn turned_at(screen: (u16, u16), distance: i16, turn: Angle) -> Projective {
 
 /// Triangles whose vertices are up to 30,000 px outside of the screen.
 pub fn far<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = turned_at(scene.screen(), 4, turn);
+    let mvp = kept(|| turned_at(scene.screen(), 4, turn));
     scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &UNLIT);
 }
 
 /// Triangles in clip space, cut by the near plane or with vertices behind the eye.
 pub fn near<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    scene.draw_with(BOTH_SIDES, &soup::NEAR, &turned(turn), &UNLIT);
+    scene.draw_with(BOTH_SIDES, &soup::NEAR, &kept(|| turned(turn)), &UNLIT);
 }
 
 #[inline(never)]
@@ -231,29 +235,31 @@ fn turned(turn: Angle) -> Projective {
 
 /// Many triangles of about 2 px.
 pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = turned_at(scene.screen(), 4, turn);
+    let mvp = kept(|| turned_at(scene.screen(), 4, turn));
     scene.draw_with(BOTH_SIDES, soup::tiny(), &mvp, &LIT);
 }
 
 /// Three planks that each cover the next one: no order of drawing is right, only depth is.
 pub fn cycle<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = turned_at(scene.screen(), 3, turn);
+    let mvp = kept(|| turned_at(scene.screen(), 3, turn));
     scene.draw(&polygons::CYCLE, &mvp, &UNLIT);
 }
 
 /// Long triangles thinner than a pixel.
 pub fn slivers<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = turned_at(scene.screen(), 3, turn);
+    let mvp = kept(|| turned_at(scene.screen(), 3, turn));
     scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &UNLIT);
 }
 
 /// A grid, a strip, a fan and quads side by side.
 pub fn field<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    let mvp = seen(scene.screen(), |camera| {
-        camera
-            * Affine::translation(Vec3::from_ints(0, 0, -3))
-            * Affine::rotation_x(Angle::from_degrees(-20))
-            * Affine::rotation_z(turn)
+    let mvp = kept(|| {
+        seen(scene.screen(), |camera| {
+            camera
+                * Affine::translation(Vec3::from_ints(0, 0, -3))
+                * Affine::rotation_x(Angle::from_degrees(-20))
+                * Affine::rotation_z(turn)
+        })
     });
     for mesh in [&polygons::GRID, &polygons::STRIP, &polygons::FAN, &polygons::QUADS] {
         scene.draw_with(BOTH_SIDES, mesh, &mvp, &UNLIT);

@@ -1,6 +1,7 @@
 //! Textures in perspective: wooden crates on a tiled floor, behind a fence of holes.
 
-use super::{LIGHT, camera, in_place};
+use super::kept::kept;
+use super::{LIGHT, camera};
 use zstrip::fragment::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Textured, Tile};
 use zstrip::geometry::{Mesh, MeshData, NORMAL_ONE, Positions, Topology};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
@@ -246,7 +247,7 @@ fn seen(screen: (u16, u16), turn: Angle) -> Projective {
 fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
     let floor = if mips { Textured::mipmapped(floor_levels()).ok() } else { None };
     let floor = floor.unwrap_or(Textured::new(&floor_levels()[0]));
-    scene.draw(&GROUND, &seen(scene.screen(), turn), &floor.wrap(Repeat).filter(filter));
+    scene.draw(&GROUND, &kept(|| seen(scene.screen(), turn)), &floor.wrap(Repeat).filter(filter));
 }
 
 /// Where the crates are, in thousandths, and how they are turned, in degrees.
@@ -259,8 +260,8 @@ fn crate_model(turn: Angle, [x, y, z, degrees]: [i32; 4]) -> Affine {
 
 #[inline(never)]
 fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, place: [i32; 4], filter: G) {
-    let wood = in_place(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.to_object(&crate_model(turn, place))));
-    scene.draw(&CRATE, &crate_seen(scene.screen(), turn, place), &wood);
+    let wood = kept(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.to_object(&crate_model(turn, place))));
+    scene.draw(&CRATE, &kept(|| crate_seen(scene.screen(), turn, place)), &*wood);
 }
 
 /// Object space of a crate → clip space.
@@ -291,7 +292,7 @@ pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, look: Look)
 fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
     let Ok(wire) = Image::new(&WIRE, (16, 16), MaskTexel([150, 160, 170])) else { return };
     let state = State { cull: Cull::None, ..State::DEFAULT };
-    scene.draw_with(state, &FENCE, &fence_seen(scene.screen(), turn), &Textured::new(&wire));
+    scene.draw_with(state, &FENCE, &kept(|| fence_seen(scene.screen(), turn)), &Textured::new(&wire));
 }
 
 #[inline(never)]
@@ -301,7 +302,7 @@ fn fence_seen(screen: (u16, u16), turn: Angle) -> Projective {
 
 /// A crate so close that perspective is strong, and some of it before the near plane.
 pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
-    scene.draw(&CRATE, &close_seen(scene.screen(), turn), &Textured::new(&WOODEN));
+    scene.draw(&CRATE, &kept(|| close_seen(scene.screen(), turn)), &Textured::new(&WOODEN));
 }
 
 #[inline(never)]

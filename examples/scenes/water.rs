@@ -1,6 +1,7 @@
 //! Water: waves by a vertex shader, a crate that floats on them.
 
-use super::{LIGHT, camera, in_place, textured};
+use super::kept::kept;
+use super::{LIGHT, camera, textured};
 use zstrip::fragment::{Fragment, PixelFormat, Shader, Textured};
 use zstrip::geometry::{Corner, Mesh, MeshData, Positions, Topology, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
@@ -109,7 +110,7 @@ fn above(screen: (u16, u16)) -> Projective {
 
 #[inline(never)]
 fn surface<F: Framebuffer>(scene: &mut Scene<'_, F>, water: &Water) {
-    scene.draw(&SURFACE, &above(scene.screen()), water);
+    scene.draw(&SURFACE, &kept(|| above(scene.screen())), water);
 }
 
 /// The crate goes up and down with the water, and leans with its slopes.
@@ -129,6 +130,6 @@ fn crate_seen(screen: (u16, u16), water: Water) -> Projective {
 
 #[inline(never)]
 fn floating<F: Framebuffer>(scene: &mut Scene<'_, F>, water: Water) {
-    let wood = in_place(|| Textured::new(&textured::WOODEN).lit(LIGHT.to_object(&crate_model(water))));
-    scene.draw(&textured::CRATE, &crate_seen(scene.screen(), water), &wood);
+    let wood = kept(|| Textured::new(&textured::WOODEN).lit(LIGHT.to_object(&crate_model(water))));
+    scene.draw(&textured::CRATE, &kept(|| crate_seen(scene.screen(), water)), &*wood);
 }
