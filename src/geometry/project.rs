@@ -93,7 +93,8 @@ const fn shifted(value: i64, up: i32) -> i64 {
 /// `value`, but no more than `limit` in either direction.
 #[inline(never)]
 fn clamped(value: i64, limit: i32) -> i32 {
-    value.clamp((-limit).into(), limit.into()) as i32
+    // `clamp` would panic on a limit below 0.
+    value.min(limit.into()).max((-limit).into()) as i32
 }
 
 /// 1 / w of a vertex, on a scale that all vertices of a draw share; 0 unless w > 0.
