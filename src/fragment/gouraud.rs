@@ -14,20 +14,29 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 /// normals shows the ambient light only.
 #[derive(Clone, Copy, Debug)]
 pub struct Gouraud {
-    light: Option<Light>,
-    /// One colour for the whole mesh, lit; otherwise the mesh's colours count.
-    lit: Option<Lit>,
+    colors: Colors,
+}
+
+/// Where the colours of vertices come from.
+#[derive(Clone, Copy, Debug)]
+enum Colors {
+    /// One for the whole mesh, lit.
+    One(Lit),
+    /// The mesh's, lit.
+    Lit(Light),
+    /// The mesh's, as they are.
+    Unlit,
 }
 
 impl Gouraud {
     /// One colour under a light (given in object space, see [`Light::to_object`]).
     pub fn new(light: Light, color: impl Into<Rgb888>) -> Self {
-        Self { light: Some(light), lit: Some(light.on(channels(color.into()))) }
+        Self { colors: Colors::One(light.on(channels(color.into()))) }
     }
 
     /// The colours of the mesh's vertices under a light.
     pub const fn colors(light: Light) -> Self {
-        Self { light: Some(light), lit: None }
+        Self { colors: Colors::Lit(light) }
     }
 
     /// The varyings of a vertex that has this colour.
@@ -39,7 +48,7 @@ impl Gouraud {
 
     /// The colours of the mesh's vertices as they are.
     pub const fn colors_unlit() -> Self {
-        Self { light: None, lit: None }
+        Self { colors: Colors::Unlit }
     }
 }
 
@@ -66,10 +75,10 @@ impl VertexShader for Gouraud {
 
     #[inline]
     fn vertex(&self, vertex: &Corner<'_>) -> [i32; 3] {
-        let rgb = match (self.lit, self.light) {
-            (Some(lit), _) => lit.shade(vertex.normal()),
-            (None, Some(light)) => light.on(vertex.color()).shade(vertex.normal()),
-            (None, None) => vertex.color().map(|c| i32::from(c) << 8),
+        let rgb = match &self.colors {
+            Colors::One(lit) => lit.shade(vertex.normal()),
+            Colors::Lit(light) => light.on(vertex.color()).shade(vertex.normal()),
+            Colors::Unlit => vertex.color().map(|c| i32::from(c) << 8),
         };
         rgb.map(squeeze)
     }

@@ -100,9 +100,10 @@ impl Light {
 
     /// Light on a surface of a colour: what is the same for all its normals, worked out once.
     pub fn on(&self, color: [u8; 3]) -> Lit {
+        // At most 255 · 256.
         let times = |level: [u16; 3]| {
-            let [r, g, b] = color.map(i32::from);
-            [r * i32::from(level[0]), g * i32::from(level[1]), b * i32::from(level[2])]
+            let [r, g, b] = color.map(u16::from);
+            [r.wrapping_mul(level[0]), g.wrapping_mul(level[1]), b.wrapping_mul(level[2])]
         };
         Lit { direction: self.direction, ambient: times(self.ambient), diffuse: times(self.diffuse) }
     }
@@ -110,11 +111,13 @@ impl Light {
 
 /// A [`Light`] on a colour.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+// Copied word by word, instead of by a call.
+#[repr(align(4))]
 pub struct Lit {
     direction: [i16; 3],
     /// 8.8 a channel.
-    ambient: [i32; 3],
-    diffuse: [i32; 3],
+    ambient: [u16; 3],
+    diffuse: [u16; 3],
 }
 
 /// n · l in 2.14 of two unit vectors, 0 if they are more than a right angle apart.
@@ -138,7 +141,8 @@ impl Lit {
     #[inline]
     pub fn shade(&self, normal: [i16; 3]) -> [i32; 3] {
         let cosine = cosine(normal, self.direction);
-        let channel = |k: usize| (self.ambient[k] + ((self.diffuse[k] * cosine) >> 14)).min(WHITE);
+        let channel =
+            |k: usize| (i32::from(self.ambient[k]) + ((i32::from(self.diffuse[k]) * cosine) >> 14)).min(WHITE);
         [channel(0), channel(1), channel(2)]
     }
 }
