@@ -25,8 +25,9 @@ mod counting {
     use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle, Rectangle};
     use embedded_graphics::text::{Baseline, Text};
     use semihosting::println;
+    use zstrip::Scene;
     use zstrip::fragment::DepthTest;
-    use zstrip::output::{Buffers, Overlay, Renderer, Strip, StripPixels};
+    use zstrip::output::{Buffers, Overlay, Renderer, RendererError, Strip, StripPixels};
 
     const WIDTH: usize = 320;
     const HEIGHT: usize = 240;
@@ -47,7 +48,7 @@ mod counting {
         }
     }
 
-    impl<D: DepthTest> Put for Overlay<'_, Strip<'_, Rgb565>, D> {
+    impl<D: DepthTest, const DEPTH: bool, const RECORDS: bool> Put for Overlay<'_, Strip<'_, Rgb565, DEPTH, RECORDS>, D> {
         fn put<T: Drawable<Color = Rgb565> + Dimensions>(&mut self, drawable: &T) {
             self.draw(drawable);
         }
@@ -112,6 +113,35 @@ mod counting {
         ticks::now().wrapping_sub(start)
     }
 
+    const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
+
+    /// Ticks of a frame in strips, and whether it is what the framebuffer shows.
+    fn strips_of<const DEPTH: bool, const RECORDS: bool>(
+        renderer: Result<Renderer<'_, Rgb565, DEPTH, RECORDS>, RendererError>,
+        full: &Full,
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, DEPTH, RECORDS>>),
+    ) -> (u32, bool) {
+        let mut renderer = renderer.expect("a renderer");
+        let (mut ticks, mut equal) = (0, true);
+        for check in [false, true] {
+            let sink = |strip: &StripPixels<'_, Rgb565>| {
+                if check {
+                    let start = strip.area().top_left.y as usize * WIDTH * 2;
+                    equal &= full.data()[start..start + strip.bytes().len()] == *strip.bytes();
+                }
+                black_box(strip);
+                Ok::<(), Infallible>(())
+            };
+            let taken = count(|| {
+                black_box(renderer.frame_to(sink, Rgb565::BLACK, &mut draw).is_ok());
+            });
+            if !check {
+                ticks = taken;
+            }
+        }
+        (ticks, equal)
+    }
+
     pub fn run() {
         let (full, color, depth) = (&raw mut FULL, &raw mut COLOR, &raw mut DEPTH);
         // SAFETY: `run` is called once; these are the only references.
@@ -128,39 +158,20 @@ mod counting {
                 // Strips of 16 rows, a strip of all rows, and strips at a depth.
                 let mut strips = [0; 3];
                 for (ticks, (rows, deep)) in strips.iter_mut().zip([(16, false), (HEIGHT, false), (16, true)]) {
-                    let depths = if deep { rows * WIDTH } else { 0 };
-                    let buffers =
-                        Buffers { color: &mut color[..rows * WIDTH], depth: &mut depth[..depths], records: &mut [] };
-                    let mut renderer =
-                        Renderer::<Rgb565>::new((WIDTH as u16, HEIGHT as u16), buffers).expect("a renderer");
-                    let mut equal = true;
-                    for check in [false, true] {
-                        let sink = |strip: &StripPixels<'_, Rgb565>| {
-                            if check {
-                                let start = strip.area().top_left.y as usize * WIDTH * 2;
-                                equal &= full.data()[start..start + strip.bytes().len()] == *strip.bytes();
-                            }
-                            black_box(strip);
-                            Ok::<(), Infallible>(())
-                        };
-                        let taken = count(|| {
-                            let drawn = if deep {
-                                renderer.frame_to(sink, Rgb565::BLACK, |scene| {
-                                    let $to = &mut scene.at_depth(1000);
-                                    $draw;
-                                })
-                            } else {
-                                renderer.frame_to(sink, Rgb565::BLACK, |scene| {
-                                    let $to = &mut scene.overlay();
-                                    $draw;
-                                })
-                            };
-                            black_box(drawn.is_ok());
-                        });
-                        if !check {
-                            *ticks = taken;
-                        }
-                    }
+                    let color = &mut color[..rows * WIDTH];
+                    let equal;
+                    (*ticks, equal) = if deep {
+                        let buffers = Buffers { color, depth: &mut depth[..rows * WIDTH], records: &mut [] };
+                        strips_of(Renderer::new(SCREEN, buffers), full, |scene| {
+                            let $to = &mut scene.at_depth(1000);
+                            $draw;
+                        })
+                    } else {
+                        strips_of(Renderer::color_only(SCREEN, color), full, |scene| {
+                            let $to = &mut scene.overlay();
+                            $draw;
+                        })
+                    };
                     // At one depth, what is drawn first stays.
                     if !deep && !equal {
                         println!("# {} differs in strips of {rows} rows", $name);
