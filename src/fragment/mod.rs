@@ -19,35 +19,35 @@
 //! |---|--:|--:|
 //! | `Flat`; `Shaded` per face | 10 | 10 |
 //! | `Gouraud`; `Shaded` per vertex | 19 | 14 |
-//! | `Matcap` | 42 | 25 |
-//! | `Textured`, nearest, repeated, w constant | 25 | 18 |
-//! | the same in perspective | 28 | 19 |
-//! | mirrored | 79 | 54 |
-//! | clamped | 87 | 53 |
-//! | bilinear | 195 | 132 |
-//! | nearest, RGB888 | 65 | 42 |
-//! | bilinear, RGB888 | 333 | 209 |
-//! | nearest, palette of 8 bits | 65 | 45 |
-//! | nearest, lit | 180 | 99 |
-//! | bilinear, lit | 403 | 229 |
-//! | `Blend` of it, nearest, `Opacity` | 95 | 73 |
-//! | `Shaded` per fragment, 1 directional light, matte | 185 | 123 |
-//! | the same, 2 directional lights | 254 | 189 |
-//! | 1 directional light, glossy, shininess 32 | 265 | 208 |
-//! | the same, shininess 255 | 301 | 228 |
-//! | `Shaded` per fragment, near, 1 point light, matte | 375 | 277 |
-//! | the same, glossy, shininess 32 | 554 | 442 |
-//! | the same, viewer near | 648 | 509 |
-//! | `Blend` of `Flat`, `Opacity` | 40 | 26 |
-//! | `Blend` of `Gouraud`, `Opacity` | 81 | 51 |
-//! | the same, `Alpha` | 83 | 41 |
-//! | the same, `Add` | 87 | 52 |
-//! | the same, `AddAlpha` | 118 | 66 |
-//! | the same, `Multiply` | 101 | 59 |
-//! | `AlphaTest` of `Gouraud` | 62 | 32 |
-//! | `ScreenDoor` of `Gouraud`, half of the pixels | 62 | 37 |
-//! | `Fogged` `Flat` | 67 | 44 |
-//! | `Fogged` `Gouraud` | 112 | 67 |
+//! | `Matcap` | 48 | 28 |
+//! | `Textured`, nearest, repeated, w constant | 22 | 17 |
+//! | the same in perspective | 24 | 18 |
+//! | mirrored | 93 | 55 |
+//! | clamped | 94 | 53 |
+//! | bilinear | 207 | 131 |
+//! | nearest, RGB888 | 64 | 41 |
+//! | bilinear, RGB888 | 338 | 206 |
+//! | nearest, palette of 8 bits | 63 | 46 |
+//! | nearest, lit | 195 | 125 |
+//! | bilinear, lit | 399 | 237 |
+//! | `Blend` of it, nearest, `Opacity` | 104 | 67 |
+//! | `Shaded` per fragment, 1 directional light, matte | 209 | 137 |
+//! | the same, 2 directional lights | 279 | 193 |
+//! | 1 directional light, glossy, shininess 32 | 287 | 221 |
+//! | the same, shininess 255 | 322 | 241 |
+//! | `Shaded` per fragment, near, 1 point light, matte | 457 | 343 |
+//! | the same, glossy, shininess 32 | 634 | 489 |
+//! | the same, viewer near | 732 | 560 |
+//! | `Blend` of `Flat`, `Opacity` | 39 | 28 |
+//! | `Blend` of `Gouraud`, `Opacity` | 81 | 52 |
+//! | the same, `Alpha` | 81 | 45 |
+//! | the same, `Add` | 97 | 58 |
+//! | the same, `AddAlpha` | 121 | 74 |
+//! | the same, `Multiply` | 106 | 66 |
+//! | `AlphaTest` of `Gouraud` | 70 | 40 |
+//! | `ScreenDoor` of `Gouraud`, half of the pixels | 69 | 45 |
+//! | `Fogged` `Flat` | 63 | 44 |
+//! | `Fogged` `Gouraud` | 120 | 74 |
 
 mod alpha;
 mod bias;
