@@ -19,7 +19,7 @@
 //! |---|--:|--:|
 //! | `Flat`; `Shaded` per face | 10 | 10 |
 //! | `Gouraud`; `Shaded` per vertex | 19 | 14 |
-//! | `Matcap` | 48 | 28 |
+//! | `Matcap` | 47 | 25 |
 //! | `Textured`, nearest, repeated, w constant | 22 | 17 |
 //! | the same in perspective | 24 | 18 |
 //! | mirrored | 93 | 55 |
@@ -31,23 +31,23 @@
 //! | nearest, lit | 195 | 125 |
 //! | bilinear, lit | 399 | 237 |
 //! | `Blend` of it, nearest, `Opacity` | 104 | 67 |
-//! | `Shaded` per fragment, 1 directional light, matte | 209 | 137 |
-//! | the same, 2 directional lights | 279 | 193 |
-//! | 1 directional light, glossy, shininess 32 | 287 | 221 |
-//! | the same, shininess 255 | 322 | 241 |
+//! | `Shaded` per fragment, 1 directional light, matte | 185 | 126 |
+//! | the same, 2 directional lights | 275 | 178 |
+//! | 1 directional light, glossy, shininess 32 | 264 | 211 |
+//! | the same, shininess 255 | 299 | 231 |
 //! | `Shaded` per fragment, near, 1 point light, matte | 457 | 343 |
 //! | the same, glossy, shininess 32 | 634 | 489 |
 //! | the same, viewer near | 732 | 560 |
-//! | `Blend` of `Flat`, `Opacity` | 39 | 28 |
-//! | `Blend` of `Gouraud`, `Opacity` | 81 | 52 |
-//! | the same, `Alpha` | 81 | 45 |
-//! | the same, `Add` | 97 | 58 |
-//! | the same, `AddAlpha` | 121 | 74 |
-//! | the same, `Multiply` | 106 | 66 |
-//! | `AlphaTest` of `Gouraud` | 70 | 40 |
-//! | `ScreenDoor` of `Gouraud`, half of the pixels | 69 | 45 |
-//! | `Fogged` `Flat` | 63 | 44 |
-//! | `Fogged` `Gouraud` | 120 | 74 |
+//! | `Blend` of `Flat`, `Opacity` | 40 | 28 |
+//! | `Blend` of `Gouraud`, `Opacity` | 82 | 55 |
+//! | the same, `Alpha` | 86 | 51 |
+//! | the same, `Add` | 94 | 59 |
+//! | the same, `AddAlpha` | 111 | 76 |
+//! | the same, `Multiply` | 107 | 60 |
+//! | `AlphaTest` of `Gouraud` | 67 | 39 |
+//! | `ScreenDoor` of `Gouraud`, half of the pixels | 66 | 42 |
+//! | `Fogged` `Flat` | 65 | 44 |
+//! | `Fogged` `Gouraud` | 121 | 73 |
 
 mod alpha;
 mod bias;

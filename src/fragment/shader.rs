@@ -2,7 +2,7 @@
 
 use super::perspective::corrected_fragments;
 use super::{AnyDepth, DepthState, DepthTest, PixelFormat};
-use crate::geometry::{Correction, Side, Varyings, VertexShader};
+use crate::geometry::{Correction, FEW, Side, Varyings, VertexShader};
 
 /// A fragment that passed the depth test: what the fragment stage sees of it.
 #[derive(Clone, Copy, Debug)]
@@ -175,6 +175,25 @@ struct Pixels<'a, V: Varyings> {
 /// Draws a span fragment by fragment, in the one loop that a shader is compiled into.
 #[inline(never)]
 fn linear_fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
+    shader: &S,
+    color: &mut [P::Raw],
+    depth: &mut [u16],
+    pixels: &mut Pixels<'_, S::Varyings>,
+) {
+    if <S::Varyings as Varyings>::LEN > FEW {
+        return paint_pixels(shader, color, depth, pixels);
+    }
+    // Few varyings are walked where the compiler likes, many where they are.
+    let mut varyings = *pixels.varyings;
+    let Pixels { face, z, steps, position, test, .. } = *pixels;
+    let mut own = Pixels { face, z, varyings: &mut varyings, steps, position, test };
+    paint_pixels(shader, color, depth, &mut own);
+    (pixels.z, pixels.position) = (own.z, own.position);
+    *pixels.varyings = varyings;
+}
+
+#[inline(always)]
+fn paint_pixels<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
     color: &mut [P::Raw],
     depth: &mut [u16],
