@@ -330,6 +330,43 @@ fn hierarchy_draws_the_same_picture_and_culls_something() {
     assert!(culled > 50 && saved > 500);
 }
 
+/// More leaves than are tested at a time, all of them seen, or every third.
+#[test]
+fn hierarchy_of_many_leaves_draws_all_that_are_seen() {
+    const LEAVES: i16 = 100;
+    let squares = |far: bool| {
+        let corners = move |k: i16| {
+            let (x, y) = (3 * (k % 10) - 15, 3 * (k / 10) - 15 + if far && k % 3 > 0 { 5000 } else { 0 });
+            [(x, y), (x + 2, y), (x + 2, y + 2), (x, y + 2)].map(|(x, y)| Vec3::from_ints(x, y, -30))
+        };
+        (0..LEAVES).flat_map(corners).collect::<Vec<_>>()
+    };
+    let camera = Projective::perspective(Angle::from_degrees(60), (64, 64), Scalar::ONE, Scalar::from_num(60))
+        .expect("a camera");
+    for (far, seen) in [(false, 100), (true, 34)] {
+        let points = squares(far);
+        let plain = MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&points)) };
+        let leaf = |k: i16| {
+            let part = &points[4 * k as usize..4 * k as usize + 4];
+            let square = MeshData { positions: Positions::Exact(part), ..plain };
+            let bounds = *Mesh::new(square).expect("a square").bounds();
+            BoundsNode { bounds, skip: k as u16 + 1, first_triangle: 2 * k as u16, triangles: 2 }
+        };
+        let nodes: Vec<_> = (0..LEAVES).map(leaf).collect();
+        let tree = Mesh::new(MeshData { hierarchy: Some(&nodes), ..plain }).expect("squares");
+        for records in [0, 5000] {
+            let draw = |mesh| {
+                strips::<Rgb565>((64, 64), 64, records, Rgb565::BLACK, |scene| {
+                    scene.draw(mesh, &camera, &Gouraud::colors_unlit())
+                })
+            };
+            let ((expected, _), (picture, stats)) = (draw(&Mesh::new(plain).expect("squares")), draw(&tree));
+            assert_eq!(difference(&picture, &expected, 64), None, "{records} records, {seen} seen: {stats:?}");
+            assert_eq!((stats.drawn, stats.culled), (2 * seen, 100 - seen), "{records} records: {stats:?}");
+        }
+    }
+}
+
 #[test]
 fn scenes_may_leave_out_what_is_not_visible() {
     let torus = &scenes::torus::MESH;

@@ -3,13 +3,18 @@
 mod reference;
 mod support;
 
+use reference::rng::Rng;
 use std::cell::RefCell;
-use support::{strips, whole};
+use support::{scalar, strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::fragment::{Compare, DepthState, Fragment, Shader};
-use zstrip::geometry::{Corner, Face, Mesh, MeshData, Positions, Side, VertexShader};
-use zstrip::math::{Projective, Vec3};
-use zstrip::{Cull, State, Winding};
+use zstrip::geometry::{
+    Corner, Face, Mesh, MeshData, Placed, Positions, Side, Transform, Varyings, VertexShader, Viewport, signed_area,
+};
+use zstrip::math::{Projective, Scalar, Vec3};
+use zstrip::output::Strip;
+use zstrip::raster::{self, PixelRect};
+use zstrip::{Cull, Scene, State, Winding};
 
 const SCREEN: (u16, u16) = (32, 32);
 
@@ -18,6 +23,65 @@ static CORNERS: [Vec3; 4] =
     [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(1, 1, 1), Vec3::from_ints(-1, 1, 1)];
 static SQUARE: Mesh<'static> =
     Mesh::constant(MeshData { indices: Some(&[0, 1, 2, 0, 3, 2]), ..MeshData::new(Positions::Exact(&CORNERS)) });
+
+/// As many varyings as there are, in one colour.
+struct Varied<const N: usize>;
+
+impl<const N: usize> VertexShader for Varied<N>
+where
+    [i32; N]: Varyings,
+{
+    type Varyings = [i32; N];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; N] {
+        core::array::from_fn(|k| (k as i32) << 16)
+    }
+}
+
+impl<const N: usize> Shader<Rgb565> for Varied<N>
+where
+    [i32; N]: Varyings,
+{
+    fn fragment(&self, _: &Fragment<'_, [i32; N]>) -> Option<u16> {
+        Some(1)
+    }
+}
+
+/// Rows are walked in one way for few varyings, and in another for many: both cover what [`raster::spans`] says.
+#[test]
+fn every_walk_covers_the_pixels_of_the_rasterizer() {
+    let mut rng = Rng::new(77);
+    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    let mut covered = 0;
+    for case in 0..400 {
+        let reach = [1.2, 0.3, 5.0][case % 3];
+        let points = [(); 3].map(|()| Vec3::new(scalar(&mut rng, reach), scalar(&mut rng, reach), Scalar::ZERO));
+        let mesh = Mesh::new(MeshData::new(Positions::Exact(&points))).expect("a triangle");
+        let transform = Transform::new(&Projective::IDENTITY, &viewport, &mesh, false);
+        let v = points.map(|point| match transform.place_clip(&transform.point(point)) {
+            Placed::Screen(vertex) => vertex,
+            Placed::Outside(code) => panic!("{point:?} is outside: {code:?}"),
+        });
+        let mut expected = vec![0; 32 * 32];
+        raster::spans(&v, signed_area(&v[0], &v[1], &v[2]), &PixelRect { x: 0..32, y: 0..32 }, |y, x| {
+            x.for_each(|x| expected[(32 * y + x) as usize] = 1);
+        });
+        covered += expected.iter().filter(|pixel| **pixel == 1).count();
+        for depth in [DepthState::OFF, DepthState::LESS, DepthState { compare: Compare::LessEqual, write: true }] {
+            let state = State { cull: Cull::None, depth, ..State::DEFAULT };
+            for rows in [32, 7] {
+                let draw = |draw: &dyn Fn(&mut Scene<'_, Strip<'_, Rgb565>>)| {
+                    strips::<Rgb565>(SCREEN, rows, 200, Rgb565::BLACK, |scene| draw(scene)).0
+                };
+                let few = draw(&|scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, &Varied::<1>));
+                let many = draw(&|scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, &Varied::<5>));
+                assert_eq!(few, expected, "case {case}, {depth:?}, {rows} rows: {v:?}");
+                assert_eq!(many, expected, "case {case}, {depth:?}, {rows} rows: {v:?}");
+            }
+        }
+    }
+    assert!(covered > 20_000, "{covered} pixels");
+}
 
 /// x, y, depth, side and the face's word.
 type Seen = (i32, i32, u16, Side, u32);
