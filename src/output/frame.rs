@@ -563,7 +563,16 @@ impl<'b> FramebufferRenderer<'b, false> {
 
 impl<const DEPTH: bool> FramebufferRenderer<'_, DEPTH> {
     /// Draws a frame over `background`, or over what is there. The framebuffer must be one with or without depth
-    /// ([`Framebuffer::DEPTH`]) as the renderer is; another does not compile.
+    /// ([`Framebuffer::DEPTH`]) as the renderer is; another does not compile:
+    ///
+    /// ```compile_fail
+    /// # use embedded_graphics_core::pixelcolor::Rgb565;
+    /// # use zstrip::output::{FrameSlice, FramebufferRenderer};
+    /// # let mut pixels = [0; 64];
+    /// let mut framebuffer = FrameSlice::<Rgb565>::new(&mut pixels, 8, 8).expect("a framebuffer");
+    /// let mut renderer = FramebufferRenderer::without_depth((8, 8), &mut []).expect("a renderer");
+    /// let _ = renderer.frame(&mut framebuffer, None, |_| {});
+    /// ```
     ///
     /// # Errors
     /// [`FrameError::SceneChanged`] if `draw` draws something else in a later call.

@@ -44,7 +44,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
 
     /// For any state.
     pub(super) const ANY: Self = Self {
-        spans: spans_by_state,
+        spans: if F::DEPTH { spans_by_state } else { spans_over },
         bias: Some(biased),
         depth_scale: Some(Transform::set_depth_scale),
         beyond: Some(|assembly, seen, codes| assembly.beyond(seen, codes)),
@@ -55,10 +55,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Chosen<F, S> {
     pub(super) fn of(state: &State) -> Self {
         Self {
             spans: match state.depth {
-                DepthState::LESS if F::DEPTH => spans_nearer,
+                DepthState::LESS => Self::DEFAULT.spans,
                 DepthState::OFF => spans_over,
-                _ if F::DEPTH => spans_by_state,
-                _ => spans_over,
+                _ => Self::ANY.spans,
             },
             bias: if state.bias.is_none() { None } else { Self::ANY.bias },
             depth_scale: match state.depth_scale {
