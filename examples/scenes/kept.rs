@@ -36,11 +36,16 @@ mod firmware {
     struct Room(MaybeUninit<[u8; ROOM]>);
 
     static mut PLACES: Room = Room(MaybeUninit::uninit());
-    /// Bytes in use: what was kept last is given back first.
+    /// Bytes in use. What was kept last is given back first; in another order, places stay in use.
     static mut USED: usize = 0;
 
     /// A value, and how many bytes were in use before.
     pub struct Kept<T>(NonNull<T>, usize);
+
+    /// Bytes that a value takes.
+    const fn room<T>() -> usize {
+        size_of::<T>().next_multiple_of(8)
+    }
 
     /// Makes a value in the next free place. A scene that keeps more than there is room for stops here.
     #[inline(never)]
@@ -48,16 +53,15 @@ mod firmware {
         const { assert!(align_of::<T>() <= 8) };
         // SAFETY: firmware of one thread, whose interrupts draw nothing: nobody else is at `USED`.
         let before = unsafe { USED };
-        let size = size_of::<T>().next_multiple_of(8);
-        while before + size > ROOM {
+        while before + room::<T>() > ROOM {
             core::hint::spin_loop();
         }
         let places = (&raw mut PLACES).cast::<u8>();
-        // SAFETY: inside of the room, and of no other value, as values are given back in reverse order; aligned, as all sizes
-        // are multiples of 8.
+        // SAFETY: inside of the room, and of no other value, as all of them are below `USED`; aligned, as all sizes are multiples
+        // of 8.
         unsafe {
             let place = places.add(before).cast::<T>();
-            USED = before + size;
+            USED = before + room::<T>();
             place.write(make());
             Kept(NonNull::new_unchecked(place), before)
         }
@@ -73,11 +77,14 @@ mod firmware {
     }
 
     impl<T> Drop for Kept<T> {
+        #[inline(never)]
         fn drop(&mut self) {
             // SAFETY: see `kept`; the value is not used any more.
             unsafe {
                 self.0.drop_in_place();
-                USED = self.1;
+                if USED == self.1 + room::<T>() {
+                    USED = self.1;
+                }
             }
         }
     }
