@@ -3,16 +3,23 @@
 use crate::math::SMALL_CORE;
 use bytemuck::Pod;
 
-/// Pixels below which words do not pay.
-const SHORT: usize = 16;
+/// Halves of words below which words do not pay: there are 8 whole words in more.
+const SHORT: usize = 17;
 
 /// Sets all pixels to `value`: like `slice::fill`, which the compiler leaves a loop of single pixels.
 #[inline]
 pub fn fill<R: Pod>(pixels: &mut [R], value: R) {
     match size_of::<R>() {
-        _ if pixels.len() < SHORT => pixels.fill(value),
-        1 => fill_words(pixels, value, bytemuck::cast([value; 4].map(low_byte))),
-        2 => fill_words(pixels, value, bytemuck::cast([value; 2].map(half_word))),
+        1 if pixels.len() > 2 * SHORT => {
+            let (head, halves, tail) = bytemuck::pod_align_to_mut::<R, u16>(pixels);
+            head.fill(value);
+            fill_halves(halves, bytemuck::cast([value; 4].map(low_byte)));
+            tail.fill(value);
+        }
+        2 if pixels.len() >= SHORT => match bytemuck::try_cast_slice_mut(pixels) {
+            Ok(halves) => fill_halves(halves, bytemuck::cast([value; 2].map(half_word))),
+            Err(_) => pixels.fill(value),
+        },
         _ => pixels.fill(value),
     }
 }
@@ -23,9 +30,9 @@ pub fn clear<R: Pod>(pixels: &mut [R], value: R) {
     fill(pixels, value);
 }
 
-/// Sets all words.
-pub fn clear_words(words: &mut [u32], word: u32) {
-    store(word, word, word, word, words);
+/// Sets all halves of words.
+pub fn clear_words(words: &mut [u32], half: u16) {
+    clear(bytemuck::cast_slice_mut::<u32, u16>(words), half);
 }
 
 fn low_byte<R: Pod>(value: R) -> u8 {
@@ -39,66 +46,82 @@ fn half_word<R: Pod>(value: R) -> u16 {
     }
 }
 
-#[inline]
-fn fill_words<R: Pod>(pixels: &mut [R], value: R, word: u32) {
-    let (head, words, tail) = bytemuck::pod_align_to_mut::<R, u32>(pixels);
-    head.fill(value);
-    store(word, word, word, word, words);
-    tail.fill(value);
+/// Sets all of at least [`SHORT`] halves by a word of two.
+#[inline(always)]
+fn fill_halves(halves: &mut [u16], word: u32) {
+    if SMALL_CORE { by_fours(word, word, word, halves) } else { by_eights(word, word, word, word, halves) }
 }
 
-/// Stores a word, given four times, everywhere: four of them by one instruction.
+/// Stores a word, given three times, four times at once.
 ///
-/// Out of line: a compiler that sees how the words were made stores their halves one by one. It does not see either that
-/// they are the same, and so keeps each in a register of its own.
+/// Out of line: a compiler that sees how the word was made stores its halves one by one. It does not see either that all are the
+/// same, and keeps each in a register of its own, of which one instruction stores four if their numbers ascend: arguments come
+/// first, and in order.
 #[inline(never)]
-fn store(a: u32, b: u32, c: u32, d: u32, words: &mut [u32]) {
-    if !SMALL_CORE {
-        let block = [a, b, c, d, a, b, c, d, a, b, c, d, a, b, c, d];
-        if let Some(last) = words.last_chunk_mut::<16>() {
-            // At the end, where it overlaps others: no rest is left.
-            *last = block;
-            for words in words.chunks_exact_mut(16) {
-                let Ok(words) = <&mut [u32; 16]>::try_from(words) else { return };
-                *words = block;
-            }
-            return;
-        }
+fn by_fours(a: u32, b: u32, c: u32, halves: &mut [u16]) {
+    let [first, .., last] = &mut *halves else { return };
+    (*first, *last) = (a as u16, a as u16);
+    let (_, words, _) = bytemuck::pod_align_to_mut::<u16, u32>(halves);
+    let block = [a, b, c, a | b];
+    let Some((blocks, rest)) = words.split_at_mut_checked(words.len() & !3) else { return };
+    let Ok(blocks) = bytemuck::try_cast_slice_mut::<u32, [u32; 4]>(blocks) else { return };
+    for place in blocks {
+        *place = block;
     }
-    let mut blocks = words.chunks_exact_mut(16);
-    for block in &mut blocks {
-        let Ok(block) = <&mut [u32; 16]>::try_from(block) else { return };
-        *block = [a, b, c, d, a, b, c, d, a, b, c, d, a, b, c, d];
-    }
-    let mut blocks = blocks.into_remainder().chunks_exact_mut(4);
-    for block in &mut blocks {
-        let Ok(block) = <&mut [u32; 4]>::try_from(block) else { return };
-        *block = [a, b, c, d];
-    }
-    for place in blocks.into_remainder() {
+    for place in rest {
         *place = a;
+    }
+}
+
+/// The same for larger cores, eight times at once. The first eight overlap others, so that no rest is left.
+#[inline(never)]
+fn by_eights(a: u32, b: u32, c: u32, d: u32, halves: &mut [u16]) {
+    let [first, .., last] = &mut *halves else { return };
+    (*first, *last) = (a as u16, a as u16);
+    let (_, words, _) = bytemuck::pod_align_to_mut::<u16, u32>(halves);
+    let block = [a, b, c, d, a | b, a | c, a | d, b | c];
+    let Some(place) = words.first_chunk_mut() else { return };
+    *place = block;
+    let Some(words) = words.get_mut(words.len() & 7..) else { return };
+    let Ok(blocks) = bytemuck::try_cast_slice_mut::<u32, [u32; 8]>(words) else { return };
+    for place in blocks {
+        *place = block;
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::fill;
+    use super::*;
 
     #[test]
     fn every_length_and_alignment_is_filled_and_nothing_else() {
         for start in 0..5 {
             for end in start..90 {
+                let inside = |k| (start..end).contains(&k);
+                let is_filled =
+                    |halves: &[u16]| halves.iter().enumerate().all(|(k, v)| *v == if inside(k) { 0xABCD } else { 1 });
                 let mut halves = [1_u16; 100];
                 fill(&mut halves[start..end], 0xABCD);
-                assert!(
-                    halves.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 0xABCD } else { 1 })
-                );
+                assert!(is_filled(&halves), "{start}..{end}");
+                if end - start >= SHORT {
+                    // The other core's.
+                    let mut halves = [1_u16; 100];
+                    let word = 0xABCD_ABCD;
+                    by_fours(word, word, word, &mut halves[start..end]);
+                    assert!(is_filled(&halves), "{start}..{end}");
+                    let mut halves = [1_u16; 100];
+                    by_eights(word, word, word, word, &mut halves[start..end]);
+                    assert!(is_filled(&halves), "{start}..{end}");
+                }
                 let mut bytes = [1_u8; 100];
                 fill(&mut bytes[start..end], 7);
-                assert!(bytes.iter().enumerate().all(|(k, v)| *v == if (start..end).contains(&k) { 7 } else { 1 }));
+                assert!(bytes.iter().enumerate().all(|(k, v)| *v == if inside(k) { 7 } else { 1 }));
                 let mut triples = [[1_u8; 3]; 100];
                 fill(&mut triples[start..end], [7, 8, 9]);
-                assert!(triples.iter().enumerate().all(|(k, v)| (*v == [7, 8, 9]) == (start..end).contains(&k)));
+                assert!(triples.iter().enumerate().all(|(k, v)| (*v == [7, 8, 9]) == inside(k)));
+                let mut words = [1_u32; 100];
+                clear_words(&mut words[start..end], 0xABCD);
+                assert!(words.iter().enumerate().all(|(k, v)| *v == if inside(k) { 0xABCD_ABCD } else { 1 }));
             }
         }
     }

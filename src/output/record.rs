@@ -170,7 +170,7 @@ impl<'a> Records<'a> {
     pub(crate) fn begin_band(&mut self, strips: usize) {
         *self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
         match self.words.get_mut(..strips) {
-            Some(lists) => clear_words(lists, u32::from(NONE) << 16 | u32::from(NONE)),
+            Some(lists) => clear_words(lists, NONE),
             None => self.layout.overflow = true,
         }
     }
