@@ -74,6 +74,13 @@ pub(crate) fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
             quotient <<= 32;
             continue;
         }
+        if let Some(den) = u32::try_from(den).ok().and_then(NonZeroU32::new) {
+            // Most have few bits; the rest is below it.
+            let (digit, remainder) = long_divide(rest as u32, word, den);
+            rest = remainder.into();
+            quotient = quotient << 32 | u64::from(digit);
+            continue;
+        }
         for _ in 0..32 {
             rest = rest << 1 | u64::from(word >> 31);
             word <<= 1;

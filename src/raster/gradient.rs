@@ -12,7 +12,7 @@
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed};
+use crate::math::{SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -96,31 +96,37 @@ impl Gradients {
         if v1 | v2 == 0 {
             return PlaneEquation { dx: 0, dy: 0, base };
         }
-        // Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
-        let up = self.shift + scale as i32 - 23;
-        let mut gradients = None;
-        if self.is_small && up <= 4 && moderate(v1) & moderate(v2) {
-            let a = v1 * self.y[1] - v2 * self.y[0];
-            let b = v2 * self.x[0] - v1 * self.x[1];
-            let (dx, dy) = (mul_high_signed(a, self.reciprocal), mul_high_signed(b, self.reciprocal));
-            // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
-            // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
-            if ((dx ^ dx >> 31) | (dy ^ dy >> 31)) >> (29 - up.max(0)) == 0 {
-                gradients = Some(if up >= 0 { [dx << up, dy << up] } else { [dx >> -up, dy >> -up] });
+        let [dx, dy] = match self.small_steps(v1, v2, scale) {
+            Some(steps) => steps,
+            None => {
+                let numerators = self.numerators(values);
+                match self.gentle(&numerators, scale) {
+                    Some(steps) => steps,
+                    None => return self.steep(values[0], &numerators, scale),
+                }
             }
-        }
-        if gradients.is_none() {
-            let numerators = self.numerators(values);
-            gradients = self.gentle(&numerators, scale);
-            if gradients.is_none() {
-                return self.steep(values[0], &numerators, scale);
-            }
-        }
+        };
         // Both are below 2²⁹, at a pixel at most half a pixel from vertex 0: 2²⁹⁻⁶ · 2⁷ twice, below 2³¹. The cut bits are 2⁻¹¹ of a
         // unit in 16.16.
-        let [dx, dy] = gradients.unwrap_or_default();
         let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
         PlaneEquation { dx, dy, base: base.wrapping_add(offset as u32) }
+    }
+
+    /// Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
+    #[inline(always)]
+    fn small_steps(&self, v1: i32, v2: i32, scale: u32) -> Option<[i32; 2]> {
+        let up = self.shift + scale as i32 - 23;
+        if up > 4 || !self.is_small || !(moderate(v1) & moderate(v2)) {
+            return None;
+        }
+        // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
+        // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
+        let dx = high(v1 * self.y[1] - v2 * self.y[0], self.reciprocal);
+        let dy = high(v2 * self.x[0] - v1 * self.x[1], self.reciprocal);
+        if ((dx ^ dx >> 31) | (dy ^ dy >> 31)) >> (29 - up.max(0)) != 0 {
+            return None;
+        }
+        Some(if up >= 0 { [dx << up, dy << up] } else { [dx >> -up, dy >> -up] })
     }
 
     /// The plane of any triangle and any values.
@@ -195,6 +201,12 @@ impl Gradients {
         let (x, y) = (i64::from(self.origin.0), i64::from(self.origin.1));
         plane.base = plane.base.wrapping_sub(plane.dx.wrapping_mul(x)).wrapping_sub(plane.dy.wrapping_mul(y));
     }
+}
+
+/// [`mul_high_signed`], out of line where it would spill all that is kept across it.
+#[inline(always)]
+fn high(a: i32, b: u32) -> i32 {
+    if SMALL_CORE { mul_high_apart(a, b) } else { mul_high_signed(a, b) }
 }
 
 /// Whether a difference of coordinates is within -2¹⁷..2¹⁷: 512 px.
