@@ -30,31 +30,33 @@ fn divided_bit_by_bit(num: u32, den: NonZeroU32) -> (u32, u32) {
     (quotient, rest)
 }
 
-/// `num / den` and the remainder, for quotients below 2³².
+/// `num / den` and the remainder, for quotients below 2³² and divisors below 2³¹.
 #[inline]
 pub(crate) fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
     match u32::try_from(num) {
         Ok(num) => divided(num, den),
-        Err(_) => long_divide((num >> 32) as u32, num as u32, den),
+        Err(_) => split(long_divide(num, den.get())),
     }
 }
 
-/// The same bit by bit, `high` being below `den`: rare, and no 64-bit division to link.
+/// The same bit by bit, the remainder above the quotient: rare, and no 64-bit division to link. The quotient's bits come in from
+/// below where those of `num` leave.
 #[cold]
 #[inline(never)]
-fn long_divide(high: u32, low: u32, den: NonZeroU32) -> (u32, u32) {
-    let (mut rest, mut low) = (high, low);
+fn long_divide(mut num: u64, den: u32) -> u64 {
     for _ in 0..32 {
-        // The bit that leaves `rest` at the top makes it larger than any divisor.
-        let carry = rest >> 31;
-        rest = rest << 1 | low >> 31;
-        low <<= 1;
-        if carry != 0 || rest >= den.get() {
-            rest = rest.wrapping_sub(den.get());
-            low |= 1;
+        num <<= 1;
+        if let Some(rest) = ((num >> 32) as u32).checked_sub(den) {
+            num = u64::from(rest) << 32 | u64::from(num as u32 | 1);
         }
     }
-    (low, rest)
+    num
+}
+
+/// Lower and upper word.
+#[inline]
+fn split(num: u64) -> (u32, u32) {
+    (num as u32, (num >> 32) as u32)
 }
 
 /// ⌊n 2³² / den⌋ modulo 2⁶⁴ for n = `high` 2³² + `low`, 0 < den < 2⁵¹.
@@ -74,9 +76,9 @@ pub(crate) fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
             quotient <<= 32;
             continue;
         }
-        if let Some(den) = u32::try_from(den).ok().and_then(NonZeroU32::new) {
+        if den >> 31 == 0 {
             // Most have few bits; the rest is below it.
-            let (digit, remainder) = long_divide(rest as u32, word, den);
+            let (digit, remainder) = split(long_divide(rest << 32 | u64::from(word), den as u32));
             rest = remainder.into();
             quotient = quotient << 32 | u64::from(digit);
             continue;
@@ -138,10 +140,10 @@ mod tests {
             state ^ state >> 31
         };
         for _ in 0..20_000 {
-            let den = NonZeroU32::new((next() >> (32 + next() % 31)) as u32 | 1).expect("odd");
+            let den = NonZeroU32::new((next() >> (33 + next() % 30)) as u32 | 1).expect("odd");
             let num = (u64::from(den.get()) * (next() >> (32 + next() % 32))) + next() % u64::from(den.get());
             let expected = ((num / u64::from(den.get())) as u32, (num % u64::from(den.get())) as u32);
-            assert_eq!(long_divide((num >> 32) as u32, num as u32, den), expected, "{num} / {den}");
+            assert_eq!(split(long_divide(num, den.get())), expected, "{num} / {den}");
         }
     }
 }
