@@ -153,23 +153,28 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings>, varyings: &mut [S::Varyings; 3]) {
         let SetUp { v, area, depth, corner, d_dy, steps, .. } = set_up;
         steps.level = self.shader.level(varyings, area.unsigned_abs());
-        let gradients = Gradients::new(v, *area, self.screen);
-        *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+        if S::Varyings::LEN == 0 && v[0].z == v[1].z && v[0].z == v[2].z {
+            // A plane that is known, and no other.
+            depth.base = u32::from(v[0].z) << 16;
+        } else {
+            let gradients = Gradients::new(v, *area, self.screen);
+            *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+            if S::Varyings::PERSPECTIVE > 0 {
+                homogenize(varyings, v, self.screen, &mut steps.correction);
+            }
+            let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
+            widen(&gradients, &values, &mut steps.correction);
+            let planes = corner.as_mut().iter_mut().zip(steps.d_dx.as_mut()).zip(d_dy.as_mut());
+            for (k, ((corner, dx), dy)) in planes.enumerate() {
+                let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
+                let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
+                (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
+            }
+        }
         steps.dz_dx = depth.dx;
         if let Some(bias) = self.chosen.bias {
             let steps = bias(&self.state.bias, v, depth);
             depth.base = depth.base.wrapping_add((steps as u32) << 16);
-        }
-        if S::Varyings::PERSPECTIVE > 0 {
-            homogenize(varyings, v, self.screen, &mut steps.correction);
-        }
-        let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
-        widen(&gradients, &values, &mut steps.correction);
-        let planes = corner.as_mut().iter_mut().zip(steps.d_dx.as_mut()).zip(d_dy.as_mut());
-        for (k, ((corner, dx), dy)) in planes.enumerate() {
-            let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
-            let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
-            (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
         }
         steps.words = self.shader.prepare(corner, &steps.d_dx);
     }
