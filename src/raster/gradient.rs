@@ -12,7 +12,7 @@
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed};
+use crate::math::{SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -24,12 +24,12 @@ pub struct Gradients {
     to: (i32, i32),
     /// Twice the signed area; never 0.
     area: i64,
-    /// Whether x and y are within -2¹⁵..2¹⁵.
-    is_small: bool,
     /// 2⁶³ / (|area| << shift), and shift, which puts the top bit of |area| into bit 31; 0 for triangles of more than
     /// 512 px.
     reciprocal: u32,
     shift: i32,
+    /// The shift, if x and y are within -2¹⁵..2¹⁵; otherwise more than any.
+    small_shift: i32,
     /// The pixel at which planes are evaluated: the one that holds vertex 0, for large triangles brought onto the screen.
     origin: (i32, i32),
 }
@@ -50,30 +50,31 @@ impl Gradients {
     /// `width` × `height` px.
     #[inline]
     pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {
-        let mut x = [v[1].x - v[0].x, v[2].x - v[0].x];
-        let mut y = [v[1].y - v[0].y, v[2].y - v[0].y];
-        let mut origin = (v[0].x >> 8, v[0].y >> 8);
-        let (mut reciprocal, mut shift) = (0, 0);
-        let is_small = small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]);
-        if is_small {
+        let x = [v[1].x - v[0].x, v[2].x - v[0].x];
+        let y = [v[1].y - v[0].y, v[2].y - v[0].y];
+        let origin = (v[0].x >> 8, v[0].y >> 8);
+        let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
+        let mut it = Self { x, y, to, area, reciprocal: 0, shift: 0, small_shift: LARGE, origin };
+        if area < 0 {
+            (it.x, it.y) = ([-x[0], -x[1]], [-y[0], -y[1]]);
+        }
+        if small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]) {
             let magnitude = (area as i32).unsigned_abs();
-            shift = leading_zeros(magnitude) as i32;
-            reciprocal = crate::math::reciprocal(magnitude << shift);
+            let shift = leading_zeros(magnitude);
+            (it.shift, it.small_shift) = (shift as i32, shift as i32);
+            it.reciprocal = crate::math::reciprocal(magnitude << shift);
         } else if medium(x[0]) & medium(x[1]) & medium(y[0]) & medium(y[1]) {
             // Areas up to 2³⁵, of which the upper 32 bits count: 2⁻³¹ is lost.
             let magnitude = area.unsigned_abs();
             let zeros = leading_zeros_long(magnitude);
-            shift = zeros as i32 - 32;
-            reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
+            it.shift = zeros as i32 - 32;
+            it.reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
             // `clamp` would panic on an empty screen.
-            origin = (origin.0.min(i32::from(width) - 1).max(0), origin.1.min(i32::from(height) - 1).max(0));
+            it.origin = (origin.0.min(i32::from(width) - 1).max(0), origin.1.min(i32::from(height) - 1).max(0));
+            it.to = (256 * it.origin.0 + 128 - v[0].x, 256 * it.origin.1 + 128 - v[0].y);
         }
-        if area < 0 {
-            (x, y) = ([-x[0], -x[1]], [-y[0], -y[1]]);
-        }
-        let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
-        Self { x, y, to, area, is_small, reciprocal, shift, origin }
+        it
     }
 
     /// The plane through the values at the three vertices times 2^`scale`, modulo 2³²; usually 16.16.
@@ -83,50 +84,59 @@ impl Gradients {
     /// the exact plane: 2⁻³ of a unit in 16.16.
     #[inline(never)]
     pub fn plane(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
-        let plane = self.plane_at_origin(values, scale);
-        let along = plane.dx.wrapping_mul(self.origin.0).wrapping_add(plane.dy.wrapping_mul(self.origin.1));
-        PlaneEquation { base: plane.base.wrapping_sub(along as u32), ..plane }
-    }
-
-    /// The same, with its base at the origin.
-    #[inline]
-    fn plane_at_origin(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
         let (v1, v2) = (values[1].wrapping_sub(values[0]), values[2].wrapping_sub(values[0]));
-        let base = (values[0] as u32) << scale;
         if v1 | v2 == 0 {
-            return PlaneEquation { dx: 0, dy: 0, base };
+            return PlaneEquation { dx: 0, dy: 0, base: (values[0] as u32) << scale };
         }
-        let [dx, dy] = match self.small_steps(v1, v2, scale) {
-            Some(steps) => steps,
-            None => {
-                let numerators = self.numerators(values);
-                match self.gentle(&numerators, scale) {
-                    Some(steps) => steps,
-                    None => return self.steep(values[0], &numerators, scale),
+        // Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
+        let up = self.small_shift + scale as i32 - 23;
+        if up <= 4 && moderate(v1) & moderate(v2) {
+            let a = v1 * self.y[1] - v2 * self.y[0];
+            let b = v2 * self.x[0] - v1 * self.x[1];
+            let (dx, dy) = (high(a, self.reciprocal), high(b, self.reciprocal));
+            // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
+            // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
+            let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
+            if up < 0 {
+                if bits >> 29 == 0 {
+                    return self.from_origin(values[0], scale, dx >> -up, dy >> -up);
                 }
+            } else if bits >> (29 - up) == 0 {
+                return self.from_origin(values[0], scale, dx << up, dy << up);
             }
-        };
-        // Both are below 2²⁹, at a pixel at most half a pixel from vertex 0: 2²⁹⁻⁶ · 2⁷ twice, below 2³¹. The cut bits are 2⁻¹¹ of a
-        // unit in 16.16.
-        let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
-        PlaneEquation { dx, dy, base: base.wrapping_add(offset as u32) }
+        }
+        self.plane_apart(values, scale)
     }
 
-    /// Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
+    /// The same for others.
+    #[inline(never)]
+    fn plane_apart(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
+        let numerators = self.numerators(values);
+        match self.gentle(&numerators, scale) {
+            Some([dx, dy]) => self.from_origin(values[0], scale, dx, dy),
+            None => {
+                let plane = self.steep(values[0], &numerators, scale);
+                PlaneEquation { base: plane.base.wrapping_sub(self.along(plane.dx, plane.dy)), ..plane }
+            }
+        }
+    }
+
+    /// The plane with these gradients through vertex 0.
+    ///
+    /// # Format
+    /// Both are below 2²⁹, at a pixel at most half a pixel from vertex 0: 2²⁹⁻⁶ · 2⁷ twice, below 2³¹. The cut bits are 2⁻¹¹ of a
+    /// unit in 16.16.
     #[inline(always)]
-    fn small_steps(&self, v1: i32, v2: i32, scale: u32) -> Option<[i32; 2]> {
-        let up = self.shift + scale as i32 - 23;
-        if up > 4 || !self.is_small || !(moderate(v1) & moderate(v2)) {
-            return None;
-        }
-        // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
-        // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
-        let dx = high(v1 * self.y[1] - v2 * self.y[0], self.reciprocal);
-        let dy = high(v2 * self.x[0] - v1 * self.x[1], self.reciprocal);
-        if ((dx ^ dx >> 31) | (dy ^ dy >> 31)) >> (29 - up.max(0)) != 0 {
-            return None;
-        }
-        Some(if up >= 0 { [dx << up, dy << up] } else { [dx >> -up, dy >> -up] })
+    fn from_origin(&self, v0: i32, scale: u32, dx: i32, dy: i32) -> PlaneEquation {
+        let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
+        let base = ((v0 as u32) << scale).wrapping_add(offset as u32);
+        PlaneEquation { dx, dy, base: base.wrapping_sub(self.along(dx, dy)) }
+    }
+
+    /// What the gradients make from the screen's corner to the origin.
+    #[inline(always)]
+    fn along(&self, dx: i32, dy: i32) -> u32 {
+        dx.wrapping_mul(self.origin.0).wrapping_add(dy.wrapping_mul(self.origin.1)) as u32
     }
 
     /// The plane of any triangle and any values.
@@ -203,10 +213,18 @@ impl Gradients {
     }
 }
 
-/// [`mul_high_signed`], out of line where it would spill all that is kept across it.
+/// What is no [`small_shift`](Gradients::small_shift).
+const LARGE: i32 = 1 << 16;
+
+/// [`mul_high_signed`] for a `b` with its top bit set, and out of line where it would spill all that is kept across it.
 #[inline(always)]
 fn high(a: i32, b: u32) -> i32 {
-    if SMALL_CORE { mul_high_apart(a, b) } else { mul_high_signed(a, b) }
+    if SMALL_CORE {
+        mul_high_apart(a, b)
+    } else {
+        // One instruction, if b is taken for b - 2³².
+        (((i64::from(a) * i64::from(b as i32)) >> 32) as i32).wrapping_add(a)
+    }
 }
 
 /// Whether a difference of coordinates is within -2¹⁷..2¹⁷: 512 px.
