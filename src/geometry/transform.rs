@@ -7,7 +7,7 @@
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::{BoundingBox, Mesh, Positions, Viewport};
-use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long};
+use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long, product};
 use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
@@ -72,10 +72,13 @@ fn scale(value: i64, shift: i32) -> i64 {
     }
 }
 
-/// `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶ and |b| ≤ 2³¹: at most 2⁶¹.
+/// `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶: at most 2⁶¹.
 #[inline(never)]
-fn times(a: i64, b: i64) -> i64 {
-    (a >> 16) * b + (((a & 0xFFFF) * b) >> 16)
+fn times(a: i64, b: i32) -> i64 {
+    // The lower half of `a` in two products of 16 bits, below 2³¹ and 2³².
+    let (high, low) = ((a >> 16) as i32, a as u32 & 0xFFFF);
+    let fraction = low as i32 * (b >> 16) + ((low * (b as u32 & 0xFFFF)) >> 16) as i32;
+    product(high, b) + i64::from(fraction)
 }
 
 /// Shifts that bring the largest of `values` below 2^`bits`; negative ones if they are smaller.
@@ -183,7 +186,7 @@ impl View {
         let [.., mut least] = *row;
         let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
         for ((entry, center), half) in row.iter().zip(&center).zip(&half) {
-            least += times(*entry, i64::from(*center)) - times(entry.abs(), i64::from(*half));
+            least += times(*entry, *center) - times(entry.abs(), *half);
         }
         least
     }
@@ -195,21 +198,19 @@ impl View {
 /// Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions
 /// are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
 struct Numbers {
-    factor: i64,
+    factor: Option<i32>,
     offset: [i32; 3],
-    quantized: bool,
     homogeneous: bool,
 }
 
 impl Numbers {
     fn of(mesh: &Mesh<'_>, displaced: bool) -> Self {
-        let mut numbers = Self { factor: 1 << 31, offset: [0; 3], quantized: false, homogeneous: false };
+        let mut numbers = Self { factor: None, offset: [0; 3], homogeneous: false };
         match &mesh.data().positions {
             _ if displaced => {}
             Positions::Quantized { scale, offset, .. } => {
-                numbers.factor = scale.to_bits().into();
+                numbers.factor = Some(scale.to_bits());
                 numbers.offset = offset.to_bits();
-                numbers.quantized = true;
             }
             Positions::Homogeneous(_) => numbers.homogeneous = true,
             Positions::Exact(_) => {}
@@ -221,9 +222,11 @@ impl Numbers {
     #[inline(never)]
     fn translation(&self, row: &[i64; 4]) -> i64 {
         let mut t = if self.homogeneous { 0 } else { row[3] };
-        if self.quantized {
+        if self.factor.is_some() {
             for (r, offset) in row.iter().zip(&self.offset) {
-                t += times(*r, (*offset).into());
+                if *offset != 0 {
+                    t += times(*r, *offset);
+                }
             }
         }
         t
@@ -232,7 +235,10 @@ impl Numbers {
     /// The entries e of a row.
     #[inline]
     fn entries(&self, row: &[i64; 4]) -> impl Iterator<Item = i64> {
-        row.iter().take(if self.homogeneous { 4 } else { 3 }).map(|r| times(*r, self.factor))
+        row.iter().take(if self.homogeneous { 4 } else { 3 }).map(|r| match self.factor {
+            Some(factor) => times(*r, factor),
+            None => *r << 15,
+        })
     }
 
     /// A quarter of the largest value that a row can reach.
@@ -276,8 +282,8 @@ impl Row {
     fn apply(&self, p: &[i32; 4], short: bool) -> i64 {
         let (mut value, mut fraction) = (self.translation, 0_i64);
         for ([high, low], p) in self.entries.iter().zip(p) {
-            value += i64::from(*high) * i64::from(*p);
-            fraction += i64::from(*low) * i64::from(*p);
+            value += product(*high, *p);
+            fraction += product(*low, *p);
         }
         fraction >>= 15;
         value + if short { fraction } else { fraction >> 1 }
@@ -308,7 +314,7 @@ impl Transform {
         // One shift for all, so that the largest reachable value is just below 2⁵⁵.
         let shift = excess(&[view.rows.iter().fold(0, |reach, row| reach | numbers.reach(row))], 53);
         let least_w = view.least_w(&mesh.bounds().aabb);
-        self.short = numbers.quantized && scale(least_w, shift) >= Self::SHORT_W;
+        self.short = numbers.factor.is_some() && scale(least_w, shift) >= Self::SHORT_W;
         (self.scale, self.uniform) = (view.scale - shift, None);
         for (row, from) in self.rows.iter_mut().zip(&view.rows) {
             numbers.row(from, shift, self.short, row);
