@@ -429,3 +429,24 @@ impl Transform {
         [apply(a), apply(b), apply(c), apply(d)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::times;
+
+    #[test]
+    fn times_is_a_product_rounded_down() {
+        let mut state = 1_u64;
+        let mut next = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state ^ state >> 29) as i64
+        };
+        for _ in 0..200_000 {
+            let (a, b) = (next() >> (18 + (next() & 31)), (next() >> (32 + (next() & 31))) as i32);
+            for b in [b, i32::MIN, i32::MAX] {
+                let exact = i128::from(a) * i128::from(b);
+                assert_eq!(i128::from(times(a, b)), exact >> 16, "{a} {b}");
+            }
+        }
+    }
+}

@@ -308,6 +308,20 @@ mod tests {
     use super::*;
 
     #[test]
+    fn products_by_halves_are_products() {
+        let ends = [i32::MIN, i32::MIN + 1, -0x1_0000, -0xFFFF, -1, 0, 1, 0xFFFF, 0x1_0000, 0x7FFF_0000, i32::MAX];
+        let mut state = 1_u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state ^ state >> 13) as i32
+        };
+        let random: std::vec::Vec<_> = (0..2000).map(|_| next() >> (next() & 31)).collect();
+        for (a, b) in ends.iter().chain(&random).flat_map(|a| ends.iter().chain(&random).map(move |b| (*a, *b))) {
+            assert_eq!(product_by_halves(a, b), i64::from(a) * i64::from(b), "{a} {b}");
+        }
+    }
+
+    #[test]
     fn divisors_are_within_their_bounds() {
         let mut state = 1_u32;
         let mut random = || {
