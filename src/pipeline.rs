@@ -115,6 +115,9 @@ pub struct Scene<'a, F> {
     pub(crate) changed: Option<u16>,
 }
 
+/// Vertices of a mesh up to which it is not worth a test of its bounds.
+const FEW_VERTICES: usize = 4;
+
 impl<'a, F: Framebuffer> Scene<'a, F> {
     /// Draws a mesh: back faces culled, nearer fragments win, clipped at the near and the far plane.
     ///
@@ -268,7 +271,10 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         }
         let mut view = View::EMPTY;
         view.fold(mvp, &self.viewport);
-        let bounded = !displaced && !matches!(mesh.data().positions, Positions::Homogeneous(_));
+        // A test takes as long as a few vertices do.
+        let bounded = mesh.vertex_count() > FEW_VERTICES
+            && !displaced
+            && !matches!(mesh.data().positions, Positions::Homogeneous(_));
         let culled = bounded && !self.sees(&view, mesh.bounds(), state.range);
         if recording {
             // What is out of view leaves a header without vertices.

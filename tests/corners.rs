@@ -71,6 +71,9 @@ fn random_soups_have_exactly_the_right_pixels_and_depths() {
 fn clamped_meshes_are_not_culled_beyond_the_far_plane() {
     let camera = Projective::perspective(Angle::from_degrees(60), (1, 1), Scalar::ONE, Scalar::from_num(100));
     let camera = camera.expect("a camera");
+    // Twice: the bounds of a single square are not looked at.
+    let squares = [SQUARE, SQUARE].concat();
+    let squares = Mesh::new(quad(&squares)).expect("a mesh");
     let depth = DepthState { compare: Compare::LessEqual, write: true };
     for (z, range, expected) in [
         (-99, DepthRange::Clip, true),
@@ -80,7 +83,7 @@ fn clamped_meshes_are_not_culled_beyond_the_far_plane() {
     ] {
         let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, z)) * Affine::scale(Scalar::from_num(50));
         let state = State { range, depth, ..State::default() };
-        let (pixels, stats) = lit(|scene| scene.draw_with(state, &square(), &mvp, &white()));
+        let (pixels, stats) = lit(|scene| scene.draw_with(state, &squares, &mvp, &white()));
         assert_eq!((pixels > 0, stats.culled == 0), (expected, expected), "{range:?} at {z}");
     }
 }
@@ -88,6 +91,7 @@ fn clamped_meshes_are_not_culled_beyond_the_far_plane() {
 #[test]
 fn spheres_that_do_not_fit_the_format_cull_nothing() {
     let ground = [[-1, 1], [1, 1], [1, -1], [-1, -1]].map(|[x, z]| Vec3::from_ints(x * 30_000, 0, z * 30_000));
+    let ground = [ground, ground].concat();
     let mesh = Mesh::new(quad(&ground)).expect("a mesh");
     assert_eq!(mesh.bounds().sphere.radius, Scalar::MAX);
     let camera = Projective::perspective(Angle::from_degrees(90), (1, 1), Scalar::ONE, Scalar::from_num(5000));
