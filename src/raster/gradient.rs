@@ -12,7 +12,7 @@
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart};
+use crate::math::{SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -93,7 +93,7 @@ impl Gradients {
         if up <= 4 && moderate(v1) & moderate(v2) {
             let a = v1 * self.y[1] - v2 * self.y[0];
             let b = v2 * self.x[0] - v1 * self.x[1];
-            let (dx, dy) = (high(a, self.reciprocal), high(b, self.reciprocal));
+            let (dx, dy) = if SMALL_CORE { high_two(a, b, self.reciprocal) } else { high(a, b, self.reciprocal) };
             // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
             // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
             let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
@@ -216,15 +216,18 @@ impl Gradients {
 /// What is no [`small_shift`](Gradients::small_shift).
 const LARGE: i32 = 1 << 16;
 
-/// [`mul_high_signed`] for a `b` with its top bit set, and out of line where it would spill all that is kept across it.
+/// High words of the products with a number whose top bit is set, rounded down.
 #[inline(always)]
-fn high(a: i32, b: u32) -> i32 {
-    if SMALL_CORE {
-        mul_high_apart(a, b)
-    } else {
-        // One instruction, if b is taken for b - 2³².
-        (((i64::from(a) * i64::from(b as i32)) >> 32) as i32).wrapping_add(a)
-    }
+fn high(a: i32, b: i32, n: u32) -> (i32, i32) {
+    // One instruction each, if n is taken for n - 2³².
+    let high = |a: i32| (((i64::from(a) * i64::from(n as i32)) >> 32) as i32).wrapping_add(a);
+    (high(a), high(b))
+}
+
+/// The same by products of 16 bits, out of line, where it would spill all that is kept across it.
+#[inline(never)]
+fn high_two(a: i32, b: i32, n: u32) -> (i32, i32) {
+    (mul_high_signed(a, n), mul_high_signed(b, n))
 }
 
 /// Whether a difference of coordinates is within -2¹⁷..2¹⁷: 512 px.
