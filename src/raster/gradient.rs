@@ -140,7 +140,7 @@ impl Gradients {
     }
 
     /// The plane of any triangle and any values.
-    #[inline(never)]
+    #[inline(always)]
     fn steep(&self, v0: i32, numerators: &[i64; 2], scale: u32) -> PlaneEquation {
         // Bits cut from what was rounded down leave what is rounded down.
         let mut plane = WidePlane::ZERO;
@@ -153,7 +153,6 @@ impl Gradients {
     ///
     /// # Format
     /// Differences of 33 bits times 2²⁵, below 2⁵⁸; in sums below 2⁵⁹.
-    #[inline(never)]
     fn numerators(&self, [v0, v1, v2]: [i32; 3]) -> [i64; 2] {
         let v = [i64::from(v1) - i64::from(v0), i64::from(v2) - i64::from(v0)];
         [minor(&v, &self.y), -minor(&v, &self.x)]
@@ -164,7 +163,6 @@ impl Gradients {
     ///
     /// 256 / |area| = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
     /// 2⁻³⁰).
-    #[inline(never)]
     fn gentle(&self, numerators: &[i64; 2], scale: u32) -> Option<[i32; 2]> {
         let mut gradients = [0; 2];
         for (gradient, n) in gradients.iter_mut().zip(numerators) {
@@ -187,7 +185,6 @@ impl Gradients {
     ///
     /// # Format
     /// The difference to the origin is Σ n to, of up to 84 bits, from two halves of each n.
-    #[inline(never)]
     fn exact(&self, v0: i32, &[a, b]: &[i64; 2], plane: &mut WidePlane) {
         let (x, y) = (i64::from(self.to.0), i64::from(self.to.1));
         let low = i64::from(a as u32) * x + i64::from(b as u32) * y;
