@@ -11,8 +11,10 @@
 //! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
-use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed};
+use crate::geometry::{ScreenVertex, WidePlane};
+use crate::math::{
+    SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed, reciprocal,
+};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -50,29 +52,33 @@ impl Gradients {
     /// `width` × `height` px.
     #[inline]
     pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {
-        let x = [v[1].x - v[0].x, v[2].x - v[0].x];
-        let y = [v[1].y - v[0].y, v[2].y - v[0].y];
-        let origin = (v[0].x >> 8, v[0].y >> 8);
-        let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
-        let mut it = Self { x, y, to, area, reciprocal: 0, shift: 0, small_shift: LARGE, origin };
+        let [a, b, c] = v;
+        let (x, y, is_small);
         if area < 0 {
-            (it.x, it.y) = ([-x[0], -x[1]], [-y[0], -y[1]]);
+            (x, y) = ([a.x - b.x, a.x - c.x], [a.y - b.y, a.y - c.y]);
+            is_small = within(1 << 15, [-x[0], -x[1], -y[0], -y[1]]);
+        } else {
+            (x, y) = ([b.x - a.x, c.x - a.x], [b.y - a.y, c.y - a.y]);
+            is_small = within(1 << 15, [x[0], x[1], y[0], y[1]]);
         }
-        if small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]) {
+        let origin = (a.x >> 8, a.y >> 8);
+        let to = (256 * origin.0 + 128 - a.x, 256 * origin.1 + 128 - a.y);
+        let mut it = Self { x, y, to, area, reciprocal: 0, shift: 0, small_shift: LARGE, origin };
+        if is_small {
             let magnitude = (area as i32).unsigned_abs();
             let shift = leading_zeros(magnitude);
             (it.shift, it.small_shift) = (shift as i32, shift as i32);
-            it.reciprocal = crate::math::reciprocal(magnitude << shift);
-        } else if medium(x[0]) & medium(x[1]) & medium(y[0]) & medium(y[1]) {
+            it.reciprocal = reciprocal(magnitude << shift);
+        } else if within(1 << 17, [b.x - a.x, c.x - a.x, b.y - a.y, c.y - a.y]) {
             // Areas up to 2³⁵, of which the upper 32 bits count: 2⁻³¹ is lost.
             let magnitude = area.unsigned_abs();
             let zeros = leading_zeros_long(magnitude);
             it.shift = zeros as i32 - 32;
-            it.reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
+            it.reciprocal = reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
             // `clamp` would panic on an empty screen.
             it.origin = (origin.0.min(i32::from(width) - 1).max(0), origin.1.min(i32::from(height) - 1).max(0));
-            it.to = (256 * it.origin.0 + 128 - v[0].x, 256 * it.origin.1 + 128 - v[0].y);
+            it.to = (256 * it.origin.0 + 128 - a.x, 256 * it.origin.1 + 128 - a.y);
         }
         it
     }
@@ -227,10 +233,10 @@ fn high_two(a: i32, b: i32, n: u32) -> (i32, i32) {
     (mul_high_signed(a, n), mul_high_signed(b, n))
 }
 
-/// Whether a difference of coordinates is within -2¹⁷..2¹⁷: 512 px.
-#[inline]
-fn medium(difference: i32) -> bool {
-    (difference + (1 << 17)) as u32 >> 18 == 0
+/// Whether all are within -`half`..`half`, a power of two.
+#[inline(always)]
+fn within(half: i32, [a, b, c, d]: [i32; 4]) -> bool {
+    (((a + half) | (b + half) | (c + half) | (d + half)) as u32) < 2 * half as u32
 }
 
 /// Whether a difference of values is within -2¹⁴..2¹⁴.
