@@ -57,7 +57,7 @@ fn wide_area(b: (i32, i32), c: (i32, i32)) -> i64 {
 
 /// Whether a difference of coordinates is within -2¹⁵..2¹⁵, so that products of two fit 31 bits.
 #[inline]
-pub(crate) fn small(difference: i32) -> bool {
+fn small(difference: i32) -> bool {
     (difference + (1 << 15)) as u32 >> 16 == 0
 }
 

@@ -55,7 +55,6 @@ pub enum Placed {
 }
 
 /// Outcodes, projection and snapping of a vertex in clip space.
-#[inline(never)]
 pub fn place(vertex: &ClipVertex) -> Placed {
     let code = Outcode::of(vertex);
     let placed = if code.0 == 0 { project(vertex) } else { None };
@@ -242,14 +241,12 @@ impl Numbers {
     }
 
     /// A quarter of the largest value that a row can reach.
-    #[inline(never)]
     fn reach(&self, row: &[i64; 4]) -> i64 {
         let t = self.translation(row).unsigned_abs() as i64 >> 2;
         self.entries(row).fold(t, |sum, e| sum + (e.abs() >> 2) + 2)
     }
 
     /// Makes a row of the transform, cut by `shift` bits.
-    #[inline(never)]
     fn row(&self, row: &[i64; 4], shift: i32, short: bool, to: &mut Row) {
         to.translation = scale(self.translation(row), shift);
         to.entries[3] = [0; 2];

@@ -114,7 +114,6 @@ impl<'a> Face<'a> {
     /// # Format
     /// Edges are scaled to 15 bits, which a normal of 2.14 does not tell; its components, at most 2³¹ - 2¹⁵, to 15 bits again,
     /// so that the sum of their squares fits 32: within 2⁻¹² of the exact normal unless the edges are nearly parallel.
-    #[inline(never)]
     fn computed_normal(&self) -> [i16; 3] {
         let positions = &self.mesh.data().positions;
         if let Positions::Homogeneous(_) = positions {

@@ -73,25 +73,23 @@ pub(crate) fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
         if rest == 0 && u64::from(word) < den {
             // Nothing but zeros.
             rest = word.into();
-            quotient <<= 32;
-            continue;
-        }
-        if den >> 31 == 0 {
+            word = 0;
+        } else if den >> 31 == 0 {
             // Most have few bits; the rest is below it.
-            let (digit, remainder) = split(long_divide(rest << 32 | u64::from(word), den as u32));
+            let remainder;
+            (word, remainder) = split(long_divide(rest << 32 | u64::from(word), den as u32));
             rest = remainder.into();
-            quotient = quotient << 32 | u64::from(digit);
-            continue;
-        }
-        for _ in 0..32 {
-            rest = rest << 1 | u64::from(word >> 31);
-            word <<= 1;
-            quotient <<= 1;
-            if rest >= den {
-                rest -= den;
-                quotient |= 1;
+        } else {
+            for _ in 0..32 {
+                rest = rest << 1 | u64::from(word >> 31);
+                word <<= 1;
+                if let Some(less) = rest.checked_sub(den) {
+                    rest = less;
+                    word |= 1;
+                }
             }
         }
+        quotient = quotient << 32 | u64::from(word);
     }
     quotient as i64 ^ high >> 63
 }

@@ -124,13 +124,17 @@ pub const fn reciprocal(x: u32) -> u32 {
     let x16 = (x >> 16) + ((x >> 15) & 1);
     let defect = (1_i32 << 31).wrapping_sub((x16 * r0) as i32);
     let r1 = (r0 << 16).wrapping_add((((r0 as i32) * (defect >> 8)) >> 7) as u32);
-    // r1 may pass 2³² by its error when x is 2³¹: keep it just below.
-    let r1 = if r1 < 1 << 30 { u32::MAX } else { r1 };
+    let r1 = saturated(r1);
     // Second step: the defect of x r1 / 2³² from 2³¹ is below 2¹⁵·⁵, the top of r1 has 15 bits.
     let defect = (1_i32 << 31).wrapping_sub(mul_high(x, r1) as i32);
     let correction = ((r1 >> 17) as i32 * defect) >> 14;
-    let r2 = r1.wrapping_add(correction as u32);
-    if r2 < 1 << 30 { u32::MAX } else { r2 }
+    saturated(r1.wrapping_add(correction as u32))
+}
+
+/// What is near 2³¹..2³², kept below 2³² if it has passed that by its error, as that of 2³¹ may.
+#[inline(always)]
+const fn saturated(r: u32) -> u32 {
+    r | ((r >> 30) as i32 - 1 >> 31) as u32
 }
 
 /// A number to divide others by: a reciprocal of 16 bits, and what is wrong with it.

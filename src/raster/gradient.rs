@@ -11,8 +11,10 @@
 //! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
-use crate::geometry::{ScreenVertex, WidePlane, small};
-use crate::math::{SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart};
+use crate::geometry::{ScreenVertex, WidePlane};
+use crate::math::{
+    SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed, reciprocal,
+};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -50,29 +52,33 @@ impl Gradients {
     /// `width` × `height` px.
     #[inline]
     pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {
-        let x = [v[1].x - v[0].x, v[2].x - v[0].x];
-        let y = [v[1].y - v[0].y, v[2].y - v[0].y];
-        let origin = (v[0].x >> 8, v[0].y >> 8);
-        let to = (256 * origin.0 + 128 - v[0].x, 256 * origin.1 + 128 - v[0].y);
-        let mut it = Self { x, y, to, area, reciprocal: 0, shift: 0, small_shift: LARGE, origin };
+        let [a, b, c] = v;
+        let (x, y, is_small);
         if area < 0 {
-            (it.x, it.y) = ([-x[0], -x[1]], [-y[0], -y[1]]);
+            (x, y) = ([a.x - b.x, a.x - c.x], [a.y - b.y, a.y - c.y]);
+            is_small = within(1 << 15, [-x[0], -x[1], -y[0], -y[1]]);
+        } else {
+            (x, y) = ([b.x - a.x, c.x - a.x], [b.y - a.y, c.y - a.y]);
+            is_small = within(1 << 15, [x[0], x[1], y[0], y[1]]);
         }
-        if small(x[0]) & small(x[1]) & small(y[0]) & small(y[1]) {
+        let origin = (a.x >> 8, a.y >> 8);
+        let to = (256 * origin.0 + 128 - a.x, 256 * origin.1 + 128 - a.y);
+        let mut it = Self { x, y, to, area, reciprocal: 0, shift: 0, small_shift: LARGE, origin };
+        if is_small {
             let magnitude = (area as i32).unsigned_abs();
             let shift = leading_zeros(magnitude);
             (it.shift, it.small_shift) = (shift as i32, shift as i32);
-            it.reciprocal = crate::math::reciprocal(magnitude << shift);
-        } else if medium(x[0]) & medium(x[1]) & medium(y[0]) & medium(y[1]) {
+            it.reciprocal = reciprocal(magnitude << shift);
+        } else if within(1 << 17, [b.x - a.x, c.x - a.x, b.y - a.y, c.y - a.y]) {
             // Areas up to 2³⁵, of which the upper 32 bits count: 2⁻³¹ is lost.
             let magnitude = area.unsigned_abs();
             let zeros = leading_zeros_long(magnitude);
             it.shift = zeros as i32 - 32;
-            it.reciprocal = crate::math::reciprocal(((magnitude << zeros) >> 32) as u32);
+            it.reciprocal = reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
             // `clamp` would panic on an empty screen.
             it.origin = (origin.0.min(i32::from(width) - 1).max(0), origin.1.min(i32::from(height) - 1).max(0));
-            it.to = (256 * it.origin.0 + 128 - v[0].x, 256 * it.origin.1 + 128 - v[0].y);
+            it.to = (256 * it.origin.0 + 128 - a.x, 256 * it.origin.1 + 128 - a.y);
         }
         it
     }
@@ -93,7 +99,7 @@ impl Gradients {
         if up <= 4 && moderate(v1) & moderate(v2) {
             let a = v1 * self.y[1] - v2 * self.y[0];
             let b = v2 * self.x[0] - v1 * self.x[1];
-            let (dx, dy) = (high(a, self.reciprocal), high(b, self.reciprocal));
+            let (dx, dy) = if SMALL_CORE { high_two(a, b, self.reciprocal) } else { high(a, b, self.reciprocal) };
             // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
             // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
             let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
@@ -140,7 +146,7 @@ impl Gradients {
     }
 
     /// The plane of any triangle and any values.
-    #[inline(never)]
+    #[inline(always)]
     fn steep(&self, v0: i32, numerators: &[i64; 2], scale: u32) -> PlaneEquation {
         // Bits cut from what was rounded down leave what is rounded down.
         let mut plane = WidePlane::ZERO;
@@ -153,7 +159,6 @@ impl Gradients {
     ///
     /// # Format
     /// Differences of 33 bits times 2²⁵, below 2⁵⁸; in sums below 2⁵⁹.
-    #[inline(never)]
     fn numerators(&self, [v0, v1, v2]: [i32; 3]) -> [i64; 2] {
         let v = [i64::from(v1) - i64::from(v0), i64::from(v2) - i64::from(v0)];
         [minor(&v, &self.y), -minor(&v, &self.x)]
@@ -164,7 +169,6 @@ impl Gradients {
     ///
     /// 256 / |area| = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
     /// 2⁻³⁰).
-    #[inline(never)]
     fn gentle(&self, numerators: &[i64; 2], scale: u32) -> Option<[i32; 2]> {
         let mut gradients = [0; 2];
         for (gradient, n) in gradients.iter_mut().zip(numerators) {
@@ -187,7 +191,6 @@ impl Gradients {
     ///
     /// # Format
     /// The difference to the origin is Σ n to, of up to 84 bits, from two halves of each n.
-    #[inline(never)]
     fn exact(&self, v0: i32, &[a, b]: &[i64; 2], plane: &mut WidePlane) {
         let (x, y) = (i64::from(self.to.0), i64::from(self.to.1));
         let low = i64::from(a as u32) * x + i64::from(b as u32) * y;
@@ -216,21 +219,24 @@ impl Gradients {
 /// What is no [`small_shift`](Gradients::small_shift).
 const LARGE: i32 = 1 << 16;
 
-/// [`mul_high_signed`] for a `b` with its top bit set, and out of line where it would spill all that is kept across it.
+/// High words of the products with a number whose top bit is set, rounded down.
 #[inline(always)]
-fn high(a: i32, b: u32) -> i32 {
-    if SMALL_CORE {
-        mul_high_apart(a, b)
-    } else {
-        // One instruction, if b is taken for b - 2³².
-        (((i64::from(a) * i64::from(b as i32)) >> 32) as i32).wrapping_add(a)
-    }
+fn high(a: i32, b: i32, n: u32) -> (i32, i32) {
+    // One instruction each, if n is taken for n - 2³².
+    let high = |a: i32| (((i64::from(a) * i64::from(n as i32)) >> 32) as i32).wrapping_add(a);
+    (high(a), high(b))
 }
 
-/// Whether a difference of coordinates is within -2¹⁷..2¹⁷: 512 px.
-#[inline]
-fn medium(difference: i32) -> bool {
-    (difference + (1 << 17)) as u32 >> 18 == 0
+/// The same by products of 16 bits, out of line, where it would spill all that is kept across it.
+#[inline(never)]
+fn high_two(a: i32, b: i32, n: u32) -> (i32, i32) {
+    (mul_high_signed(a, n), mul_high_signed(b, n))
+}
+
+/// Whether all are within -`half`..`half`, a power of two.
+#[inline(always)]
+fn within(half: i32, [a, b, c, d]: [i32; 4]) -> bool {
+    (((a + half) | (b + half) | (c + half) | (d + half)) as u32) < 2 * half as u32
 }
 
 /// Whether a difference of values is within -2¹⁴..2¹⁴.
