@@ -1,7 +1,7 @@
 //! Clip space → screen: divide, and snap to 1/256 px.
 
 use super::clip::ClipVertex;
-use crate::math::{Divisor, Scalar, leading_zeros_long, mul_high, reciprocal};
+use crate::math::{Divisor, SMALL_CORE, Scalar, byte_zeros, leading_zeros_long, mul_high, reciprocal};
 use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Point;
 
@@ -114,8 +114,8 @@ pub fn inverse_w(v: &ClipVertex) -> u32 {
 /// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.
 #[inline]
 pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
-    // 2 to 5; counted by comparisons, as small cores have no instruction for it.
-    let zeros = 2 + u32::from(w < 1 << 29) + u32::from(w < 1 << 28) + u32::from(w < 1 << 27);
+    // 2 to 5.
+    let zeros = if SMALL_CORE { byte_zeros((w >> 24) as u8) } else { (w as u32).leading_zeros() };
     divide(x >> (7 - zeros), y >> (7 - zeros), (z as u32) << zeros, (w as u32) << zeros)
 }
 

@@ -6,7 +6,7 @@ use super::{Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, Face, MAX_DISTANCES, Mesh, Outcode, Part,
-    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, inverse_w, weighted,
+    Placed, Polygon, PolygonCorner, Positions, Transform, Varyings, VertexShader, inverse_w, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -184,11 +184,16 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let stage = VertexStage { mesh, shader: *shader, transform };
         let (places, varyings) = scene.records.vertices_mut();
         scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
-        for (index, place) in places.iter_mut().enumerate() {
-            *place = stage.place(index).words();
-            if S::WORDS > 0 {
-                let words = varyings.get_mut(index * S::WORDS..).and_then(|rest| rest.get_mut(..S::WORDS));
-                S::store(&stage.varyings(index), words.unwrap_or_default());
+        if S::DISPLACES || S::CLIP_DISTANCES > 0 {
+            for (index, place) in places.iter_mut().enumerate() {
+                *place = stage.place(index).words();
+            }
+        } else {
+            place_all(transform, &mesh.data().positions, places);
+        }
+        if S::WORDS > 0 {
+            for (index, words) in varyings.chunks_exact_mut(S::WORDS).enumerate() {
+                S::store(&stage.varyings(index), words);
             }
         }
     }
@@ -409,6 +414,23 @@ pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let words = words.get_mut(..S::WORDS).unwrap_or_default();
     S::store(varyings, words);
     S::load(words)
+}
+
+/// Where all vertices of a mesh are: what is the same for all of them is asked once.
+#[inline(never)]
+fn place_all(transform: &Transform, positions: &Positions<'_>, places: &mut [[u32; 2]]) {
+    match transform.short_points(positions) {
+        Some(points) => {
+            for (place, point) in places.iter_mut().zip(points) {
+                *place = Slot::new(&transform.place_short(*point).0).words();
+            }
+        }
+        None => {
+            for (index, place) in places.iter_mut().enumerate() {
+                *place = Slot::new(&transform.place(positions, index)).words();
+            }
+        }
+    }
 }
 
 /// What the vertex stage works with.
