@@ -114,8 +114,8 @@ pub fn inverse_w(v: &ClipVertex) -> u32 {
 /// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.
 #[inline]
 pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
-    // 2 to 5.
-    let zeros = if SMALL_CORE { byte_zeros((w >> 24) as u8) } else { (w as u32).leading_zeros() };
+    // 2 to 5; the compiler knows then that no shift is by more than 31.
+    let zeros = 7 & if SMALL_CORE { byte_zeros((w >> 24) as u8) } else { (w as u32).leading_zeros() };
     divide(x >> (7 - zeros), y >> (7 - zeros), (z as u32) << zeros, (w as u32) << zeros)
 }
 
@@ -196,15 +196,17 @@ impl UniformDepth {
         // z / far as 1.31, once the powers of two are made up for.
         let down = self.exponent - 32 + zeros as i32;
         let fraction = if down < 0 { 1 << 31 } else { mul_high(high, self.reciprocal.get()) >> down.min(31) };
-        sixteen_bits(fraction)
+        sixteen_bits(fraction.min(1 << 31))
     }
 }
 
 /// 65,535 times a fraction in 1.31, at most 1, rounded to nearest.
+///
+/// # Format
+/// Fractions up to 2¹⁴ - 2 units above 1 count as 1.
 #[inline]
 fn sixteen_bits(fraction: u32) -> u16 {
     // As 16.15: 2¹⁶ f - f, and a half; rounded down, so what is taken away is rounded up.
-    let fraction = fraction.min(1 << 31);
     ((fraction + (1 << 14) - ((fraction + 0xFFFF) >> 16)) >> 15) as u16
 }
 

@@ -158,7 +158,7 @@ impl Divisor {
         let product = if SMALL_CORE {
             (x >> 16).wrapping_mul(r as u32).wrapping_add((x & 0xFFFF).wrapping_mul(r as u32) >> 16)
         } else {
-            ((u64::from(x) * r as u64) >> 16) as u32
+            ((u64::from(x) * u64::from(r as u32)) >> 16) as u32
         };
         Self { shift: 0, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(product as i32) }
     }

@@ -122,6 +122,56 @@ pub(crate) struct Records<'a> {
     layout: &'a mut Layout,
 }
 
+/// The words of a draw that is recorded, taken apart: what triangles are made of, and where they go.
+#[derive(Debug)]
+pub(crate) struct Triangles<'r> {
+    lists: &'r mut [u32],
+    places: &'r [[u32; 2]],
+    /// Free words, and behind them the triangles; where the last of those begins, and the least that may be.
+    triangles: &'r mut [u32],
+    next: usize,
+    least: usize,
+    layout: &'r mut Layout,
+}
+
+impl Triangles<'_> {
+    /// Words of a vertex's [`Slot`].
+    #[inline(always)]
+    pub(crate) fn place(&self, index: u16) -> [u32; 2] {
+        match self.places.get(usize::from(index)) {
+            Some([a, b]) => [*a, *b],
+            None => Slot::NONE.0,
+        }
+    }
+
+    /// Records a triangle whose topmost strip, in this band, is `strip`; its first two corners in a word. Whether there was room.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, corners: u32, last: u16, face: u32, strip: usize) -> bool {
+        let number = self.layout.triangles;
+        let at = self.next.wrapping_sub(TRIANGLE);
+        let place = if self.next < self.least + TRIANGLE { None } else { self.triangles.get_mut(at..) };
+        let Some([a, b, c, ..]) = place else {
+            self.layout.overflow = true;
+            return false;
+        };
+        (*a, *b, *c) = (corners, u32::from(last) | u32::from(NONE) << 16, face);
+        self.layout.triangles = number + 1;
+        self.next = at;
+        let Some(list) = self.lists.get_mut(strip) else { return true };
+        let end = *list >> 16;
+        if end == u32::from(NONE) {
+            *list = u32::from(number) | u32::from(number) << 16;
+        } else {
+            *list = *list & 0xFFFF | u32::from(number) << 16;
+            let before = self.triangles.len().wrapping_sub(TRIANGLE * end as usize + 2);
+            if let Some(word) = self.triangles.get_mut(before) {
+                *word = *word & 0xFFFF | u32::from(number) << 16;
+            }
+        }
+        true
+    }
+}
+
 /// Positions in the words; kept by the frame from one walk to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Layout {
@@ -315,25 +365,21 @@ impl<'a> Records<'a> {
     }
 
     /// Records a triangle whose topmost strip, in this band, is `strip`.
-    pub(crate) fn push_triangle(&mut self, corners: [u16; 3], face: u32, strip: usize) {
-        let number = self.layout.triangles;
-        if self.free() < TRIANGLE || number == NONE {
-            self.layout.overflow = true;
-            return;
-        }
-        self.layout.triangles += 1;
-        let at = self.triangle_at(number);
-        self.set(at, u32::from(corners[0]) | u32::from(corners[1]) << 16);
-        self.set(at + 1, u32::from(corners[2]) | u32::from(NONE) << 16);
-        self.set(at + 2, face);
-        let list = self.get(strip);
-        let (first, last) = (list as u16, (list >> 16) as u16);
-        if last == NONE {
-            self.set(strip, u32::from(number) | u32::from(number) << 16);
-        } else {
-            self.link(last, number);
-            self.set(strip, u32::from(first) | u32::from(number) << 16);
-        }
+    pub(crate) fn push_triangle(&mut self, [i, j, k]: [u16; 3], face: u32, strip: usize) {
+        self.triangles().push(u32::from(i) | u32::from(j) << 16, k, face, strip);
+    }
+
+    /// The words taken apart, for a walk over many triangles that adds no vertices.
+    #[inline]
+    pub(crate) fn triangles(&mut self) -> Triangles<'_> {
+        let Self { words, layout } = self;
+        let places = layout.vertices.saturating_sub(layout.lists);
+        let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
+        let (used, triangles) = rest.split_at_mut_checked(layout.front.saturating_sub(layout.lists)).unwrap_or_default();
+        let places = used.get(places..).and_then(|rest| rest.get(..2 * layout.count)).unwrap_or_default();
+        let places = bytemuck::try_cast_slice(places).unwrap_or_default();
+        let next = triangles.len().saturating_sub(TRIANGLE * usize::from(layout.triangles));
+        Triangles { lists, places, least: triangles.len().saturating_sub(TRIANGLE * usize::from(NONE)), triangles, next, layout }
     }
 
     fn triangle_at(&self, number: u16) -> usize {

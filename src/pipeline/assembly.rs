@@ -1,6 +1,6 @@
 //! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
 
-use super::scan::{Culling, Scan, Seen, Stop};
+use super::scan::{Culling, Faces, Recorder, Scan, Seen, Stop};
 use super::triangle::Chosen;
 use super::{Scene, State};
 use crate::fragment::Shader;
@@ -82,8 +82,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
         let mut scan = Scan::new(self.mesh, numbers);
+        let faces = FaceStage { mesh: self.mesh, shader: self.shader, state: self.state };
+        let recorder = Recorder { faces: &faces, strips: self.scene.strips, row: self.scene.band.start };
+        let recorder = if self.scene.is_recording() { Some(&recorder) } else { None };
         while !self.scene.overflowed() {
-            let stop = scan.next(&self.scene.records, self.culling, &self.clip, self.scene.stats);
+            let stop = scan.next(&mut self.scene.records, recorder, self.culling, &self.clip, self.scene.stats);
             if stop == Stop::End {
                 break;
             }
@@ -162,9 +165,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    #[inline(never)]
     fn face(&self, seen: &Seen) -> u32 {
-        self.shader.face(&Face::new(self.mesh, seen.number, seen.corners, self.state.side(seen.area)))
+        let [i, j, k] = seen.corners.map(u32::from);
+        let faces = FaceStage { mesh: self.mesh, shader: self.shader, state: self.state };
+        faces.word(seen.number, i | j << 16, k | (seen.area >> 32) as u32 & 1 << 31)
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
@@ -422,6 +426,8 @@ fn place_all(transform: &Transform, positions: &Positions<'_>, places: &mut [[u3
     match transform.short_points(positions) {
         Some(points) => {
             for (place, point) in places.iter_mut().zip(points) {
+                // Read again each time: to keep all of it at hand there are too few registers.
+                let transform = core::hint::black_box(transform);
                 *place = Slot::new(&transform.place_short(*point).0).words();
             }
         }
@@ -430,6 +436,22 @@ fn place_all(transform: &Transform, positions: &Positions<'_>, places: &mut [[u3
                 *place = Slot::new(&transform.place(positions, index)).words();
             }
         }
+    }
+}
+
+/// What faces are shaded with.
+struct FaceStage<'s, S> {
+    mesh: &'s Mesh<'s>,
+    shader: &'s S,
+    state: &'s State,
+}
+
+impl<S: VertexShader> Faces for FaceStage<'_, S> {
+    #[inline(never)]
+    fn word(&self, number: usize, corners: u32, last: u32) -> u32 {
+        let side = self.state.side(if last >> 31 == 0 { 1 } else { -1 });
+        let corners = [corners as u16, (corners >> 16) as u16, last as u16];
+        self.shader.face(&Face::new(self.mesh, number, corners, side))
     }
 }
 
