@@ -39,7 +39,7 @@ pub use material::Material;
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub use order::{sort_back_to_front, view_depth};
 pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
-pub(crate) use project::{area_of, small};
+pub(crate) use project::small;
 pub use sort::{Order, SortError, Sortable, far_to_near, painters_order};
 pub use transform::{Placed, Transform, View, place};
 pub(crate) use varyings::FEW;

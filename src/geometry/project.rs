@@ -34,14 +34,8 @@ impl ScreenVertex {
 /// Differences of 24.8 coordinates are at most 2²⁴, the result below 2⁵⁰ in units of 2⁻¹⁶ px². Exact.
 #[inline]
 pub fn signed_area(a: &ScreenVertex, b: &ScreenVertex, c: &ScreenVertex) -> i64 {
-    area_of((a.x, a.y), (b.x, b.y), (c.x, c.y))
-}
-
-/// [`signed_area`] of points.
-#[inline]
-pub(crate) fn area_of(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> i64 {
-    let (bx, by) = (b.0 - a.0, b.1 - a.1);
-    let (cx, cy) = (c.0 - a.0, c.1 - a.1);
+    let (bx, by) = (b.x - a.x, b.y - a.y);
+    let (cx, cy) = (c.x - a.x, c.y - a.y);
     // 2¹⁵ · 2¹⁵ · 2 needs no more than 32 bits: nearly all triangles.
     if small(bx) & small(by) & small(cx) & small(cy) {
         i64::from(bx * cy - cx * by)

@@ -24,6 +24,6 @@ pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip, WithoutD
 pub use packed::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use pixel::{Bgr565Be, Rgb332, Rgb565Be};
 pub use record::records_len;
-pub(crate) use record::{Records, Slot, TriangleRecord, VERTEX as VERTEX_WORDS};
+pub(crate) use record::{Records, Slot, TriangleRecord, Triangles, VERTEX as VERTEX_WORDS};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;

@@ -14,8 +14,7 @@
 //! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
 
 use crate::fragment::clear_words;
-use crate::geometry::{Placed, ScreenVertex, Varyings, VertexShader};
-use crate::raster::first_centre;
+use crate::geometry::{FEW, Placed, ScreenVertex, Varyings, VertexShader};
 
 /// No triangle.
 const NONE: u16 = u16::MAX;
@@ -60,12 +59,6 @@ impl Slot {
         }
     }
 
-    /// x and y of a vertex on the screen.
-    #[inline]
-    pub(crate) const fn xy(self) -> (i32, i32) {
-        (self.0[0] as i32 >> 8, self.0[1] as i32 >> 8)
-    }
-
     /// Of a vertex that is not shaded yet.
     pub(crate) const NONE: Self = Self([UNSHADED, 0]);
 
@@ -108,11 +101,23 @@ impl Slot {
 }
 
 /// A triangle from the records.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
+// Cleared by the same routine as 64-bit numbers are.
+#[repr(align(8))]
 pub(crate) struct TriangleRecord {
     pub(crate) v: [ScreenVertex; 3],
-    pub(crate) corners: [u16; 3],
+    /// The first two corners, the second in the upper half, and the third.
+    corners: u32,
+    last: u16,
     pub(crate) face: u32,
+}
+
+impl TriangleRecord {
+    /// Its vertices.
+    #[inline]
+    pub(crate) const fn corners(&self) -> [u16; 3] {
+        [self.corners as u16, (self.corners >> 16) as u16, self.last]
+    }
 }
 
 /// The words, and where in them things are.
@@ -122,12 +127,14 @@ pub(crate) struct Records<'a> {
     layout: &'a mut Layout,
 }
 
-/// The words of a draw that is recorded, taken apart: what triangles are made of, and where they go.
+/// The words of a draw, taken apart for a walk over its triangles.
 #[derive(Debug)]
 pub(crate) struct Triangles<'r> {
     lists: &'r mut [u32],
+    /// The vertices of the draw; where they are is known at the beginning, of as many as the mesh has.
+    vertices: &'r [u32],
     places: &'r [[u32; 2]],
-    /// Free words, and behind them the triangles; where the last of those begins, and the least that may be.
+    /// What is behind the vertices, with all triangles at its end; where the last of those begins, and the least that may be.
     triangles: &'r mut [u32],
     next: usize,
     least: usize,
@@ -135,13 +142,16 @@ pub(crate) struct Triangles<'r> {
 }
 
 impl Triangles<'_> {
-    /// Words of a vertex's [`Slot`].
+    /// Words of a vertex's [`Slot`], signed.
     #[inline(always)]
-    pub(crate) fn place(&self, index: u16) -> [u32; 2] {
-        match self.places.get(usize::from(index)) {
-            Some([a, b]) => [*a, *b],
-            None => Slot::NONE.0,
-        }
+    pub(crate) fn place(&self, index: u16) -> [i32; 2] {
+        let [a, b] = self.places.get(usize::from(index)).copied().unwrap_or(Slot::NONE.0);
+        [a as i32, b as i32]
+    }
+
+    /// How many have been recorded.
+    pub(crate) const fn count(&self) -> u16 {
+        self.layout.triangles
     }
 
     /// Records a triangle whose topmost strip, in this band, is `strip`; its first two corners in a word. Whether there was room.
@@ -169,6 +179,110 @@ impl Triangles<'_> {
             }
         }
         true
+    }
+
+    /// The next triangle of the draw in this strip, if its number is below `last`. If it reaches beyond `end`, see
+    /// [`end_of`](Self::end_of), it moves on to the next strip.
+    #[inline(never)]
+    pub(crate) fn replay(&mut self, last: u32, end: i32, to: &mut TriangleRecord) -> bool {
+        let number = self.layout.next;
+        if u32::from(number) >= last {
+            return false;
+        }
+        let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
+        (to.corners, to.last, to.face) = (*a, *b as u16, *face);
+        self.layout.next = (*b >> 16) as u16;
+        let [i, j, k] = to.corners();
+        let screen = |index: u16| match self.places.get(usize::from(index)) {
+            Some(words) => Slot(*words).screen(),
+            None => self.added(index).screen(),
+        };
+        // One by one, so that few things are at hand at once.
+        let [a, b, c] = &mut to.v;
+        *a = screen(i);
+        let mut above = end - a.y;
+        *b = screen(j);
+        above |= end - b.y;
+        *c = screen(k);
+        above |= end - c.y;
+        if above < 0 {
+            self.move_on(number);
+        }
+        true
+    }
+
+    /// What coordinates of triangles that end above a row are not greater than.
+    pub(crate) const fn end_of(row: i32) -> i32 {
+        // The first pixel whose centre is not before a coordinate is (coordinate + 127) / 256.
+        row * 256 + 128
+    }
+
+    /// Where a vertex is that the clipper added.
+    #[inline(never)]
+    fn added(&self, index: u16) -> Slot {
+        match self.vertices.get(self.layout.stride * usize::from(index)..) {
+            Some([a, b, ..]) => Slot([*a, *b]),
+            _ => Slot::NONE,
+        }
+    }
+
+    /// The varyings of a vertex of the draw.
+    #[inline]
+    pub(crate) fn varyings<S: VertexShader>(&self, index: u16) -> S::Varyings {
+        if S::WORDS == 0 {
+            return S::Varyings::ZERO;
+        }
+        if S::Varyings::LEN > FEW { self.varyings_apart::<S>(index) } else { self.varyings_here::<S>(index) }
+    }
+
+    /// Many of them take room on the stack until they are put together.
+    #[inline(never)]
+    fn varyings_apart<S: VertexShader>(&self, index: u16) -> S::Varyings {
+        self.varyings_here::<S>(index)
+    }
+
+    #[inline(always)]
+    fn varyings_here<S: VertexShader>(&self, index: u16) -> S::Varyings {
+        let (index, count) = (usize::from(index), self.places.len());
+        let at = if index < count { VERTEX * count + S::WORDS * index } else { (S::WORDS + VERTEX) * index + VERTEX };
+        S::load(self.vertices.get(at..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
+    }
+
+    fn triangle_at(&self, number: u16) -> usize {
+        self.triangles.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
+    }
+
+    fn link(&mut self, from: u16, to: u16) {
+        let at = self.triangle_at(from).wrapping_add(1);
+        if let Some(word) = self.triangles.get_mut(at) {
+            *word = *word & 0xFFFF | u32::from(to) << 16;
+        }
+    }
+
+    fn linked(&self, from: u16) -> u16 {
+        self.triangles.get(self.triangle_at(from).wrapping_add(1)).map_or(NONE, |word| (*word >> 16) as u16)
+    }
+
+    /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
+    ///
+    /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
+    #[inline(never)]
+    fn move_on(&mut self, number: u16) {
+        let strip = self.layout.strip + 1;
+        let Some(list) = self.lists.get(strip).copied() else { return };
+        let mut before = self.layout.moved;
+        let mut after = if before == NONE { list as u16 } else { self.linked(before) };
+        while after < number {
+            before = after;
+            after = self.linked(after);
+        }
+        self.link(number, after);
+        if before != NONE {
+            self.link(before, number);
+        } else if let Some(to) = self.lists.get_mut(strip) {
+            *to = list & 0xFFFF_0000 | u32::from(number);
+        }
+        self.layout.moved = number;
     }
 }
 
@@ -345,13 +459,6 @@ impl<'a> Records<'a> {
         S::load(self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
     }
 
-    /// Where a vertex is that the clipper added.
-    #[inline(never)]
-    fn added(&self, index: u16) -> Slot {
-        let (position, _) = self.places(index.into());
-        Slot([self.get(position), self.get(position + 1)])
-    }
-
     /// Adds a vertex to the current draw, for a polygon that the clipper made.
     pub(crate) fn push_vertex(&mut self) -> u16 {
         let index = self.layout.count + usize::from(self.layout.added);
@@ -370,30 +477,22 @@ impl<'a> Records<'a> {
     }
 
     /// The words taken apart, for a walk over many triangles that adds no vertices.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn triangles(&mut self) -> Triangles<'_> {
         let Self { words, layout } = self;
-        let places = layout.vertices.saturating_sub(layout.lists);
         let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
-        let (used, triangles) = rest.split_at_mut_checked(layout.front.saturating_sub(layout.lists)).unwrap_or_default();
-        let places = used.get(places..).and_then(|rest| rest.get(..2 * layout.count)).unwrap_or_default();
-        let places = bytemuck::try_cast_slice(places).unwrap_or_default();
-        let next = triangles.len().saturating_sub(TRIANGLE * usize::from(layout.triangles));
-        Triangles { lists, places, least: triangles.len().saturating_sub(TRIANGLE * usize::from(NONE)), triangles, next, layout }
-    }
-
-    fn triangle_at(&self, number: u16) -> usize {
-        self.words.len().wrapping_sub(TRIANGLE * (usize::from(number) + 1))
-    }
-
-    fn link(&mut self, from: u16, to: u16) {
-        let at = self.triangle_at(from) + 1;
-        let word = self.get(at) & 0xFFFF;
-        self.set(at, word | u32::from(to) << 16);
-    }
-
-    fn linked(&self, from: u16) -> u16 {
-        (self.get(self.triangle_at(from) + 1) >> 16) as u16
+        let (used, triangles) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
+        let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
+        let places = vertices.get(..VERTEX * layout.count).unwrap_or_default();
+        Triangles {
+            lists,
+            vertices,
+            places: bytemuck::try_cast_slice(places).unwrap_or_default(),
+            next: triangles.len().saturating_sub(TRIANGLE * usize::from(layout.triangles)),
+            least: triangles.len().saturating_sub(TRIANGLE * usize::from(NONE)),
+            triangles,
+            layout,
+        }
     }
 
     /// Starts replaying a strip of the band.
@@ -420,51 +519,26 @@ impl<'a> Records<'a> {
         self.layout.front == self.layout.vertices
     }
 
-    /// The next triangle of the current draw in this strip, which ends at row `end`. If it reaches beyond, it moves on to the next
-    /// strip.
-    #[inline(never)]
-    pub(crate) fn replay_triangle(&mut self, end: i32) -> Option<TriangleRecord> {
-        let number = self.layout.next;
-        if number == NONE || u32::from(number) >= self.get(self.layout.header + 2) {
-            return None;
-        }
-        let Some([a, b, face, ..]) = self.words.get(self.triangle_at(number)..) else { return None };
-        let (corners, face) = ([*a as u16, (*a >> 16) as u16, *b as u16], *face);
-        self.layout.next = (*b >> 16) as u16;
-        let positions = self.positions();
-        let screen = |index: u16| match positions.get(usize::from(index)) {
-            Some(words) => Slot(*words).screen(),
-            None => self.added(index).screen(),
-        };
-        let v = [screen(corners[0]), screen(corners[1]), screen(corners[2])];
-        if first_centre(v[0].y.max(v[1].y).max(v[2].y)) > end {
-            self.move_on(number);
-        }
-        Some(TriangleRecord { v, corners, face })
+    /// How many triangles have been recorded.
+    pub(crate) const fn triangle_count(&self) -> u16 {
+        self.layout.triangles
     }
 
-    /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
-    ///
-    /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
-    #[inline(never)]
-    fn move_on(&mut self, number: u16) {
-        let strip = self.layout.strip + 1;
-        if strip >= self.layout.lists {
-            return;
-        }
-        let list = self.get(strip);
-        let mut before = self.layout.moved;
-        let mut after = if before == NONE { list as u16 } else { self.linked(before) };
-        while after < number {
-            before = after;
-            after = self.linked(after);
-        }
-        self.link(number, after);
-        if before == NONE {
-            self.set(strip, list & 0xFFFF_0000 | u32::from(number));
-        } else {
-            self.link(before, number);
-        }
-        self.layout.moved = number;
+    /// The words of the triangles from a number on, the newest first.
+    #[inline]
+    pub(crate) fn triangles_from(&mut self, first: u16) -> impl Iterator<Item = &mut [u32; 3]> {
+        let end = self.triangle_at(first) + TRIANGLE;
+        let start = self.triangle_at(self.layout.triangles) + TRIANGLE;
+        let words = self.words.get_mut(start..end).unwrap_or_default();
+        words.chunks_exact_mut(TRIANGLE).filter_map(|words| words.try_into().ok())
+    }
+
+    fn triangle_at(&self, number: u16) -> usize {
+        self.words.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
+    }
+
+    /// The number behind that of the last triangle of the draw that was found.
+    pub(crate) fn last_triangle(&self) -> u32 {
+        self.get(self.layout.header + 2)
     }
 }

@@ -1,12 +1,12 @@
 //! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
 
-use super::scan::{Culling, Faces, Recorder, Scan, Seen, Stop};
+use super::scan::{Culling, Mark, Scan, Seen, Stop};
 use super::triangle::Chosen;
 use super::{Scene, State};
 use crate::fragment::Shader;
 use crate::geometry::{
     BoundsNode, CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, Face, MAX_DISTANCES, Mesh, Outcode, Part,
-    Placed, Polygon, PolygonCorner, Positions, Transform, Varyings, VertexShader, inverse_w, weighted,
+    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, inverse_w, weighted,
 };
 use crate::math::Projective;
 use crate::output::{Framebuffer, Slot};
@@ -82,15 +82,27 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
         let mut scan = Scan::new(self.mesh, numbers);
-        let faces = FaceStage { mesh: self.mesh, shader: self.shader, state: self.state };
-        let recorder = Recorder { faces: &faces, strips: self.scene.strips, row: self.scene.band.start };
-        let recorder = if self.scene.is_recording() { Some(&recorder) } else { None };
         while !self.scene.overflowed() {
-            let stop = scan.next(&mut self.scene.records, recorder, self.culling, &self.clip, self.scene.stats);
+            let strips = (self.scene.strips, self.scene.band.start);
+            let strips = if self.scene.is_recording() { Some(strips) } else { None };
+            let first = self.scene.records.triangle_count();
+            let stop = scan.next(&mut self.scene.records, strips, self.culling, &self.clip, self.scene.stats);
+            self.shade_faces(first);
             if stop == Stop::End {
                 break;
             }
             self.shade_stop(stop, &mut scan.seen);
+        }
+    }
+
+    /// Takes the place of marks in the records.
+    #[inline(never)]
+    fn shade_faces(&mut self, first: u16) {
+        let Self { scene, state, mesh, shader, .. } = self;
+        for [corners, last, word] in scene.records.triangles_from(first) {
+            let (number, area) = Mark(*word).parts();
+            let corners = [*corners as u16, (*corners >> 16) as u16, *last as u16];
+            *word = shader.face(&Face::new(mesh, number, corners, state.side(area)));
         }
     }
 
@@ -165,10 +177,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
+    #[inline(never)]
     fn face(&self, seen: &Seen) -> u32 {
-        let [i, j, k] = seen.corners.map(u32::from);
-        let faces = FaceStage { mesh: self.mesh, shader: self.shader, state: self.state };
-        faces.word(seen.number, i | j << 16, k | (seen.area >> 32) as u32 & 1 << 31)
+        self.shader.face(&Face::new(self.mesh, seen.number, seen.corners, self.state.side(seen.area)))
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
@@ -188,12 +199,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let stage = VertexStage { mesh, shader: *shader, transform };
         let (places, varyings) = scene.records.vertices_mut();
         scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
-        if S::DISPLACES || S::CLIP_DISTANCES > 0 {
-            for (index, place) in places.iter_mut().enumerate() {
-                *place = stage.place(index).words();
+        let short = !S::DISPLACES && S::CLIP_DISTANCES == 0;
+        match transform.short_points(&mesh.data().positions) {
+            Some(points) if short => place_all(transform, points, places),
+            _ => {
+                for (index, place) in places.iter_mut().enumerate() {
+                    *place = stage.place(index).words();
+                }
             }
-        } else {
-            place_all(transform, &mesh.data().positions, places);
         }
         if S::WORDS > 0 {
             for (index, words) in varyings.chunks_exact_mut(S::WORDS).enumerate() {
@@ -420,38 +433,12 @@ pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     S::load(words)
 }
 
-/// Where all vertices of a mesh are: what is the same for all of them is asked once.
+/// Where all vertices of a mesh are, by the short path.
 #[inline(never)]
-fn place_all(transform: &Transform, positions: &Positions<'_>, places: &mut [[u32; 2]]) {
-    match transform.short_points(positions) {
-        Some(points) => {
-            for (place, point) in places.iter_mut().zip(points) {
-                // Read again each time: to keep all of it at hand there are too few registers.
-                let transform = core::hint::black_box(transform);
-                *place = Slot::new(&transform.place_short(*point).0).words();
-            }
-        }
-        None => {
-            for (index, place) in places.iter_mut().enumerate() {
-                *place = Slot::new(&transform.place(positions, index)).words();
-            }
-        }
-    }
-}
-
-/// What faces are shaded with.
-struct FaceStage<'s, S> {
-    mesh: &'s Mesh<'s>,
-    shader: &'s S,
-    state: &'s State,
-}
-
-impl<S: VertexShader> Faces for FaceStage<'_, S> {
-    #[inline(never)]
-    fn word(&self, number: usize, corners: u32, last: u32) -> u32 {
-        let side = self.state.side(if last >> 31 == 0 { 1 } else { -1 });
-        let corners = [corners as u16, (corners >> 16) as u16, last as u16];
-        self.shader.face(&Face::new(self.mesh, number, corners, side))
+fn place_all(transform: &Transform, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
+    for (place, point) in places.iter_mut().zip(points) {
+        // Read again each time: to keep all of it at hand there are too few registers.
+        *place = Slot::new(&core::hint::black_box(transform).place_short(*point).0).words();
     }
 }
 

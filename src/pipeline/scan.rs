@@ -2,7 +2,7 @@
 
 use super::{Cull, State, Winding};
 use crate::geometry::{Mesh, Outcode, ScreenVertex, Side, Topology, signed_area, small};
-use crate::output::{Records, Slot, Stats, StripRows};
+use crate::output::{Records, Stats, StripRows};
 use crate::raster::{PixelRect, pixel_rect};
 use core::ops::Range;
 
@@ -18,20 +18,21 @@ pub(super) struct Scan<'m> {
     pub(super) seen: Seen,
 }
 
-/// How triangles are recorded.
+/// A triangle in the records that has no word of its face yet, but its number, and above that the sign of its area.
 #[derive(Clone, Copy)]
-pub(super) struct Recorder<'r> {
-    pub(super) faces: &'r dyn Faces,
-    pub(super) strips: &'r StripRows,
-    /// The first row of the band.
-    pub(super) row: i32,
-}
+pub(super) struct Mark(pub(super) u32);
 
-/// What a shader hands on for faces, so that for all shaders the same code records.
-pub(super) trait Faces {
-    /// The word of triangle `number`: by its first two corners, the second in the upper half, and the third below the sign of
-    /// the area.
-    fn word(&self, number: usize, corners: u32, last: u32) -> u32;
+impl Mark {
+    #[inline]
+    const fn new(number: usize, area: i32) -> Self {
+        Self(number as u32 | area as u32 & 1 << 31)
+    }
+
+    /// The triangle's number, and an area of the same sign as its.
+    #[inline]
+    pub(super) const fn parts(self) -> (usize, i64) {
+        (self.0 as usize & 0xFFFF, if self.0 >> 31 == 0 { 1 } else { -1 })
+    }
 }
 
 /// A triangle that was found: one on the screen that may have pixels, or one that has to be looked at.
@@ -52,7 +53,7 @@ pub(super) struct Seen {
 pub(super) enum Stop {
     /// A triangle that may be seen.
     Seen,
-    /// One with a vertex that is not shaded yet, or not on the screen.
+    /// One that has to be looked at.
     Unplaced,
     /// One to be clipped, by these planes and by clip distances.
     Clipped(Outcode),
@@ -126,16 +127,13 @@ impl Seen {
     }
 }
 
-/// A place in the records, as a pair of signed words: see [`Slot`].
-type Words = [i32; 2];
-
-/// Differences of places, the second and the third less the first, in x and y: if both are small, and none of the vertices is off
-/// the screen or more than 16,511 px away from its corner.
+/// How far the second and the third vertex are from the first, in x and y, by words of their [`Slot`](crate::output::Slot)s: if that is
+/// not far, and all are on the screen, or at most 16,511 px away from it.
 ///
 /// # Format
 /// A vertex off the screen has x = -2²³, and no y: that is no small difference from any other below 2²².
 #[inline(always)]
-fn near(a: Words, b: Words, c: Words) -> Option<[i32; 4]> {
+fn near(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
     let (ax, ay) = (a[0] >> 8, a[1] >> 8);
     let [bx, by, cx, cy] = [(b[0] >> 8) - ax, (b[1] >> 8) - ay, (c[0] >> 8) - ax, (c[1] >> 8) - ay];
     let far = a[0].wrapping_add(1 << 30) | a[1].wrapping_add(1 << 30);
@@ -160,20 +158,19 @@ impl<'m> Scan<'m> {
         }
     }
 
-    /// Records triangles, up to one that has to be looked at; without a recorder, goes on to the next one that may be seen, or
-    /// that has to be looked at.
+    /// Records triangles, with [`Mark`]s for words of their faces, up to one that has to be looked at: one with a vertex that is not
+    /// shaded yet, or not on the screen, or a large one. Without strips, all that may be seen have to be looked at.
     #[inline(never)]
     pub(super) fn next(
         &mut self,
         records: &mut Records<'_>,
-        recorder: Option<&Recorder<'_>>,
+        strips: Option<(&StripRows, i32)>,
         culling: Culling,
         clip: &PixelRect,
         stats: &mut Stats,
     ) -> Stop {
-        let mut records = records.triangles();
-        // In an empty rectangle is nothing: one that is far away serves as well, and takes no test of its own.
-        let clip = if clip.is_empty() { &PixelRect { x: i32::MAX..i32::MAX, y: 0..0 } } else { clip };
+        let mut triangles = records.triangles();
+        let first = triangles.count();
         let mut list = self.list;
         let mut number = self.next;
         let stop = loop {
@@ -191,64 +188,43 @@ impl<'m> Scan<'m> {
                 },
             };
             number += 1;
-            let place = |index: u16| records.place(index).map(|word| word as i32);
-            let (a, b, c) = (place(i), place(j), place(k));
             // 5. Culling by winding, as early as can be, and of what covers no pixel.
-            let (area, row) = match near(a, b, c) {
-                Some([bx, by, cx, cy]) => {
-                    let area = bx * cy - cx * by;
-                    if area == 0 || culling.leaves_out(area) {
-                        let count = if area == 0 { &mut stats.degenerate } else { &mut stats.back_facing };
-                        *count = count.wrapping_add(1);
-                        continue;
-                    }
-                    // The pixels whose centres are in the bounding box, as `pixel_rect` has them: of words, which lie in the same order as
-                    // coordinates.
-                    let centre = |word: i32| (word + (127 << 8)) >> 16;
-                    let y = centre(a[1].min(b[1]).min(c[1]))..centre(a[1].max(b[1]).max(c[1]));
-                    let x = centre(a[0].min(b[0]).min(c[0]))..centre(a[0].max(b[0]).max(c[0]));
-                    if x.start >= x.end || y.start >= y.end {
-                        stats.empty = stats.empty.wrapping_add(1);
-                        continue;
-                    }
-                    if x.start >= clip.x.end || clip.x.start >= x.end || y.start >= clip.y.end || clip.y.start >= y.end {
-                        stats.outside = stats.outside.wrapping_add(1);
-                        continue;
-                    }
-                    stats.drawn = stats.drawn.wrapping_add(1);
-                    (area, y.start.max(clip.y.start))
-                }
-                None => {
-                    let slots = [a, b, c].map(|words| Slot::from_words(words.map(|word| word as u32)));
-                    if !slots.iter().all(|slot| slot.is_on_screen()) {
-                        self.seen.corners = [i, j, k];
-                        break Stop::Unplaced;
-                    }
-                    self.seen.v = slots.map(Slot::screen);
-                    if !self.seen.find(culling, clip, stats) {
-                        continue;
-                    }
-                    ((self.seen.area >> 32) as i32, self.seen.row)
-                }
-            };
-            let Some(recorder) = recorder else {
+            let (a, b, c) = (triangles.place(i), triangles.place(j), triangles.place(k));
+            let Some([bx, by, cx, cy]) = near(a, b, c) else {
                 self.seen.corners = [i, j, k];
-                self.seen.v = [a, b, c].map(|words| Slot::from_words(words.map(|word| word as u32)).screen());
-                let [a, b, c] = &self.seen.v;
-                self.seen.area = signed_area(a, b, c);
-                self.seen.row = row;
-                break Stop::Seen;
+                break Stop::Unplaced;
+            };
+            let area = bx * cy - cx * by;
+            if area == 0 || culling.leaves_out(area) {
+                let count = if area == 0 { &mut stats.degenerate } else { &mut stats.back_facing };
+                *count = count.wrapping_add(1);
+                continue;
+            }
+            // As `pixel_rect` has it, of words, which are in the same order as coordinates.
+            let centre = |word: i32| (word + (127 << 8)) >> 16;
+            let y = centre(a[1].min(b[1]).min(c[1]))..centre(a[1].max(b[1]).max(c[1]));
+            let x = centre(a[0].min(b[0]).min(c[0]))..centre(a[0].max(b[0]).max(c[0]));
+            if x.start >= x.end || y.start >= y.end {
+                stats.empty = stats.empty.wrapping_add(1);
+                continue;
+            }
+            if x.start >= clip.x.end || clip.x.start >= x.end || y.start >= clip.y.end || clip.y.start >= y.end {
+                stats.outside = stats.outside.wrapping_add(1);
+                continue;
+            }
+            let Some((strips, band)) = strips else {
+                self.seen.corners = [i, j, k];
+                break Stop::Unplaced;
             };
             // 6, 7. Into the records, to the strip it begins in.
-            let corners = u32::from(i) | u32::from(j) << 16;
-            let last = u32::from(k) | area as u32 & 1 << 31;
-            let face = recorder.faces.word(number - 1, corners, last);
-            if !records.push(corners, k, face, recorder.strips.of((row - recorder.row) as u32)) {
+            let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
+            if !triangles.push(u32::from(i) | u32::from(j) << 16, k, Mark::new(number - 1, area).0, strip) {
                 break Stop::End;
             }
         };
-        self.list = list;
+        stats.drawn = stats.drawn.wrapping_add(u32::from(triangles.count().wrapping_sub(first)));
         stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
+        self.list = list;
         self.next = number;
         self.seen.number = number.wrapping_sub(1);
         stop
