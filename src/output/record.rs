@@ -127,6 +127,23 @@ pub(crate) struct Records<'a> {
     layout: &'a mut Layout,
 }
 
+/// A word of two halves; which of them is above does not matter.
+#[inline]
+fn pair(halves: [u16; 2]) -> u32 {
+    bytemuck::cast(halves)
+}
+
+/// The two halves of a word.
+#[inline]
+fn halves(word: &mut u32) -> &mut [u16; 2] {
+    bytemuck::cast_mut(word)
+}
+
+#[inline]
+fn signed([a, b]: &[u32; 2]) -> [i32; 2] {
+    [*a as i32, *b as i32]
+}
+
 /// The words of a draw, taken apart for a walk over its triangles.
 #[derive(Debug)]
 pub(crate) struct Triangles<'r> {
@@ -134,49 +151,59 @@ pub(crate) struct Triangles<'r> {
     /// The vertices of the draw; where they are is known at the beginning, of as many as the mesh has.
     vertices: &'r [u32],
     places: &'r [[u32; 2]],
-    /// What is behind the vertices, with all triangles at its end; where the last of those begins, and the least that may be.
+    /// What is behind the vertices, as much of it as triangles may take: they are at its end.
     triangles: &'r mut [u32],
-    next: usize,
-    least: usize,
+    /// How many there are.
+    count: u32,
     layout: &'r mut Layout,
 }
 
 impl Triangles<'_> {
-    /// Words of a vertex's [`Slot`], signed.
+    /// Words of the [`Slot`]s of vertices, signed.
     #[inline(always)]
-    pub(crate) fn place(&self, index: u16) -> [i32; 2] {
-        let [a, b] = self.places.get(usize::from(index)).copied().unwrap_or(Slot::NONE.0);
-        [a as i32, b as i32]
+    pub(crate) fn places(&self, [i, j, k]: [u16; 3]) -> [[i32; 2]; 3] {
+        let place = |index: u16| signed(self.places.get(usize::from(index)).unwrap_or(&Slot::NONE.0));
+        [place(i), place(j), place(k)]
+    }
+
+    /// The vertices of a triangle of a list without indices, and words of their [`Slot`]s.
+    #[inline(always)]
+    pub(crate) fn in_a_row(&self, number: usize) -> ([u16; 3], [[i32; 2]; 3]) {
+        let first = 3 * number;
+        let places = match self.places.get(first..) {
+            Some([a, b, c, ..]) => [signed(a), signed(b), signed(c)],
+            _ => [signed(&Slot::NONE.0); 3],
+        };
+        ([first as u16, (first + 1) as u16, (first + 2) as u16], places)
     }
 
     /// How many have been recorded.
-    pub(crate) const fn count(&self) -> u16 {
-        self.layout.triangles
+    pub(crate) const fn count(&self) -> u32 {
+        self.count
+    }
+
+    /// Ends a walk that recorded triangles.
+    pub(crate) const fn finish(self) {
+        self.layout.triangles = self.count as u16;
     }
 
     /// Records a triangle whose topmost strip, in this band, is `strip`; its first two corners in a word. Whether there was room.
     #[inline(always)]
     pub(crate) fn push(&mut self, corners: u32, last: u16, face: u32, strip: usize) -> bool {
-        let number = self.layout.triangles;
-        let at = self.next.wrapping_sub(TRIANGLE);
-        let place = if self.next < self.least + TRIANGLE { None } else { self.triangles.get_mut(at..) };
-        let Some([a, b, c, ..]) = place else {
+        let Some(at) = self.triangles.len().checked_sub(TRIANGLE * self.count as usize + TRIANGLE) else {
             self.layout.overflow = true;
             return false;
         };
-        (*a, *b, *c) = (corners, u32::from(last) | u32::from(NONE) << 16, face);
-        self.layout.triangles = number + 1;
-        self.next = at;
-        let Some(list) = self.lists.get_mut(strip) else { return true };
-        let end = *list >> 16;
-        if end == u32::from(NONE) {
-            *list = u32::from(number) | u32::from(number) << 16;
+        let Some([a, b, c, ..]) = self.triangles.get_mut(at..) else { return false };
+        let number = self.count as u16;
+        (*a, *b, *c) = (corners, pair([last, NONE]), face);
+        self.count += 1;
+        let Some([first, end]) = self.lists.get_mut(strip).map(halves) else { return true };
+        let before = core::mem::replace(end, number);
+        if before == NONE {
+            *first = number;
         } else {
-            *list = *list & 0xFFFF | u32::from(number) << 16;
-            let before = self.triangles.len().wrapping_sub(TRIANGLE * end as usize + 2);
-            if let Some(word) = self.triangles.get_mut(before) {
-                *word = *word & 0xFFFF | u32::from(number) << 16;
-            }
+            self.link(before, number);
         }
         true
     }
@@ -190,8 +217,9 @@ impl Triangles<'_> {
             return false;
         }
         let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
-        (to.corners, to.last, to.face) = (*a, *b as u16, *face);
-        self.layout.next = (*b >> 16) as u16;
+        let [last, next]: [u16; 2] = bytemuck::cast(*b);
+        (to.corners, to.last, to.face) = (*a, last, *face);
+        self.layout.next = next;
         let [i, j, k] = to.corners();
         let screen = |index: u16| match self.places.get(usize::from(index)) {
             Some(words) => Slot(*words).screen(),
@@ -252,15 +280,17 @@ impl Triangles<'_> {
         self.triangles.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
     }
 
+    #[inline(always)]
     fn link(&mut self, from: u16, to: u16) {
-        let at = self.triangle_at(from).wrapping_add(1);
-        if let Some(word) = self.triangles.get_mut(at) {
-            *word = *word & 0xFFFF | u32::from(to) << 16;
+        let at = self.triangles.len().wrapping_sub(TRIANGLE * usize::from(from) + TRIANGLE - 1);
+        if let Some([_, link]) = self.triangles.get_mut(at).map(halves) {
+            *link = to;
         }
     }
 
     fn linked(&self, from: u16) -> u16 {
-        self.triangles.get(self.triangle_at(from).wrapping_add(1)).map_or(NONE, |word| (*word >> 16) as u16)
+        let [_, link] = self.triangles.get(self.triangle_at(from).wrapping_add(1)).map_or([NONE; 2], |word| bytemuck::cast(*word));
+        link
     }
 
     /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
@@ -269,9 +299,9 @@ impl Triangles<'_> {
     #[inline(never)]
     fn move_on(&mut self, number: u16) {
         let strip = self.layout.strip + 1;
-        let Some(list) = self.lists.get(strip).copied() else { return };
+        let Some([first, _]) = self.lists.get_mut(strip).map(halves) else { return };
         let mut before = self.layout.moved;
-        let mut after = if before == NONE { list as u16 } else { self.linked(before) };
+        let mut after = if before == NONE { *first } else { self.linked(before) };
         while after < number {
             before = after;
             after = self.linked(after);
@@ -279,8 +309,8 @@ impl Triangles<'_> {
         self.link(number, after);
         if before != NONE {
             self.link(before, number);
-        } else if let Some(to) = self.lists.get_mut(strip) {
-            *to = list & 0xFFFF_0000 | u32::from(number);
+        } else if let Some([first, _]) = self.lists.get_mut(strip).map(halves) {
+            *first = number;
         }
         self.layout.moved = number;
     }
@@ -473,7 +503,9 @@ impl<'a> Records<'a> {
 
     /// Records a triangle whose topmost strip, in this band, is `strip`.
     pub(crate) fn push_triangle(&mut self, [i, j, k]: [u16; 3], face: u32, strip: usize) {
-        self.triangles().push(u32::from(i) | u32::from(j) << 16, k, face, strip);
+        let mut triangles = self.triangles();
+        triangles.push(u32::from(i) | u32::from(j) << 16, k, face, strip);
+        triangles.finish();
     }
 
     /// The words taken apart, for a walk over many triangles that adds no vertices.
@@ -481,16 +513,17 @@ impl<'a> Records<'a> {
     pub(crate) fn triangles(&mut self) -> Triangles<'_> {
         let Self { words, layout } = self;
         let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
-        let (used, triangles) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
+        let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
         let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
         let places = vertices.get(..VERTEX * layout.count).unwrap_or_default();
+        // Numbers are below that which stands for none.
+        let beyond = rest.len().saturating_sub(TRIANGLE * usize::from(NONE));
         Triangles {
             lists,
             vertices,
             places: bytemuck::try_cast_slice(places).unwrap_or_default(),
-            next: triangles.len().saturating_sub(TRIANGLE * usize::from(layout.triangles)),
-            least: triangles.len().saturating_sub(TRIANGLE * usize::from(NONE)),
-            triangles,
+            triangles: rest.get_mut(beyond..).unwrap_or_default(),
+            count: layout.triangles.into(),
             layout,
         }
     }
@@ -498,7 +531,8 @@ impl<'a> Records<'a> {
     /// Starts replaying a strip of the band.
     pub(crate) fn begin_replay(&mut self, strip: usize) {
         self.layout.strip = strip;
-        self.layout.next = self.get(strip) as u16;
+        let [first, _]: [u16; 2] = bytemuck::cast(self.get(strip));
+        self.layout.next = first;
         self.layout.moved = NONE;
         self.layout.front = self.layout.lists;
     }

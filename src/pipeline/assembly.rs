@@ -101,7 +101,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let Self { scene, state, mesh, shader, .. } = self;
         for [corners, last, word] in scene.records.triangles_from(first) {
             let (number, area) = Mark(*word).parts();
-            let corners = [*corners as u16, (*corners >> 16) as u16, *last as u16];
+            let [k, _] = bytemuck::cast(*last);
+            let corners = [*corners as u16, (*corners >> 16) as u16, k];
             *word = shader.face(&Face::new(mesh, number, corners, state.side(area)));
         }
     }

@@ -18,20 +18,20 @@ pub(super) struct Scan<'m> {
     pub(super) seen: Seen,
 }
 
-/// A triangle in the records that has no word of its face yet, but its number, and above that the sign of its area.
+/// What a triangle in the records has that has no word of its face yet: its number, and below that the sign of its area.
 #[derive(Clone, Copy)]
 pub(super) struct Mark(pub(super) u32);
 
 impl Mark {
     #[inline]
     const fn new(number: usize, area: i32) -> Self {
-        Self(number as u32 | area as u32 & 1 << 31)
+        Self((number as u32) << 1 | area as u32 >> 31)
     }
 
     /// The triangle's number, and an area of the same sign as its.
     #[inline]
     pub(super) const fn parts(self) -> (usize, i64) {
-        (self.0 as usize & 0xFFFF, if self.0 >> 31 == 0 { 1 } else { -1 })
+        (self.0 as usize >> 1, if self.0 & 1 == 0 { 1 } else { -1 })
     }
 }
 
@@ -171,25 +171,27 @@ impl<'m> Scan<'m> {
     ) -> Stop {
         let mut triangles = records.triangles();
         let first = triangles.count();
+        let strips = strips.map(|(strips, band)| (*strips, band));
         let mut list = self.list;
         let mut number = self.next;
         let stop = loop {
             // 2. Primitive assembly. The usual meshes by the shortest way.
-            let (i, j, k) = match list.split_first_chunk() {
-                Some(([i, j, k], rest)) => {
+            let (corners, places) = match list.split_first_chunk() {
+                Some((corners, rest)) => {
                     list = rest;
-                    (*i, *j, *k)
+                    (*corners, triangles.places(*corners))
                 }
                 _ if number >= self.end => break Stop::End,
-                _ if self.consecutive => (3 * number as u16, 3 * number as u16 + 1, 3 * number as u16 + 2),
+                _ if self.consecutive => triangles.in_a_row(number),
                 _ => match self.mesh.any_triangle(number) {
-                    Some([i, j, k]) => (i, j, k),
+                    Some(corners) => (corners, triangles.places(corners)),
                     None => break Stop::End,
                 },
             };
             number += 1;
             // 5. Culling by winding, as early as can be, and of what covers no pixel.
-            let (a, b, c) = (triangles.place(i), triangles.place(j), triangles.place(k));
+            let [i, j, k] = corners;
+            let [a, b, c] = places;
             let Some([bx, by, cx, cy]) = near(a, b, c) else {
                 self.seen.corners = [i, j, k];
                 break Stop::Unplaced;
@@ -222,7 +224,8 @@ impl<'m> Scan<'m> {
                 break Stop::End;
             }
         };
-        stats.drawn = stats.drawn.wrapping_add(u32::from(triangles.count().wrapping_sub(first)));
+        stats.drawn = stats.drawn.wrapping_add(triangles.count().wrapping_sub(first));
+        triangles.finish();
         stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
         self.list = list;
         self.next = number;
