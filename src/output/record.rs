@@ -62,6 +62,15 @@ impl Slot {
     /// Of a vertex that is not shaded yet.
     pub(crate) const NONE: Self = Self([UNSHADED, 0]);
 
+    /// x of [`screen`](Self::screen) of a vertex that is not on the screen.
+    pub(crate) const OFF_SCREEN_X: i32 = OFF_SCREEN as i32 >> 8;
+
+    /// From its words, taken as signed.
+    #[inline]
+    pub(crate) const fn signed([a, b]: [i32; 2]) -> Self {
+        Self([a as u32, b as u32])
+    }
+
     /// From its words.
     #[inline]
     pub(crate) const fn from_words(words: [u32; 2]) -> Self {
@@ -503,7 +512,7 @@ impl<'a> Records<'a> {
 
     /// Records a triangle whose topmost strip, in this band, is `strip`.
     pub(crate) fn push_triangle(&mut self, [i, j, k]: [u16; 3], face: u32, strip: usize) {
-        let mut triangles = self.triangles();
+        let mut triangles = self.parts();
         triangles.push(u32::from(i) | u32::from(j) << 16, k, face, strip);
         triangles.finish();
     }
@@ -511,6 +520,11 @@ impl<'a> Records<'a> {
     /// The words taken apart, for a walk over many triangles that adds no vertices.
     #[inline(never)]
     pub(crate) fn triangles(&mut self) -> Triangles<'_> {
+        self.parts()
+    }
+
+    #[inline(always)]
+    fn parts(&mut self) -> Triangles<'_> {
         let Self { words, layout } = self;
         let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
         let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
@@ -560,11 +574,10 @@ impl<'a> Records<'a> {
 
     /// The words of the triangles from a number on, the newest first.
     #[inline]
-    pub(crate) fn triangles_from(&mut self, first: u16) -> impl Iterator<Item = &mut [u32; 3]> {
-        let end = self.triangle_at(first) + TRIANGLE;
-        let start = self.triangle_at(self.layout.triangles) + TRIANGLE;
-        let words = self.words.get_mut(start..end).unwrap_or_default();
-        words.chunks_exact_mut(TRIANGLE).filter_map(|words| words.try_into().ok())
+    pub(crate) fn triangles_from(&mut self, first: u16) -> &mut [u32] {
+        let end = self.triangle_at(first).wrapping_add(TRIANGLE);
+        let start = self.triangle_at(self.layout.triangles).wrapping_add(TRIANGLE);
+        self.words.get_mut(start..end).unwrap_or_default()
     }
 
     fn triangle_at(&self, number: u16) -> usize {

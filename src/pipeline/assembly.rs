@@ -87,7 +87,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             let strips = if self.scene.is_recording() { Some(strips) } else { None };
             let first = self.scene.records.triangle_count();
             let stop = scan.next(&mut self.scene.records, strips, self.culling, &self.clip, self.scene.stats);
-            self.shade_faces(first);
+            if self.scene.records.triangle_count() != first {
+                self.shade_faces(first);
+            }
             if stop == Stop::End {
                 break;
             }
@@ -99,11 +101,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn shade_faces(&mut self, first: u16) {
         let Self { scene, state, mesh, shader, .. } = self;
-        for [corners, last, word] in scene.records.triangles_from(first) {
+        let mut records = scene.records.triangles_from(first);
+        while let Some(([corners, last, word], rest)) = records.split_first_chunk_mut() {
             let (number, area) = Mark(*word).parts();
             let [k, _] = bytemuck::cast(*last);
             let corners = [*corners as u16, (*corners >> 16) as u16, k];
             *word = shader.face(&Face::new(mesh, number, corners, state.side(area)));
+            records = rest;
         }
     }
 
@@ -210,8 +214,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             }
         }
         if S::WORDS > 0 {
-            for (index, words) in varyings.chunks_exact_mut(S::WORDS).enumerate() {
+            let mut rest = varyings;
+            for index in 0..places.len() {
+                let Some((words, others)) = rest.split_at_mut_checked(S::WORDS) else { return };
                 S::store(&stage.varyings(index), words);
+                rest = others;
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::{Cull, State, Winding};
 use crate::geometry::{Mesh, Outcode, ScreenVertex, Side, Topology, signed_area, small};
-use crate::output::{Records, Stats, StripRows};
+use crate::output::{Records, Slot, Stats, StripRows};
 use crate::raster::{PixelRect, pixel_rect};
 use core::ops::Range;
 
@@ -53,7 +53,7 @@ pub(super) struct Seen {
 pub(super) enum Stop {
     /// A triangle that may be seen.
     Seen,
-    /// One that has to be looked at.
+    /// One that has to be looked at, with vertices that may not be shaded yet.
     Unplaced,
     /// One to be clipped, by these planes and by clip distances.
     Clipped(Outcode),
@@ -158,10 +158,36 @@ impl<'m> Scan<'m> {
         }
     }
 
-    /// Records triangles, with [`Mark`]s for words of their faces, up to one that has to be looked at: one with a vertex that is not
-    /// shaded yet, or not on the screen, or a large one. Without strips, all that may be seen have to be looked at.
-    #[inline(never)]
+    /// Records triangles, with [`Mark`]s for words of their faces, up to one that has to be looked at. Without strips, goes on to the
+    /// next that may be seen.
     pub(super) fn next(
+        &mut self,
+        records: &mut Records<'_>,
+        strips: Option<(&StripRows, i32)>,
+        culling: Culling,
+        clip: &PixelRect,
+        stats: &mut Stats,
+    ) -> Stop {
+        loop {
+            let stop = self.near(records, strips, culling, clip, stats);
+            if stop != Stop::Seen {
+                return stop;
+            }
+            // A large one, or one far away.
+            if self.seen.v.iter().any(|v| v.x == Slot::OFF_SCREEN_X) {
+                return Stop::Unplaced;
+            }
+            if self.seen.find(culling, clip, stats) {
+                let Some((strips, band)) = strips else { return Stop::Seen };
+                let mark = Mark::new(self.seen.number, (self.seen.area >> 32) as i32);
+                records.push_triangle(self.seen.corners, mark.0, strips.of((self.seen.row - band) as u32));
+            }
+        }
+    }
+
+    /// Records triangles that are small, not far away, and on the screen, up to another one: to all intents and purposes all.
+    #[inline(never)]
+    fn near(
         &mut self,
         records: &mut Records<'_>,
         strips: Option<(&StripRows, i32)>,
@@ -174,18 +200,18 @@ impl<'m> Scan<'m> {
         let strips = strips.map(|(strips, band)| (*strips, band));
         let mut list = self.list;
         let mut number = self.next;
-        let stop = loop {
+        let found = loop {
             // 2. Primitive assembly. The usual meshes by the shortest way.
             let (corners, places) = match list.split_first_chunk() {
                 Some((corners, rest)) => {
                     list = rest;
                     (*corners, triangles.places(*corners))
                 }
-                _ if number >= self.end => break Stop::End,
+                _ if number >= self.end => break None,
                 _ if self.consecutive => triangles.in_a_row(number),
                 _ => match self.mesh.any_triangle(number) {
                     Some(corners) => (corners, triangles.places(corners)),
-                    None => break Stop::End,
+                    None => break None,
                 },
             };
             number += 1;
@@ -193,8 +219,7 @@ impl<'m> Scan<'m> {
             let [i, j, k] = corners;
             let [a, b, c] = places;
             let Some([bx, by, cx, cy]) = near(a, b, c) else {
-                self.seen.corners = [i, j, k];
-                break Stop::Unplaced;
+                break Some((corners, places));
             };
             let area = bx * cy - cx * by;
             if area == 0 || culling.leaves_out(area) {
@@ -215,13 +240,12 @@ impl<'m> Scan<'m> {
                 continue;
             }
             let Some((strips, band)) = strips else {
-                self.seen.corners = [i, j, k];
-                break Stop::Unplaced;
+                break Some((corners, places));
             };
             // 6, 7. Into the records, to the strip it begins in.
             let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
             if !triangles.push(u32::from(i) | u32::from(j) << 16, k, Mark::new(number - 1, area).0, strip) {
-                break Stop::End;
+                break None;
             }
         };
         stats.drawn = stats.drawn.wrapping_add(triangles.count().wrapping_sub(first));
@@ -230,6 +254,9 @@ impl<'m> Scan<'m> {
         self.list = list;
         self.next = number;
         self.seen.number = number.wrapping_sub(1);
-        stop
+        let Some((corners, [a, b, c])) = found else { return Stop::End };
+        self.seen.corners = corners;
+        self.seen.v = [Slot::signed(a).screen(), Slot::signed(b).screen(), Slot::signed(c).screen()];
+        Stop::Seen
     }
 }
