@@ -337,10 +337,14 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let mut triangles = self.records.triangles();
         let mut painter = Painter { target: &mut self.target, screen: self.screen, clip, state, chosen, shader };
         let mut triangle = TriangleRecord::default();
+        let mut varyings = [S::Varyings::ZERO; 3];
         while triangles.replay(last, end, &mut triangle) {
             let [i, j, k] = triangle.corners();
-            let varyings = |index| triangles.varyings::<S>(index);
-            let mut varyings = [varyings(i), varyings(j), varyings(k)];
+            // In place: arrays of them are copied.
+            let [a, b, c] = &mut varyings;
+            triangles.varyings::<S>(i, a);
+            triangles.varyings::<S>(j, b);
+            triangles.varyings::<S>(k, c);
             painter.triangle(&triangle.v, &mut varyings, triangle.face);
         }
     }

@@ -263,23 +263,24 @@ impl Triangles<'_> {
         }
     }
 
-    /// The varyings of a vertex of the draw.
-    #[inline]
-    pub(crate) fn varyings<S: VertexShader>(&self, index: u16) -> S::Varyings {
-        if S::WORDS == 0 {
-            return S::Varyings::ZERO;
+    /// Reads the varyings of a vertex of the draw.
+    #[inline(always)]
+    pub(crate) fn varyings<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
+        if S::Varyings::LEN > FEW {
+            self.varyings_apart::<S>(index, to);
+        } else if S::WORDS > 0 {
+            *to = self.load::<S>(index);
         }
-        if S::Varyings::LEN > FEW { self.varyings_apart::<S>(index) } else { self.varyings_here::<S>(index) }
     }
 
     /// Many of them take room on the stack until they are put together.
     #[inline(never)]
-    fn varyings_apart<S: VertexShader>(&self, index: u16) -> S::Varyings {
-        self.varyings_here::<S>(index)
+    fn varyings_apart<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
+        *to = self.load::<S>(index);
     }
 
     #[inline(always)]
-    fn varyings_here<S: VertexShader>(&self, index: u16) -> S::Varyings {
+    fn load<S: VertexShader>(&self, index: u16) -> S::Varyings {
         let (index, count) = (usize::from(index), self.places.len());
         let at = if index < count { VERTEX * count + S::WORDS * index } else { (S::WORDS + VERTEX) * index + VERTEX };
         S::load(self.vertices.get(at..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())

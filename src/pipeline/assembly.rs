@@ -204,22 +204,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let stage = VertexStage { mesh, shader: *shader, transform };
         let (places, varyings) = scene.records.vertices_mut();
         scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
-        let short = !S::DISPLACES && S::CLIP_DISTANCES == 0;
         match transform.short_points(&mesh.data().positions) {
-            Some(points) if short => place_all(transform, points, places),
-            _ => {
-                for (index, place) in places.iter_mut().enumerate() {
-                    *place = stage.place(index).words();
-                }
-            }
+            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => place_all(transform, points, places),
+            _ => stage.place_each(places),
         }
         if S::WORDS > 0 {
-            let mut rest = varyings;
-            for index in 0..places.len() {
-                let Some((words, others)) = rest.split_at_mut_checked(S::WORDS) else { return };
-                S::store(&stage.varyings(index), words);
-                rest = others;
-            }
+            stage.store_each(varyings);
         }
     }
 
@@ -472,6 +462,23 @@ impl<S: VertexShader> VertexStage<'_, S> {
             return Slot::new(&Placed::Outside(Outcode(slot.outcode())));
         }
         slot
+    }
+
+    #[inline(never)]
+    fn place_each(&self, places: &mut [[u32; 2]]) {
+        for (index, place) in places.iter_mut().enumerate() {
+            *place = self.place(index).words();
+        }
+    }
+
+    /// Packs the varyings of all vertices.
+    #[inline(never)]
+    fn store_each(&self, mut words: &mut [u32]) {
+        let mut index = 0;
+        while let Some((some, rest)) = words.split_at_mut_checked(S::WORDS) {
+            S::store(&self.varyings(index), some);
+            (index, words) = (index + 1, rest);
+        }
     }
 
     #[inline]
