@@ -11,8 +11,6 @@ pub(super) struct Scan<'m> {
     mesh: &'m Mesh<'m>,
     /// Those to come, if the mesh is an indexed list.
     list: &'m [u16],
-    /// Whether it is a list without indices.
-    consecutive: bool,
     next: usize,
     end: usize,
     pub(super) seen: Seen,
@@ -65,9 +63,9 @@ pub(super) enum Stop {
 #[derive(Clone, Copy)]
 pub(super) struct Culling {
     /// What the sign of an area is changed by, so that faces that are left out have none.
-    flip: i32,
+    flip: i8,
     /// Negative if none are left out.
-    keep: i32,
+    keep: i8,
 }
 
 impl State {
@@ -92,7 +90,7 @@ impl Culling {
     /// Whether a face of this area, or of the upper half of it, is left out; the area is not 0.
     #[inline]
     fn leaves_out(self, area: i32) -> bool {
-        (area ^ self.flip) | self.keep >= 0
+        (area ^ i32::from(self.flip)) | i32::from(self.keep) >= 0
     }
 }
 
@@ -151,7 +149,6 @@ impl<'m> Scan<'m> {
         Self {
             mesh,
             list: list.unwrap_or_default(),
-            consecutive: mesh.data().topology == Topology::Triangles && mesh.data().indices.is_none(),
             next: numbers.start,
             end: numbers.end.min(mesh.triangle_count()),
             seen: Seen::NONE,
@@ -198,6 +195,7 @@ impl<'m> Scan<'m> {
         let mut triangles = records.triangles();
         let first = triangles.count();
         let strips = strips.map(|(strips, band)| (*strips, band));
+        let in_a_row = self.mesh.data().topology == Topology::Triangles && self.mesh.data().indices.is_none();
         let mut list = self.list;
         let mut number = self.next;
         let found = loop {
@@ -208,7 +206,7 @@ impl<'m> Scan<'m> {
                     (*corners, triangles.places(*corners))
                 }
                 _ if number >= self.end => break None,
-                _ if self.consecutive => triangles.in_a_row(number),
+                _ if in_a_row => triangles.in_a_row(number),
                 _ => match self.mesh.any_triangle(number) {
                     Some(corners) => (corners, triangles.places(corners)),
                     None => break None,
