@@ -81,12 +81,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Where places are kept: those that may be seen.
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
-        let mut scan = Scan::new(self.mesh, numbers);
+        let mut scan = Scan::new(self.mesh, numbers, self.culling);
         while !self.scene.overflowed() {
             let strips = (self.scene.strips, self.scene.band.start);
             let strips = if self.scene.is_recording() { Some(strips) } else { None };
             let first = self.scene.records.triangle_count();
-            let stop = scan.next(&mut self.scene.records, strips, self.culling, &self.clip, self.scene.stats);
+            let stop = scan.next(&mut self.scene.records, strips, &self.clip, self.scene.stats);
             if self.scene.records.triangle_count() != first {
                 self.shade_faces(first);
             }
@@ -124,7 +124,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if S::CULL_DISTANCES > 0 && self.is_culled_by_distance([i, j, k]) {
                 self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             } else {
-                (seen.number, seen.corners) = (number, [i, j, k]);
+                (seen.number, seen.corners) = (number as u16, [i, j, k]);
                 self.shade_stop(Stop::Unplaced, &mut seen);
             }
         }
@@ -184,7 +184,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     #[inline(never)]
     fn face(&self, seen: &Seen) -> u32 {
-        self.shader.face(&Face::new(self.mesh, seen.number, seen.corners, self.state.side(seen.area)))
+        self.shader.face(&Face::new(self.mesh, seen.number.into(), seen.corners, self.state.side(seen.area)))
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.

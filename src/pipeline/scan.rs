@@ -13,6 +13,7 @@ pub(super) struct Scan<'m> {
     list: &'m [u16],
     next: usize,
     end: usize,
+    culling: Culling,
     pub(super) seen: Seen,
 }
 
@@ -36,7 +37,7 @@ impl Mark {
 /// A triangle that was found: one on the screen that may have pixels, or one that has to be looked at.
 pub(super) struct Seen {
     /// Its number in the mesh, and its vertices.
-    pub(super) number: usize,
+    pub(super) number: u16,
     pub(super) corners: [u16; 3],
     /// Where it is; a part of it, if it has to be clipped.
     pub(super) v: [ScreenVertex; 3],
@@ -140,7 +141,7 @@ fn near(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
 
 impl<'m> Scan<'m> {
     /// Of some triangles of a mesh.
-    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>) -> Self {
+    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling) -> Self {
         let indices = match mesh.data() {
             data if data.topology == Topology::Triangles => data.indices,
             _ => None,
@@ -151,6 +152,7 @@ impl<'m> Scan<'m> {
             list: list.unwrap_or_default(),
             next: numbers.start,
             end: numbers.end.min(mesh.triangle_count()),
+            culling,
             seen: Seen::NONE,
         }
     }
@@ -161,12 +163,11 @@ impl<'m> Scan<'m> {
         &mut self,
         records: &mut Records<'_>,
         strips: Option<(&StripRows, i32)>,
-        culling: Culling,
         clip: &PixelRect,
         stats: &mut Stats,
     ) -> Stop {
         loop {
-            let stop = self.near(records, strips, culling, clip, stats);
+            let stop = self.near(records, strips, clip, stats);
             if stop != Stop::Seen {
                 return stop;
             }
@@ -174,9 +175,9 @@ impl<'m> Scan<'m> {
             if self.seen.v.iter().any(|v| v.x == Slot::OFF_SCREEN_X) {
                 return Stop::Unplaced;
             }
-            if self.seen.find(culling, clip, stats) {
+            if self.seen.find(self.culling, clip, stats) {
                 let Some((strips, band)) = strips else { return Stop::Seen };
-                let mark = Mark::new(self.seen.number, (self.seen.area >> 32) as i32);
+                let mark = Mark::new(usize::from(self.seen.number), (self.seen.area >> 32) as i32);
                 records.push_triangle(self.seen.corners, mark.0, strips.of((self.seen.row - band) as u32));
             }
         }
@@ -188,13 +189,13 @@ impl<'m> Scan<'m> {
         &mut self,
         records: &mut Records<'_>,
         strips: Option<(&StripRows, i32)>,
-        culling: Culling,
         clip: &PixelRect,
         stats: &mut Stats,
     ) -> Stop {
         let mut triangles = records.triangles();
         let first = triangles.count();
         let strips = strips.map(|(strips, band)| (*strips, band));
+        let culling = self.culling;
         let in_a_row = self.mesh.data().topology == Topology::Triangles && self.mesh.data().indices.is_none();
         let mut list = self.list;
         let mut number = self.next;
@@ -251,7 +252,7 @@ impl<'m> Scan<'m> {
         stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
         self.list = list;
         self.next = number;
-        self.seen.number = number.wrapping_sub(1);
+        self.seen.number = number.wrapping_sub(1) as u16;
         let Some((corners, [a, b, c])) = found else { return Stop::End };
         self.seen.corners = corners;
         self.seen.v = [Slot::signed(a).screen(), Slot::signed(b).screen(), Slot::signed(c).screen()];
