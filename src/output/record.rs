@@ -163,7 +163,7 @@ pub(crate) struct Triangles<'r> {
     /// What is behind the vertices, as much of it as triangles may take: they are at its end.
     triangles: &'r mut [u32],
     /// How many there are.
-    count: u32,
+    count: u16,
     layout: &'r mut Layout,
 }
 
@@ -187,24 +187,32 @@ impl Triangles<'_> {
     }
 
     /// How many have been recorded.
-    pub(crate) const fn count(&self) -> u32 {
+    pub(crate) const fn count(&self) -> u16 {
         self.count
+    }
+
+    /// Leaves no room for more.
+    pub(crate) fn close(&mut self) {
+        self.triangles = &mut [];
+    }
+
+    /// Notes that there was no room for a triangle.
+    pub(crate) const fn overflow(&mut self) {
+        self.layout.overflow = true;
     }
 
     /// Ends a walk that recorded triangles.
     pub(crate) const fn finish(self) {
-        self.layout.triangles = self.count as u16;
+        self.layout.triangles = self.count;
     }
 
     /// Records a triangle whose topmost strip, in this band, is `strip`; its first two corners in a word. Whether there was room.
     #[inline(always)]
     pub(crate) fn push(&mut self, corners: u32, last: u16, face: u32, strip: usize) -> bool {
-        let Some(at) = self.triangles.len().checked_sub(TRIANGLE * self.count as usize + TRIANGLE) else {
-            self.layout.overflow = true;
-            return false;
-        };
+        let behind = TRIANGLE * usize::from(self.count) + TRIANGLE;
+        let Some(at) = self.triangles.len().checked_sub(behind) else { return false };
         let Some([a, b, c, ..]) = self.triangles.get_mut(at..) else { return false };
-        let number = self.count as u16;
+        let number = self.count;
         (*a, *b, *c) = (corners, pair([last, NONE]), face);
         self.count += 1;
         let Some([first, end]) = self.lists.get_mut(strip).map(halves) else { return true };
@@ -514,7 +522,9 @@ impl<'a> Records<'a> {
     /// Records a triangle whose topmost strip, in this band, is `strip`.
     pub(crate) fn push_triangle(&mut self, [i, j, k]: [u16; 3], face: u32, strip: usize) {
         let mut triangles = self.parts();
-        triangles.push(u32::from(i) | u32::from(j) << 16, k, face, strip);
+        if !triangles.push(u32::from(i) | u32::from(j) << 16, k, face, strip) {
+            triangles.overflow();
+        }
         triangles.finish();
     }
 
@@ -538,7 +548,7 @@ impl<'a> Records<'a> {
             vertices,
             places: bytemuck::try_cast_slice(places).unwrap_or_default(),
             triangles: rest.get_mut(beyond..).unwrap_or_default(),
-            count: layout.triangles.into(),
+            count: layout.triangles,
             layout,
         }
     }

@@ -81,12 +81,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Where places are kept: those that may be seen.
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
-        let mut scan = Scan::new(self.mesh, numbers, self.culling);
+        let mut scan = Scan::new(self.mesh, numbers, self.culling, self.scene.is_recording());
         while !self.scene.overflowed() {
-            let strips = (self.scene.strips, self.scene.band.start);
-            let strips = if self.scene.is_recording() { Some(strips) } else { None };
             let first = self.scene.records.triangle_count();
-            let stop = scan.next(&mut self.scene.records, strips, &self.clip, self.scene.stats);
+            let Scene { records, strips, band, stats, .. } = &mut *self.scene;
+            let stop = scan.next(records, strips, band.start, &self.clip, stats);
             if self.scene.records.triangle_count() != first {
                 self.shade_faces(first);
             }

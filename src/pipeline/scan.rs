@@ -14,23 +14,25 @@ pub(super) struct Scan<'m> {
     next: usize,
     end: usize,
     culling: Culling,
+    recording: bool,
     pub(super) seen: Seen,
 }
 
-/// What a triangle in the records has that has no word of its face yet: its number, and below that the sign of its area.
+/// What a triangle in the records has that has no word of its face yet: the number of the next triangle of the mesh, and below that
+/// the sign of its area.
 #[derive(Clone, Copy)]
 pub(super) struct Mark(pub(super) u32);
 
 impl Mark {
     #[inline]
-    const fn new(number: usize, area: i32) -> Self {
-        Self((number as u32) << 1 | area as u32 >> 31)
+    const fn new(next: usize, area: i32) -> Self {
+        Self((next as u32) << 1 | area as u32 >> 31)
     }
 
     /// The triangle's number, and an area of the same sign as its.
     #[inline]
     pub(super) const fn parts(self) -> (usize, i64) {
-        (self.0 as usize >> 1, if self.0 & 1 == 0 { 1 } else { -1 })
+        ((self.0 as usize >> 1).wrapping_sub(1), if self.0 & 1 == 0 { 1 } else { -1 })
     }
 }
 
@@ -141,7 +143,7 @@ fn near(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
 
 impl<'m> Scan<'m> {
     /// Of some triangles of a mesh.
-    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling) -> Self {
+    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling, recording: bool) -> Self {
         let indices = match mesh.data() {
             data if data.topology == Topology::Triangles => data.indices,
             _ => None,
@@ -153,21 +155,23 @@ impl<'m> Scan<'m> {
             next: numbers.start,
             end: numbers.end.min(mesh.triangle_count()),
             culling,
+            recording,
             seen: Seen::NONE,
         }
     }
 
-    /// Records triangles, with [`Mark`]s for words of their faces, up to one that has to be looked at. Without strips, goes on to the
-    /// next that may be seen.
+    /// Goes on to the next triangle that may be seen, or that has to be looked at. Those before that are recorded, with [`Mark`]s for
+    /// words of their faces, and when triangles are recorded, the next is one that has to be looked at.
     pub(super) fn next(
         &mut self,
         records: &mut Records<'_>,
-        strips: Option<(&StripRows, i32)>,
+        strips: &StripRows,
+        band: i32,
         clip: &PixelRect,
         stats: &mut Stats,
     ) -> Stop {
         loop {
-            let stop = self.near(records, strips, clip, stats);
+            let stop = self.near(records, strips, band, clip, stats);
             if stop != Stop::Seen {
                 return stop;
             }
@@ -176,8 +180,10 @@ impl<'m> Scan<'m> {
                 return Stop::Unplaced;
             }
             if self.seen.find(self.culling, clip, stats) {
-                let Some((strips, band)) = strips else { return Stop::Seen };
-                let mark = Mark::new(usize::from(self.seen.number), (self.seen.area >> 32) as i32);
+                if !self.recording {
+                    return Stop::Seen;
+                }
+                let mark = Mark::new(self.next, (self.seen.area >> 32) as i32);
                 records.push_triangle(self.seen.corners, mark.0, strips.of((self.seen.row - band) as u32));
             }
         }
@@ -188,13 +194,17 @@ impl<'m> Scan<'m> {
     fn near(
         &mut self,
         records: &mut Records<'_>,
-        strips: Option<(&StripRows, i32)>,
+        strips: &StripRows,
+        band: i32,
         clip: &PixelRect,
         stats: &mut Stats,
     ) -> Stop {
         let mut triangles = records.triangles();
         let first = triangles.count();
-        let strips = strips.map(|(strips, band)| (*strips, band));
+        if !self.recording {
+            triangles.close();
+        }
+        let strips = *strips;
         let culling = self.culling;
         let in_a_row = self.mesh.data().topology == Topology::Triangles && self.mesh.data().indices.is_none();
         let mut list = self.list;
@@ -238,16 +248,18 @@ impl<'m> Scan<'m> {
                 stats.outside = stats.outside.wrapping_add(1);
                 continue;
             }
-            let Some((strips, band)) = strips else {
-                break Some((corners, places));
-            };
             // 6, 7. Into the records, to the strip it begins in.
             let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
-            if !triangles.push(u32::from(i) | u32::from(j) << 16, k, Mark::new(number - 1, area).0, strip) {
+            if !triangles.push(u32::from(i) | u32::from(j) << 16, k, Mark::new(number, area).0, strip) {
+                // There is no room, or none of it is to be used.
+                if !self.recording {
+                    break Some((corners, places));
+                }
+                triangles.overflow();
                 break None;
             }
         };
-        stats.drawn = stats.drawn.wrapping_add(triangles.count().wrapping_sub(first));
+        stats.drawn = stats.drawn.wrapping_add((triangles.count() - first).into());
         triangles.finish();
         stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
         self.list = list;
