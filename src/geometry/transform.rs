@@ -380,6 +380,18 @@ impl Transform {
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
     #[inline(never)]
     pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> ClipVertex {
+        self.apply(&self.numbers(positions, index))
+    }
+
+    /// w of [`vertex`](Self::vertex).
+    pub(crate) fn w(&self, positions: &Positions<'_>, index: usize) -> i64 {
+        let [.., w] = &self.rows;
+        w.apply(&self.numbers(positions, index), self.short)
+    }
+
+    /// What the rows are applied to.
+    #[inline]
+    fn numbers(&self, positions: &Positions<'_>, index: usize) -> [i32; 4] {
         let mut p = positions.numbers(index);
         if self.short && SMALL_CORE {
             p[3] = 1;
@@ -388,7 +400,7 @@ impl Transform {
                 *c <<= 16;
             }
         }
-        self.apply(&p)
+        p
     }
 
     /// Where a mesh vertex is on the screen, or which planes keep it off.

@@ -502,7 +502,12 @@ impl<S: VertexShader> VertexStage<'_, S> {
     fn varyings(&self, index: usize) -> S::Varyings {
         let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
         if S::Varyings::PERSPECTIVE > 0 {
-            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
+            let w = if S::DISPLACES {
+                self.transformed(index).w
+            } else {
+                self.transform.w(&self.mesh.data().positions, index)
+            };
+            varyings.set_inverse_w(inverse_w(&ClipVertex { w, ..ClipVertex::default() }));
         }
         varyings
     }
