@@ -317,13 +317,15 @@ impl Triangles<'_> {
     #[inline(never)]
     fn move_on(&mut self, number: u16) {
         let strip = self.layout.strip + 1;
-        let Some([first, _]) = self.lists.get_mut(strip).map(halves) else { return };
-        let mut before = self.layout.moved;
-        let mut after = if before == NONE { *first } else { self.linked(before) };
+        if strip >= self.lists.len() {
+            return;
+        }
+        let (mut before, mut after) = (self.layout.moved, self.layout.after);
         while after < number {
             before = after;
             after = self.linked(after);
         }
+        self.layout.after = after;
         self.link(number, after);
         if before != NONE {
             self.link(before, number);
@@ -349,10 +351,11 @@ pub(crate) struct Layout {
     added: u16,
     stride: usize,
     overflow: bool,
-    /// Replay: the strip, its next triangle, and where the last one that moves on was put in the next strip's list.
+    /// Replay: the strip, its next triangle, the last one that was moved on, and the one that follows it in the next strip's list.
     strip: usize,
     next: u16,
     moved: u16,
+    after: u16,
     /// First word behind the lists of the strips.
     lists: usize,
 }
@@ -556,8 +559,11 @@ impl<'a> Records<'a> {
     /// Starts replaying a strip of the band.
     pub(crate) fn begin_replay(&mut self, strip: usize) {
         self.layout.strip = strip;
-        let [first, _]: [u16; 2] = bytemuck::cast(self.get(strip));
-        self.layout.next = first;
+        let first = |strip| {
+            let [first, _]: [u16; 2] = bytemuck::cast(self.get(strip));
+            first
+        };
+        (self.layout.next, self.layout.after) = (first(strip), first(strip + 1));
         self.layout.moved = NONE;
         self.layout.front = self.layout.lists;
     }

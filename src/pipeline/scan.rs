@@ -141,6 +141,9 @@ fn near(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
     if far >= 0 && small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
 }
 
+/// A rectangle that is to the right of all triangles.
+const NOWHERE: PixelRect = PixelRect { x: i32::MAX..i32::MAX, y: 0..0 };
+
 impl<'m> Scan<'m> {
     /// Of some triangles of a mesh.
     pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling, recording: bool) -> Self {
@@ -204,6 +207,8 @@ impl<'m> Scan<'m> {
         if !self.recording {
             triangles.close();
         }
+        // In an empty rectangle is nothing: nor in one that is far away, which takes no test of its own.
+        let clip = if clip.is_empty() { &NOWHERE } else { clip };
         let strips = *strips;
         let culling = self.culling;
         let in_a_row = self.mesh.data().topology == Topology::Triangles && self.mesh.data().indices.is_none();
