@@ -307,7 +307,8 @@ impl Triangles<'_> {
     }
 
     fn linked(&self, from: u16) -> u16 {
-        let [_, link] = self.triangles.get(self.triangle_at(from).wrapping_add(1)).map_or([NONE; 2], |word| bytemuck::cast(*word));
+        let [_, link] =
+            self.triangles.get(self.triangle_at(from).wrapping_add(1)).map_or([NONE; 2], |word| bytemuck::cast(*word));
         link
     }
 
