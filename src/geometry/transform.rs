@@ -464,3 +464,29 @@ impl Transform {
         ClipVertex { x, y, z, w }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn short_rows_are_rounded_sums_of_products() {
+        let mut state = 1_u32;
+        let mut random = |bits: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state ^ state >> 15) as i32 >> (32 - bits)
+        };
+        for _ in 0..100_000 {
+            // Entries of 30 bits and a sign, the last with 15 fractional bits.
+            let m = [random(29), random(29), random(29)];
+            let t = i64::from(random(29)) << 15 | i64::from(random(16) & 0x7FFF);
+            let q = [random(16) as i16, random(16) as i16, random(16) as i16];
+            let sum = (0..3).fold(t + (1 << 14), |sum, k| sum + i64::from(m[k]) * i64::from(q[k])) >> 15;
+            let [a, b, c] = m;
+            let row = Row { high: [0; 4], low: [2 * a, 2 * b, 2 * c, 0], translation: (t + (1 << 14)) << 17 };
+            assert_eq!(i64::from(row.apply_short(q)), sum, "{m:?} {t} {q:?}");
+            let [x, y, z] = q.map(|q| i32::from(q) << 16);
+            assert_eq!(row.apply(&[x, y, z, 0], true), sum, "{m:?} {t} {q:?}");
+        }
+    }
+}

@@ -276,3 +276,109 @@ impl<'m> Scan<'m> {
         Stop::Seen
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{MeshData, Placed, Positions};
+    use crate::math::{Scalar, Vec3};
+    use crate::output::{Layout, TriangleRecord};
+    use std::vec;
+    use std::vec::Vec;
+
+    const STRIPS: usize = 15;
+    const COUNT: usize = 600;
+
+    struct Random(u32);
+
+    impl Random {
+        fn below(&mut self, end: i32) -> i32 {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            ((u64::from(self.0 >> 4) * end as u64) >> 28) as i32
+        }
+
+        /// Three vertices: tiny, small, large or huge, some of them not there.
+        fn places(&mut self) -> [[u32; 2]; 3] {
+            let size = [300, 3000, 1 << 15, 1 << 17, 1 << 22][self.below(5) as usize];
+            let at = [[self.below(1 << 17), self.below(1 << 16)], [(1 << 23) - 1 - size, -(1 << 23) + 1]];
+            let [x, y] = at[usize::from(self.below(20) == 0)];
+            [(); 3].map(|()| {
+                let v = ScreenVertex::new(x + self.below(size), y + self.below(size), self.below(1 << 16) as u16);
+                match self.below(100) {
+                    0 => Slot::NONE,
+                    1 => Slot::new(&Placed::Outside(Outcode(Outcode::NEAR))),
+                    _ => Slot::new(&Placed::Screen(v)),
+                }
+                .words()
+            })
+        }
+    }
+
+    /// What a walk records, and what it counts, is what [`Seen::find`] says of each triangle.
+    #[test]
+    fn walks_find_what_is_found_one_by_one() {
+        let mut random = Random(1);
+        let points = [[0; 3]; 3 * COUNT];
+        let positions = Positions::Quantized { points: &points, scale: Scalar::ONE, offset: Vec3::ZERO };
+        let indices: Vec<u16> = (0..3 * COUNT as u16).map(|k| k ^ 1).collect();
+        let (mut words, mut found) = (vec![0; 20_000], 0);
+        for case in 0..60 {
+            let cull = [Cull::Back, Cull::Front, Cull::None][case % 3];
+            let front = [Winding::CounterClockwise, Winding::Clockwise][case / 3 % 2];
+            let state = State { cull, front, ..State::DEFAULT };
+            let data = MeshData { indices: (case % 4 > 1).then_some(&indices[..]), ..MeshData::new(positions) };
+            let mesh = Mesh::new(data).expect("a mesh");
+            let rows = 32..32 + 16 * STRIPS as i32;
+            let clip = [PixelRect { x: 0..320, y: rows.clone() }, PixelRect { x: 50..60, y: 100..90 }]
+                [usize::from(case % 7 == 6)]
+            .clone();
+            let places: Vec<_> = (0..COUNT).flat_map(|_| random.places()).collect();
+
+            let mut layout = Layout::default();
+            let mut records = Records::new(&mut words, &mut layout);
+            records.begin_band(STRIPS);
+            records.begin_draw(7, places.len(), 2);
+            records.vertices_mut().0.copy_from_slice(&places);
+            let strips = StripRows::new(16, true);
+            let mut scan = Scan::new(&mesh, 0..COUNT, state.culling(), true);
+            let (mut stats, mut unplaced) = (Stats::default(), Vec::new());
+            while scan.next(&mut records, &strips, rows.start, &clip, &mut stats) == Stop::Unplaced {
+                unplaced.push((scan.seen.number, scan.seen.corners));
+            }
+            records.end_draw();
+
+            let mut expected = Stats { triangles: COUNT as u32, ..Stats::default() };
+            let mut seen = Seen::NONE;
+            let (mut left, mut drawn) = (Vec::new(), vec![Vec::new(); STRIPS]);
+            for number in 0..COUNT {
+                let corners = mesh.triangle(number).expect("a triangle");
+                let slots = corners.map(|k| Slot::from_words(places[usize::from(k)]));
+                seen.v = slots.map(Slot::screen);
+                if !slots.iter().all(|slot| slot.is_on_screen()) {
+                    left.push((number as u16, corners));
+                } else if seen.find(state.culling(), &clip, &mut expected) {
+                    drawn[strips.of((seen.row - rows.start) as u32)].push((corners, number, seen.area > 0));
+                }
+            }
+            assert_eq!(unplaced, left, "case {case}");
+            assert_eq!(stats, expected, "case {case}");
+            for (strip, drawn) in drawn.iter().enumerate() {
+                records.begin_replay(strip);
+                assert!(records.replay_draw(7, places.len(), 2));
+                let last = records.last_triangle();
+                let mut triangle = TriangleRecord::default();
+                for expected in drawn {
+                    assert!(
+                        records.triangles().replay(last, i32::MAX >> 2, &mut triangle),
+                        "case {case}, strip {strip}"
+                    );
+                    let (number, area) = Mark(triangle.face).parts();
+                    assert_eq!((triangle.corners(), number, area > 0), *expected, "case {case}, strip {strip}");
+                    found += 1;
+                }
+                assert!(!records.triangles().replay(last, i32::MAX >> 2, &mut triangle), "case {case}, strip {strip}");
+            }
+        }
+        assert!(found > 3000, "{found} triangles");
+    }
+}
