@@ -19,7 +19,7 @@ use crate::geometry::{
     Bounds, BoundsNode, DepthRange, DepthScale, MAX_DISTANCES, Mesh, Positions, Transform, Varyings, View, Viewport,
 };
 use crate::math::Projective;
-use crate::output::{Framebuffer, Records, Stats, StripRows, TriangleRecord, VERTEX_WORDS};
+use crate::output::{Framebuffer, Records, Stats, StripRows, TriangleRecord, Triangles, VERTEX_WORDS};
 use crate::raster::PixelRect;
 use assembly::Assembly;
 pub use canvas::{Canvas, ScreenPoint};
@@ -337,13 +337,21 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// Draws the recorded triangles of this draw in the current strip.
     #[inline(never)]
     fn replay<S: Shader<F::Format>>(&mut self, state: &State, chosen: &Chosen<F, S>, shader: &S) {
-        let end = self.target.rows.end;
-        let clip = self.clip_rect(&self.target.rows);
-        while let Some(TriangleRecord { v, corners, face }) = self.records.replay_triangle(end) {
-            let [i, j, k] = corners;
-            let varyings = |index| self.records.varyings::<S>(index);
-            let mut varyings = [varyings(i), varyings(j), varyings(k)];
-            self.painter(&clip, state, chosen, shader).triangle(&v, &mut varyings, face);
+        let end = Triangles::end_of(self.target.rows.end);
+        let clip = &self.clip_rect(&self.target.rows);
+        let last = self.records.last_triangle();
+        let mut triangles = self.records.triangles();
+        let mut painter = Painter { target: &mut self.target, screen: self.screen, clip, state, chosen, shader };
+        let mut triangle = TriangleRecord::default();
+        let mut varyings = [S::Varyings::ZERO; 3];
+        while triangles.replay(last, end, &mut triangle) {
+            let [i, j, k] = triangle.corners();
+            // In place: arrays of them are copied.
+            let [a, b, c] = &mut varyings;
+            triangles.varyings::<S>(i, a);
+            triangles.varyings::<S>(j, b);
+            triangles.varyings::<S>(k, c);
+            painter.triangle(&triangle.v, &mut varyings, triangle.face);
         }
     }
 

@@ -38,7 +38,7 @@ pub use local_space::LocalSpace;
 pub use material::Material;
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub use order::{sort_back_to_front, view_depth};
-pub(crate) use project::area_of;
+pub(crate) use project::small;
 pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
 pub use sort::{Order, SortError, Sortable, far_to_near, painters_order};
 pub use transform::{Placed, Transform, View, place};

@@ -1,7 +1,7 @@
 //! Clip space → screen: divide, and snap to 1/256 px.
 
 use super::clip::ClipVertex;
-use crate::math::{Divisor, Scalar, leading_zeros_long, mul_high, reciprocal};
+use crate::math::{Divisor, SMALL_CORE, Scalar, byte_zeros, leading_zeros_long, mul_high, reciprocal};
 use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Point;
 
@@ -34,14 +34,8 @@ impl ScreenVertex {
 /// Differences of 24.8 coordinates are at most 2²⁴, the result below 2⁵⁰ in units of 2⁻¹⁶ px². Exact.
 #[inline]
 pub fn signed_area(a: &ScreenVertex, b: &ScreenVertex, c: &ScreenVertex) -> i64 {
-    area_of((a.x, a.y), (b.x, b.y), (c.x, c.y))
-}
-
-/// [`signed_area`] of points.
-#[inline]
-pub(crate) fn area_of(a: (i32, i32), b: (i32, i32), c: (i32, i32)) -> i64 {
-    let (bx, by) = (b.0 - a.0, b.1 - a.1);
-    let (cx, cy) = (c.0 - a.0, c.1 - a.1);
+    let (bx, by) = (b.x - a.x, b.y - a.y);
+    let (cx, cy) = (c.x - a.x, c.y - a.y);
     // 2¹⁵ · 2¹⁵ · 2 needs no more than 32 bits: nearly all triangles.
     if small(bx) & small(by) & small(cx) & small(cy) {
         i64::from(bx * cy - cx * by)
@@ -57,7 +51,7 @@ fn wide_area(b: (i32, i32), c: (i32, i32)) -> i64 {
 
 /// Whether a difference of coordinates is within -2¹⁵..2¹⁵, so that products of two fit 31 bits.
 #[inline]
-fn small(difference: i32) -> bool {
+pub(crate) fn small(difference: i32) -> bool {
     (difference + (1 << 15)) as u32 >> 16 == 0
 }
 
@@ -114,8 +108,8 @@ pub fn inverse_w(v: &ClipVertex) -> u32 {
 /// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.
 #[inline]
 pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
-    // 2 to 5; counted by comparisons, as small cores have no instruction for it.
-    let zeros = 2 + u32::from(w < 1 << 29) + u32::from(w < 1 << 28) + u32::from(w < 1 << 27);
+    // 2 to 5; the compiler knows then that no shift is by more than 31.
+    let zeros = 7 & if SMALL_CORE { byte_zeros((w >> 24) as u8) } else { (w as u32).leading_zeros() };
     divide(x >> (7 - zeros), y >> (7 - zeros), (z as u32) << zeros, (w as u32) << zeros)
 }
 
@@ -196,15 +190,17 @@ impl UniformDepth {
         // z / far as 1.31, once the powers of two are made up for.
         let down = self.exponent - 32 + zeros as i32;
         let fraction = if down < 0 { 1 << 31 } else { mul_high(high, self.reciprocal.get()) >> down.min(31) };
-        sixteen_bits(fraction)
+        sixteen_bits(fraction.min(1 << 31))
     }
 }
 
 /// 65,535 times a fraction in 1.31, at most 1, rounded to nearest.
+///
+/// # Format
+/// Fractions up to 2¹⁴ - 2 units above 1 count as 1.
 #[inline]
 fn sixteen_bits(fraction: u32) -> u16 {
     // As 16.15: 2¹⁶ f - f, and a half; rounded down, so what is taken away is rounded up.
-    let fraction = fraction.min(1 << 31);
     ((fraction + (1 << 14) - ((fraction + 0xFFFF) >> 16)) >> 15) as u16
 }
 

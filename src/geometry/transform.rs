@@ -35,13 +35,14 @@ pub struct Transform {
 ///
 /// # Format
 /// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵. The short path, for
-/// quantized positions q, computes Σ m q / 2¹⁵, with m = 2¹⁵ high + low below 2³⁰, low in -2¹⁴..2¹⁴ but for the last: that
-/// entry, for q = 1, is the low part of the translation, and has the half that rounds. Cores that multiply to 64 bits have all of
-/// m in `low`.
+/// quantized positions q, computes Σ m q / 2¹⁵ + t, rounded to nearest, with |m| < 2³⁰ and |t| < 2³⁰. Small cores have m = 2¹⁵ high
+/// + low, low in -2¹⁴..2¹⁴, and t in the last entry, with 15 fractional bits and the half that rounds in its low part: that is for
+/// q = 1. Cores that multiply to 64 bits have 2 m in `low` and 2³² t in `translation`: of Σ 2 m 2¹⁶ q, the upper word is what is
+/// asked for.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
-    /// High and low.
-    entries: [[i32; 2]; 4],
+    high: [i32; 4],
+    low: [i32; 4],
     translation: i64,
 }
 
@@ -249,23 +250,32 @@ impl Numbers {
     /// Makes a row of the transform, cut by `shift` bits.
     fn row(&self, row: &[i64; 4], shift: i32, short: bool, to: &mut Row) {
         to.translation = scale(self.translation(row), shift);
-        to.entries[3] = [0; 2];
-        for (entry, e) in to.entries.iter_mut().zip(self.entries(row)) {
+        (to.high[3], to.low[3]) = (0, 0);
+        for ((high, low), e) in to.high.iter_mut().zip(&mut to.low).zip(self.entries(row)) {
             // 16 fractional bits: e / 2³¹ · 2¹⁶.
             let e = scale(e, shift + 15);
-            *entry = if !short {
-                [(e >> 16) as i32, (e & 0xFFFF) as i32]
+            (*high, *low) = if !short {
+                ((e >> 16) as i32, (e & 0xFFFF) as i32)
             } else {
-                // m below 2³⁰; low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
-                let m = ((e + (1 << 9)) >> 10) as i32;
-                let low = if SMALL_CORE { ((m & 0x7FFF) ^ 0x4000) - 0x4000 } else { m };
-                [(m - low) >> 15, low]
+                // Rounded, but below 2³⁰.
+                let m = (((e + (1 << 9)) >> 10) as i32).min((1 << 30) - 1);
+                if SMALL_CORE {
+                    // low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
+                    let low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
+                    ((m - low) >> 15, low)
+                } else {
+                    (0, 2 * m)
+                }
             };
         }
         if short {
             let t = (to.translation + (1 << 9)) >> 10;
-            to.translation = t >> 15;
-            to.entries[3] = [0, (t & 0x7FFF) as i32 + (1 << 14)];
+            if SMALL_CORE {
+                (to.high[3], to.low[3]) = ((t >> 15) as i32, (t & 0x7FFF) as i32 + (1 << 14));
+                to.translation = 0;
+            } else {
+                to.translation = (t + (1 << 14)) << 17;
+            }
         }
     }
 }
@@ -278,12 +288,32 @@ impl Row {
     #[inline(never)]
     fn apply(&self, p: &[i32; 4], short: bool) -> i64 {
         let (mut value, mut fraction) = (self.translation, 0_i64);
-        for ([high, low], p) in self.entries.iter().zip(p) {
+        for ((high, low), p) in self.high.iter().zip(&self.low).zip(p) {
             value += product(*high, *p);
             fraction += product(*low, *p);
         }
+        if short && !SMALL_CORE {
+            return (value + fraction) >> 32;
+        }
         fraction >>= 15;
         value + if short { fraction } else { fraction >> 1 }
+    }
+
+    /// The short path.
+    ///
+    /// # Format
+    /// Small cores add up products below 2³⁰, to sums that are below 2³¹ as the result is below 2³⁰.
+    #[inline(always)]
+    fn apply_short(&self, q: [i16; 3]) -> i32 {
+        let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
+        let [lx, ly, lz, lt] = self.low;
+        if SMALL_CORE {
+            let [hx, hy, hz, t] = self.high;
+            hx * x + hy * y + hz * z + t + ((lx * x + ly * y + lz * z + lt) >> 15)
+        } else {
+            let product = |m: i32, q: i32| i64::from(m) * i64::from(q << 16);
+            ((self.translation + product(lx, x) + product(ly, y) + product(lz, z)) >> 32) as i32
+        }
     }
 }
 
@@ -353,31 +383,62 @@ impl Transform {
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
     #[inline(never)]
     pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> ClipVertex {
+        self.apply(&self.numbers(positions, index))
+    }
+
+    /// w of [`vertex`](Self::vertex).
+    pub(crate) fn w(&self, positions: &Positions<'_>, index: usize) -> i64 {
+        let [.., w] = &self.rows;
+        w.apply(&self.numbers(positions, index), self.short)
+    }
+
+    /// What the rows are applied to.
+    #[inline]
+    fn numbers(&self, positions: &Positions<'_>, index: usize) -> [i32; 4] {
         let mut p = positions.numbers(index);
-        if self.short {
+        if self.short && SMALL_CORE {
             p[3] = 1;
         } else if let Positions::Quantized { .. } = positions {
             for c in &mut p {
                 *c <<= 16;
             }
         }
-        self.apply(&p)
+        p
     }
 
     /// Where a mesh vertex is on the screen, or which planes keep it off.
     #[inline]
     pub fn place(&self, positions: &Positions<'_>, index: usize) -> Placed {
         if let (Positions::Quantized { points, .. }, true) = (positions, self.short) {
-            let clip = self.apply_short(points.get(index).copied().unwrap_or_default());
-            // In the short path's range of w, only the near and the far plane are left to be outside of.
-            let [_, _, z, w] = clip;
-            return if (z as u32) <= w as u32 {
-                Placed::Screen(self.with_depth(project_short(clip), i64::from(z) << 25))
-            } else {
-                Placed::Outside(Outcode(if z < 0 { Outcode::NEAR } else { Outcode::FAR }))
+            return match self.place_short(points.get(index).copied().unwrap_or_default()) {
+                (Placed::Screen(placed), z) => Placed::Screen(self.with_depth(placed, i64::from(z) << 25)),
+                (outside, _) => outside,
             };
         }
         self.place_clip(&self.vertex(positions, index))
+    }
+
+    /// The positions of a mesh if all that [`place`](Self::place) does with them is [`place_short`](Self::place_short).
+    #[inline]
+    pub(crate) fn short_points<'p>(&self, positions: &Positions<'p>) -> Option<&'p [[i16; 3]]> {
+        match positions {
+            Positions::Quantized { points, .. } if self.short && self.uniform.is_none() => Some(points),
+            _ => None,
+        }
+    }
+
+    /// [`place`](Self::place) by the short path, perspective depth for all depth scales; and z.
+    #[inline(always)]
+    pub(crate) fn place_short(&self, q: [i16; 3]) -> (Placed, i32) {
+        let [x, y, z, w] = &self.rows;
+        let (w, z) = (w.apply_short(q), z.apply_short(q));
+        // In the short path's range of w, only the near and the far plane are left to be outside of.
+        let placed = if (z as u32) <= w as u32 {
+            Placed::Screen(project_short([x.apply_short(q), y.apply_short(q), z, w]))
+        } else {
+            Placed::Outside(Outcode(if z < 0 { Outcode::NEAR } else { Outcode::FAR }))
+        };
+        (placed, z)
     }
 
     /// Where a vertex in clip space is on the screen, or which planes keep it off.
@@ -405,31 +466,32 @@ impl Transform {
         let [x, y, z, w] = core::array::from_fn(|k| self.rows[k].apply(p, self.short));
         ClipVertex { x, y, z, w }
     }
-
-    /// The short path; see [`Row`].
-    #[inline]
-    fn apply_short(&self, q: [i16; 3]) -> [i32; 4] {
-        let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
-        let apply = |row: &Row| {
-            let [[hx, lx], [hy, ly], [hz, lz], [_, lt]] = row.entries;
-            let translation = row.translation as i32;
-            if SMALL_CORE {
-                hx * x + hy * y + hz * z + translation + ((lx * x + ly * y + lz * z + lt) >> 15)
-            } else {
-                // The same, of whole entries.
-                let product = |m: i32, q: i32| i64::from(m) * i64::from(q);
-                translation + ((i64::from(lt) + product(lx, x) + product(ly, y) + product(lz, z)) >> 15) as i32
-            }
-        };
-        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
-        let [a, b, c, d] = &self.rows;
-        [apply(a), apply(b), apply(c), apply(d)]
-    }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::times;
+    use super::*;
+
+    #[test]
+    fn short_rows_are_rounded_sums_of_products() {
+        let mut state = 1_u32;
+        let mut random = |bits: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state ^ state >> 15) as i32 >> (32 - bits)
+        };
+        for _ in 0..100_000 {
+            // Entries of 30 bits and a sign, the last with 15 fractional bits.
+            let m = [random(29), random(29), random(29)];
+            let t = i64::from(random(29)) << 15 | i64::from(random(16) & 0x7FFF);
+            let q = [random(16) as i16, random(16) as i16, random(16) as i16];
+            let sum = (0..3).fold(t + (1 << 14), |sum, k| sum + i64::from(m[k]) * i64::from(q[k])) >> 15;
+            let [a, b, c] = m;
+            let row = Row { high: [0; 4], low: [2 * a, 2 * b, 2 * c, 0], translation: (t + (1 << 14)) << 17 };
+            assert_eq!(i64::from(row.apply_short(q)), sum, "{m:?} {t} {q:?}");
+            let [x, y, z] = q.map(|q| i32::from(q) << 16);
+            assert_eq!(row.apply(&[x, y, z, 0], true), sum, "{m:?} {t} {q:?}");
+        }
+    }
 
     #[test]
     fn times_is_a_product_rounded_down() {

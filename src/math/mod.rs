@@ -29,6 +29,6 @@ pub use projective::{ProjectionError, Projective};
 pub use reciprocal::{
     CoarseDivisor, Divisor, ShortDivisor, mul_high, mul_high_apart, mul_high_signed, product, reciprocal,
 };
-pub(crate) use reciprocal::{SMALL_CORE, leading_zeros, leading_zeros_long};
+pub(crate) use reciprocal::{SMALL_CORE, byte_zeros, leading_zeros, leading_zeros_long};
 pub use root::isqrt;
 pub use vector::Vec3;

@@ -63,6 +63,12 @@ static BYTE_ZEROS: [u8; 256] = {
     table
 };
 
+/// Leading zeros of a byte, from a table: for cores that have no instruction for it.
+#[inline(always)]
+pub(crate) const fn byte_zeros(x: u8) -> u32 {
+    BYTE_ZEROS[x as usize] as u32
+}
+
 /// Leading zeros, by two comparisons and a table where cores have no instruction for it: a third of what the compiler's own
 /// routine takes.
 #[inline(always)]
@@ -87,7 +93,7 @@ pub(crate) const fn leading_zeros_long(x: u64) -> u32 {
 const fn leading_zeros_by_table(x: u32) -> u32 {
     let (x, zeros) = if x >> 16 != 0 { (x >> 16, 0) } else { (x, 16) };
     let (x, zeros) = if x >> 8 != 0 { (x >> 8, zeros) } else { (x, zeros + 8) };
-    zeros + BYTE_ZEROS[(x & 0xFF) as usize] as u32
+    zeros + byte_zeros(x as u8)
 }
 
 /// Entry `i` is 2³¹ / m rounded, m the middle of the i-th 256th of 2¹⁵..2¹⁶: the seed of [`reciprocal`].
@@ -144,7 +150,7 @@ const fn saturated(r: u32) -> u32 {
 pub struct Divisor {
     /// Brings the divisor to 2³¹..2³².
     shift: u32,
-    /// 2⁴⁷ / x of the divisor x there, within 2⁻¹⁴·⁹: in 2¹⁵..=2¹⁶, and a little.
+    /// 2⁴⁷ / x of the divisor x there, within 2⁻¹⁴·⁹: in 2¹⁵..=2¹⁶.
     reciprocal: i32,
     /// 2³¹ - x `reciprocal` / 2¹⁶: below 2¹⁶·¹.
     defect: i32,
@@ -166,7 +172,11 @@ impl Divisor {
         let x16 = (x >> 16) + ((x >> 15) & 1);
         let defect = (1_i32 << 31).wrapping_sub((x16 as i32).wrapping_mul(r0));
         let r = r0 + ((r0 * (defect >> 8) + (1 << 22)) >> 23);
-        let product = (x >> 16).wrapping_mul(r as u32).wrapping_add((x & 0xFFFF).wrapping_mul(r as u32) >> 16);
+        let product = if SMALL_CORE {
+            (x >> 16).wrapping_mul(r as u32).wrapping_add((x & 0xFFFF).wrapping_mul(r as u32) >> 16)
+        } else {
+            ((u64::from(x) * u64::from(r as u32)) >> 16) as u32
+        };
         Self { shift: 0, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(product as i32) }
     }
 
@@ -177,13 +187,16 @@ impl Divisor {
     /// one for the defect's, and twice the second of two steps' 2⁻²⁹·⁸.
     #[inline(always)]
     pub const fn divide_normalized(&self, n: i32) -> i32 {
-        let h = if SMALL_CORE {
+        if SMALL_CORE {
             let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
-            (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32)
+            let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+            h.wrapping_add((h.wrapping_add(1 << 15) >> 16).wrapping_mul(self.defect) >> 15)
         } else {
-            ((n as i64 * self.reciprocal as i64) >> 16) as i32
-        };
-        h.wrapping_add(((h.wrapping_add(1 << 15)) >> 16).wrapping_mul(self.defect) >> 15)
+            // The same in two instructions, each of 32 by 16 bits: the reciprocal less 2¹⁶ fits 16 bits and a sign.
+            let h = n.wrapping_add(((n as i64 * (self.reciprocal as i16) as i64) >> 16) as i32);
+            let top = (h.wrapping_add(1 << 15) >> 16) as i16;
+            h.wrapping_add((((self.defect << 1) as i64 * top as i64) >> 16) as i32)
+        }
     }
 
     /// `n` / x as 1.31 for an `x` with its top bit set and `n` ≤ x; exact for an `x` of one bit.

@@ -84,7 +84,7 @@ impl StripRows {
     /// 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below 2¹².
     ///
     /// Without records nothing is divided, and the factor is 0.
-    fn new(rows: u16, records: bool) -> Self {
+    pub(crate) fn new(rows: u16, records: bool) -> Self {
         let rows = rows.max(1);
         if !records {
             return Self { rows, factor: 0, shift: 0 };

@@ -23,7 +23,9 @@ pub use frame_view::FrameView;
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip, WithoutDepth};
 pub use packed::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use pixel::{Bgr565Be, Rgb332, Rgb565Be};
+#[cfg(test)]
+pub(crate) use record::Layout;
 pub use record::records_len;
-pub(crate) use record::{Records, Slot, TriangleRecord, VERTEX as VERTEX_WORDS};
+pub(crate) use record::{Records, Slot, TriangleRecord, Triangles, VERTEX as VERTEX_WORDS};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;

@@ -14,8 +14,7 @@
 //! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
 
 use crate::fragment::clear_words;
-use crate::geometry::{Placed, ScreenVertex, Varyings, VertexShader};
-use crate::raster::first_centre;
+use crate::geometry::{FEW, Placed, ScreenVertex, Varyings, VertexShader};
 
 /// No triangle.
 const NONE: u16 = u16::MAX;
@@ -60,14 +59,17 @@ impl Slot {
         }
     }
 
-    /// x and y of a vertex on the screen.
-    #[inline]
-    pub(crate) const fn xy(self) -> (i32, i32) {
-        (self.0[0] as i32 >> 8, self.0[1] as i32 >> 8)
-    }
-
     /// Of a vertex that is not shaded yet.
     pub(crate) const NONE: Self = Self([UNSHADED, 0]);
+
+    /// x of [`screen`](Self::screen) of a vertex that is not on the screen.
+    pub(crate) const OFF_SCREEN_X: i32 = OFF_SCREEN as i32 >> 8;
+
+    /// From its words, taken as signed.
+    #[inline]
+    pub(crate) const fn signed([a, b]: [i32; 2]) -> Self {
+        Self([a as u32, b as u32])
+    }
 
     /// From its words.
     #[inline]
@@ -108,11 +110,23 @@ impl Slot {
 }
 
 /// A triangle from the records.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
+// Cleared by the same routine as 64-bit numbers are.
+#[repr(align(8))]
 pub(crate) struct TriangleRecord {
     pub(crate) v: [ScreenVertex; 3],
-    pub(crate) corners: [u16; 3],
+    /// The first two corners, the second in the upper half, and the third.
+    corners: u32,
+    last: u16,
     pub(crate) face: u32,
+}
+
+impl TriangleRecord {
+    /// Its vertices.
+    #[inline]
+    pub(crate) const fn corners(&self) -> [u16; 3] {
+        [self.corners as u16, (self.corners >> 16) as u16, self.last]
+    }
 }
 
 /// The words, and where in them things are.
@@ -120,6 +134,207 @@ pub(crate) struct TriangleRecord {
 pub(crate) struct Records<'a> {
     words: &'a mut [u32],
     layout: &'a mut Layout,
+}
+
+/// A word of two halves; which of them is above does not matter.
+#[inline]
+fn pair(halves: [u16; 2]) -> u32 {
+    bytemuck::cast(halves)
+}
+
+/// The two halves of a word.
+#[inline]
+fn halves(word: &mut u32) -> &mut [u16; 2] {
+    bytemuck::cast_mut(word)
+}
+
+#[inline]
+fn signed([a, b]: &[u32; 2]) -> [i32; 2] {
+    [*a as i32, *b as i32]
+}
+
+/// The words of a draw, taken apart for a walk over its triangles.
+#[derive(Debug)]
+pub(crate) struct Triangles<'r> {
+    lists: &'r mut [u32],
+    /// The vertices of the draw; where they are is known at the beginning, of as many as the mesh has.
+    vertices: &'r [u32],
+    places: &'r [[u32; 2]],
+    /// What is behind the vertices, as much of it as triangles may take: they are at its end.
+    triangles: &'r mut [u32],
+    /// How many there are.
+    count: u16,
+    layout: &'r mut Layout,
+}
+
+impl Triangles<'_> {
+    /// Words of the [`Slot`]s of vertices, signed.
+    #[inline(always)]
+    pub(crate) fn places(&self, [i, j, k]: [u16; 3]) -> [[i32; 2]; 3] {
+        let place = |index: u16| signed(self.places.get(usize::from(index)).unwrap_or(&Slot::NONE.0));
+        [place(i), place(j), place(k)]
+    }
+
+    /// The vertices of a triangle of a list without indices, and words of their [`Slot`]s.
+    #[inline(always)]
+    pub(crate) fn in_a_row(&self, number: usize) -> ([u16; 3], [[i32; 2]; 3]) {
+        let first = 3 * number;
+        let places = match self.places.get(first..) {
+            Some([a, b, c, ..]) => [signed(a), signed(b), signed(c)],
+            _ => [signed(&Slot::NONE.0); 3],
+        };
+        ([first as u16, (first + 1) as u16, (first + 2) as u16], places)
+    }
+
+    /// How many have been recorded.
+    pub(crate) const fn count(&self) -> u16 {
+        self.count
+    }
+
+    /// Leaves no room for more.
+    pub(crate) fn close(&mut self) {
+        self.triangles = &mut [];
+    }
+
+    /// Notes that there was no room for a triangle.
+    pub(crate) const fn overflow(&mut self) {
+        self.layout.overflow = true;
+    }
+
+    /// Ends a walk that recorded triangles.
+    pub(crate) const fn finish(self) {
+        self.layout.triangles = self.count;
+    }
+
+    /// Records a triangle whose topmost strip, in this band, is `strip`; its first two corners in a word. Whether there was room.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, corners: u32, last: u16, face: u32, strip: usize) -> bool {
+        let behind = TRIANGLE * usize::from(self.count) + TRIANGLE;
+        let Some(at) = self.triangles.len().checked_sub(behind) else { return false };
+        let Some([a, b, c, ..]) = self.triangles.get_mut(at..) else { return false };
+        let number = self.count;
+        (*a, *b, *c) = (corners, pair([last, NONE]), face);
+        self.count += 1;
+        let Some([first, end]) = self.lists.get_mut(strip).map(halves) else { return true };
+        let before = core::mem::replace(end, number);
+        if before == NONE {
+            *first = number;
+        } else {
+            self.link(before, number);
+        }
+        true
+    }
+
+    /// The next triangle of the draw in this strip, if its number is below `last`. If it reaches beyond `end`, see
+    /// [`end_of`](Self::end_of), it moves on to the next strip.
+    #[inline(never)]
+    pub(crate) fn replay(&mut self, last: u32, end: i32, to: &mut TriangleRecord) -> bool {
+        let number = self.layout.next;
+        if u32::from(number) >= last {
+            return false;
+        }
+        let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
+        let [last, next]: [u16; 2] = bytemuck::cast(*b);
+        (to.corners, to.last, to.face) = (*a, last, *face);
+        self.layout.next = next;
+        let [i, j, k] = to.corners();
+        let screen = |index: u16| match self.places.get(usize::from(index)) {
+            Some(words) => Slot(*words).screen(),
+            None => self.added(index).screen(),
+        };
+        // One by one, so that few things are at hand at once.
+        let [a, b, c] = &mut to.v;
+        *a = screen(i);
+        let mut above = end - a.y;
+        *b = screen(j);
+        above |= end - b.y;
+        *c = screen(k);
+        above |= end - c.y;
+        if above < 0 {
+            self.move_on(number);
+        }
+        true
+    }
+
+    /// What coordinates of triangles that end above a row are not greater than.
+    pub(crate) const fn end_of(row: i32) -> i32 {
+        // The first pixel whose centre is not before a coordinate is (coordinate + 127) / 256.
+        row * 256 + 128
+    }
+
+    /// Where a vertex is that the clipper added.
+    #[inline(never)]
+    fn added(&self, index: u16) -> Slot {
+        match self.vertices.get(self.layout.stride * usize::from(index)..) {
+            Some([a, b, ..]) => Slot([*a, *b]),
+            _ => Slot::NONE,
+        }
+    }
+
+    /// Reads the varyings of a vertex of the draw.
+    #[inline(always)]
+    pub(crate) fn varyings<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
+        if S::Varyings::LEN > FEW {
+            self.varyings_apart::<S>(index, to);
+        } else if S::WORDS > 0 {
+            *to = self.load::<S>(index);
+        }
+    }
+
+    /// Many of them take room on the stack until they are put together.
+    #[inline(never)]
+    fn varyings_apart<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
+        *to = self.load::<S>(index);
+    }
+
+    #[inline(always)]
+    fn load<S: VertexShader>(&self, index: u16) -> S::Varyings {
+        let (index, count) = (usize::from(index), self.places.len());
+        let at = if index < count { VERTEX * count + S::WORDS * index } else { (S::WORDS + VERTEX) * index + VERTEX };
+        S::load(self.vertices.get(at..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
+    }
+
+    fn triangle_at(&self, number: u16) -> usize {
+        self.triangles.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
+    }
+
+    #[inline(always)]
+    fn link(&mut self, from: u16, to: u16) {
+        let at = self.triangles.len().wrapping_sub(TRIANGLE * usize::from(from) + TRIANGLE - 1);
+        if let Some([_, link]) = self.triangles.get_mut(at).map(halves) {
+            *link = to;
+        }
+    }
+
+    fn linked(&self, from: u16) -> u16 {
+        let [_, link] =
+            self.triangles.get(self.triangle_at(from).wrapping_add(1)).map_or([NONE; 2], |word| bytemuck::cast(*word));
+        link
+    }
+
+    /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
+    ///
+    /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
+    #[inline(never)]
+    fn move_on(&mut self, number: u16) {
+        let strip = self.layout.strip + 1;
+        if strip >= self.lists.len() {
+            return;
+        }
+        let (mut before, mut after) = (self.layout.moved, self.layout.after);
+        while after < number {
+            before = after;
+            after = self.linked(after);
+        }
+        self.layout.after = after;
+        self.link(number, after);
+        if before != NONE {
+            self.link(before, number);
+        } else if let Some([first, _]) = self.lists.get_mut(strip).map(halves) {
+            *first = number;
+        }
+        self.layout.moved = number;
+    }
 }
 
 /// Positions in the words; kept by the frame from one walk to the next.
@@ -137,10 +352,11 @@ pub(crate) struct Layout {
     added: u16,
     stride: usize,
     overflow: bool,
-    /// Replay: the strip, its next triangle, and where the last one that moves on was put in the next strip's list.
+    /// Replay: the strip, its next triangle, the last one that was moved on, and the one that follows it in the next strip's list.
     strip: usize,
     next: u16,
     moved: u16,
+    after: u16,
     /// First word behind the lists of the strips.
     lists: usize,
 }
@@ -295,13 +511,6 @@ impl<'a> Records<'a> {
         S::load(self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
     }
 
-    /// Where a vertex is that the clipper added.
-    #[inline(never)]
-    fn added(&self, index: u16) -> Slot {
-        let (position, _) = self.places(index.into());
-        Slot([self.get(position), self.get(position + 1)])
-    }
-
     /// Adds a vertex to the current draw, for a polygon that the clipper made.
     pub(crate) fn push_vertex(&mut self) -> u16 {
         let index = self.layout.count + usize::from(self.layout.added);
@@ -315,45 +524,47 @@ impl<'a> Records<'a> {
     }
 
     /// Records a triangle whose topmost strip, in this band, is `strip`.
-    pub(crate) fn push_triangle(&mut self, corners: [u16; 3], face: u32, strip: usize) {
-        let number = self.layout.triangles;
-        if self.free() < TRIANGLE || number == NONE {
-            self.layout.overflow = true;
-            return;
+    pub(crate) fn push_triangle(&mut self, [i, j, k]: [u16; 3], face: u32, strip: usize) {
+        let mut triangles = self.parts();
+        if !triangles.push(u32::from(i) | u32::from(j) << 16, k, face, strip) {
+            triangles.overflow();
         }
-        self.layout.triangles += 1;
-        let at = self.triangle_at(number);
-        self.set(at, u32::from(corners[0]) | u32::from(corners[1]) << 16);
-        self.set(at + 1, u32::from(corners[2]) | u32::from(NONE) << 16);
-        self.set(at + 2, face);
-        let list = self.get(strip);
-        let (first, last) = (list as u16, (list >> 16) as u16);
-        if last == NONE {
-            self.set(strip, u32::from(number) | u32::from(number) << 16);
-        } else {
-            self.link(last, number);
-            self.set(strip, u32::from(first) | u32::from(number) << 16);
+        triangles.finish();
+    }
+
+    /// The words taken apart, for a walk over many triangles that adds no vertices.
+    #[inline(never)]
+    pub(crate) fn triangles(&mut self) -> Triangles<'_> {
+        self.parts()
+    }
+
+    #[inline(always)]
+    fn parts(&mut self) -> Triangles<'_> {
+        let Self { words, layout } = self;
+        let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
+        let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
+        let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
+        let places = vertices.get(..VERTEX * layout.count).unwrap_or_default();
+        // Numbers are below that which stands for none.
+        let beyond = rest.len().saturating_sub(TRIANGLE * usize::from(NONE));
+        Triangles {
+            lists,
+            vertices,
+            places: bytemuck::try_cast_slice(places).unwrap_or_default(),
+            triangles: rest.get_mut(beyond..).unwrap_or_default(),
+            count: layout.triangles,
+            layout,
         }
-    }
-
-    fn triangle_at(&self, number: u16) -> usize {
-        self.words.len().wrapping_sub(TRIANGLE * (usize::from(number) + 1))
-    }
-
-    fn link(&mut self, from: u16, to: u16) {
-        let at = self.triangle_at(from) + 1;
-        let word = self.get(at) & 0xFFFF;
-        self.set(at, word | u32::from(to) << 16);
-    }
-
-    fn linked(&self, from: u16) -> u16 {
-        (self.get(self.triangle_at(from) + 1) >> 16) as u16
     }
 
     /// Starts replaying a strip of the band.
     pub(crate) fn begin_replay(&mut self, strip: usize) {
         self.layout.strip = strip;
-        self.layout.next = self.get(strip) as u16;
+        let first = |strip| {
+            let [first, _]: [u16; 2] = bytemuck::cast(self.get(strip));
+            first
+        };
+        (self.layout.next, self.layout.after) = (first(strip), first(strip + 1));
         self.layout.moved = NONE;
         self.layout.front = self.layout.lists;
     }
@@ -374,51 +585,25 @@ impl<'a> Records<'a> {
         self.layout.front == self.layout.vertices
     }
 
-    /// The next triangle of the current draw in this strip, which ends at row `end`. If it reaches beyond, it moves on to the next
-    /// strip.
-    #[inline(never)]
-    pub(crate) fn replay_triangle(&mut self, end: i32) -> Option<TriangleRecord> {
-        let number = self.layout.next;
-        if number == NONE || u32::from(number) >= self.get(self.layout.header + 2) {
-            return None;
-        }
-        let Some([a, b, face, ..]) = self.words.get(self.triangle_at(number)..) else { return None };
-        let (corners, face) = ([*a as u16, (*a >> 16) as u16, *b as u16], *face);
-        self.layout.next = (*b >> 16) as u16;
-        let positions = self.positions();
-        let screen = |index: u16| match positions.get(usize::from(index)) {
-            Some(words) => Slot(*words).screen(),
-            None => self.added(index).screen(),
-        };
-        let v = [screen(corners[0]), screen(corners[1]), screen(corners[2])];
-        if first_centre(v[0].y.max(v[1].y).max(v[2].y)) > end {
-            self.move_on(number);
-        }
-        Some(TriangleRecord { v, corners, face })
+    /// How many triangles have been recorded.
+    pub(crate) const fn triangle_count(&self) -> u16 {
+        self.layout.triangles
     }
 
-    /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
-    ///
-    /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
-    #[inline(never)]
-    fn move_on(&mut self, number: u16) {
-        let strip = self.layout.strip + 1;
-        if strip >= self.layout.lists {
-            return;
-        }
-        let list = self.get(strip);
-        let mut before = self.layout.moved;
-        let mut after = if before == NONE { list as u16 } else { self.linked(before) };
-        while after < number {
-            before = after;
-            after = self.linked(after);
-        }
-        self.link(number, after);
-        if before == NONE {
-            self.set(strip, list & 0xFFFF_0000 | u32::from(number));
-        } else {
-            self.link(before, number);
-        }
-        self.layout.moved = number;
+    /// The words of the triangles from a number on, the newest first.
+    #[inline]
+    pub(crate) fn triangles_from(&mut self, first: u16) -> &mut [u32] {
+        let end = self.triangle_at(first).wrapping_add(TRIANGLE);
+        let start = self.triangle_at(self.layout.triangles).wrapping_add(TRIANGLE);
+        self.words.get_mut(start..end).unwrap_or_default()
+    }
+
+    fn triangle_at(&self, number: u16) -> usize {
+        self.words.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
+    }
+
+    /// The number behind that of the last triangle of the draw that was found.
+    pub(crate) fn last_triangle(&self) -> u32 {
+        self.get(self.layout.header + 2)
     }
 }

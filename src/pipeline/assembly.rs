@@ -1,6 +1,6 @@
 //! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
 
-use super::scan::{Culling, Scan, Seen, Stop};
+use super::scan::{Culling, Mark, Scan, Seen, Stop};
 use super::triangle::Chosen;
 use super::{Scene, State};
 use crate::fragment::Shader;
@@ -81,13 +81,32 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Where places are kept: those that may be seen.
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
-        let mut scan = Scan::new(self.mesh, numbers);
+        let mut scan = Scan::new(self.mesh, numbers, self.culling, self.scene.is_recording());
         while !self.scene.overflowed() {
-            let stop = scan.next(&self.scene.records, self.culling, &self.clip, self.scene.stats);
+            let first = self.scene.records.triangle_count();
+            let Scene { records, strips, band, stats, .. } = &mut *self.scene;
+            let stop = scan.next(records, strips, band.start, &self.clip, stats);
+            if self.scene.records.triangle_count() != first {
+                self.shade_faces(first);
+            }
             if stop == Stop::End {
                 break;
             }
             self.shade_stop(stop, &mut scan.seen);
+        }
+    }
+
+    /// Takes the place of marks in the records.
+    #[inline(never)]
+    fn shade_faces(&mut self, first: u16) {
+        let Self { scene, state, mesh, shader, .. } = self;
+        let mut records = scene.records.triangles_from(first);
+        while let Some(([corners, last, word], rest)) = records.split_first_chunk_mut() {
+            let (number, area) = Mark(*word).parts();
+            let [k, _] = bytemuck::cast(*last);
+            let corners = [*corners as u16, (*corners >> 16) as u16, k];
+            *word = shader.face(&Face::new(mesh, number, corners, state.side(area)));
+            records = rest;
         }
     }
 
@@ -104,7 +123,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if S::CULL_DISTANCES > 0 && self.is_culled_by_distance([i, j, k]) {
                 self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             } else {
-                (seen.number, seen.corners) = (number, [i, j, k]);
+                (seen.number, seen.corners) = (number as u16, [i, j, k]);
                 self.shade_stop(Stop::Unplaced, &mut seen);
             }
         }
@@ -164,7 +183,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     #[inline(never)]
     fn face(&self, seen: &Seen) -> u32 {
-        self.shader.face(&Face::new(self.mesh, seen.number, seen.corners, self.state.side(seen.area)))
+        self.shader.face(&Face::new(self.mesh, seen.number.into(), seen.corners, self.state.side(seen.area)))
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
@@ -184,12 +203,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let stage = VertexStage { mesh, shader: *shader, transform };
         let (places, varyings) = scene.records.vertices_mut();
         scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
-        for (index, place) in places.iter_mut().enumerate() {
-            *place = stage.place(index).words();
-            if S::WORDS > 0 {
-                let words = varyings.get_mut(index * S::WORDS..).and_then(|rest| rest.get_mut(..S::WORDS));
-                S::store(&stage.varyings(index), words.unwrap_or_default());
-            }
+        match transform.short_points(&mesh.data().positions) {
+            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => place_all(transform, points, places),
+            _ => stage.place_each(places),
+        }
+        if S::WORDS > 0 {
+            stage.store_each(varyings);
         }
     }
 
@@ -411,6 +430,15 @@ pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     S::load(words)
 }
 
+/// Where all vertices of a mesh are, by the short path.
+#[inline(never)]
+fn place_all(transform: &Transform, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
+    for (place, point) in places.iter_mut().zip(points) {
+        // Read again each time: to keep all of it at hand there are too few registers.
+        *place = Slot::new(&core::hint::black_box(transform).place_short(*point).0).words();
+    }
+}
+
 /// What the vertex stage works with.
 struct VertexStage<'s, S> {
     mesh: &'s Mesh<'s>,
@@ -435,6 +463,23 @@ impl<S: VertexShader> VertexStage<'_, S> {
         slot
     }
 
+    #[inline(never)]
+    fn place_each(&self, places: &mut [[u32; 2]]) {
+        for (index, place) in places.iter_mut().enumerate() {
+            *place = self.place(index).words();
+        }
+    }
+
+    /// Packs the varyings of all vertices.
+    #[inline(never)]
+    fn store_each(&self, mut words: &mut [u32]) {
+        let mut index = 0;
+        while let Some((some, rest)) = words.split_at_mut_checked(S::WORDS) {
+            S::store(&self.varyings(index), some);
+            (index, words) = (index + 1, rest);
+        }
+    }
+
     #[inline]
     fn transformed(&self, index: usize) -> ClipVertex {
         if S::DISPLACES {
@@ -457,7 +502,12 @@ impl<S: VertexShader> VertexStage<'_, S> {
     fn varyings(&self, index: usize) -> S::Varyings {
         let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
         if S::Varyings::PERSPECTIVE > 0 {
-            varyings.set_inverse_w(inverse_w(&self.transformed(index)));
+            let w = if S::DISPLACES {
+                self.transformed(index).w
+            } else {
+                self.transform.w(&self.mesh.data().positions, index)
+            };
+            varyings.set_inverse_w(inverse_w(&ClipVertex { w, ..ClipVertex::default() }));
         }
         varyings
     }
