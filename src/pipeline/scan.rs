@@ -1,4 +1,5 @@
-//! Stages 2 and 5: a mesh's triangles one after the other, without those that cannot be seen. The same code for all shaders.
+//! Stages 2 and 5 to 7: a mesh's triangles one after the other, without those that cannot be seen, into the records. The same
+//! code for all shaders.
 
 use super::{Cull, State, Winding};
 use crate::geometry::{Mesh, Outcode, ScreenVertex, Side, Topology, signed_area, small};
