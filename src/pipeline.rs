@@ -1,4 +1,4 @@
-//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7 (2 and 5 in `scan`, for
+//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7 (2 and 5 to 7 in `scan`, for
 //! all shaders alike), in `triangle` the rest; `lines` and `stroke` do the same for lines and points, `canvas` for what is given
 //! on the screen.
 //!
@@ -389,8 +389,9 @@ fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &View
             DepthScale::Uniform { far } => far.to_bits() as u32,
         },
     ];
-    // FNV-1a over words instead of bytes.
-    let matrix = mvp.rows();
-    let words = bytemuck::cast_slice::<i64, u32>(matrix.as_flattened()).iter().chain(&rest);
-    words.fold(0x811C_9DC5, |hash, word| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(11))
+    // FNV-1a over words instead of bytes, two of them at once where there are many.
+    let step = |hash: u32, word: u32| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(11);
+    let entries = mvp.rows().as_flattened().iter();
+    let hash = entries.fold(0x811C_9DC5, |hash, entry| step(step(hash, *entry as u32), (*entry >> 32) as u32));
+    rest.iter().fold(hash, |hash, word| step(hash, *word))
 }

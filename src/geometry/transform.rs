@@ -35,10 +35,10 @@ pub struct Transform {
 ///
 /// # Format
 /// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵. The short path, for
-/// quantized positions q, computes Σ m q / 2¹⁵ + t, rounded to nearest, with |m| < 2³⁰ and |t| < 2³⁰. Small cores have m = 2¹⁵ high
-/// + low, low in -2¹⁴..2¹⁴, and t in the last entry, with 15 fractional bits and the half that rounds in its low part: that is for
-/// q = 1. Cores that multiply to 64 bits have 2 m in `low` and 2³² t in `translation`: of Σ 2 m 2¹⁶ q, the upper word is what is
-/// asked for.
+/// quantized positions q, computes Σ m q / 2¹⁵ + t, rounded to nearest, with |m| < 2³⁰ and |t| < 2³⁰. On small cores, m is
+/// 2¹⁵ high + low with low in -2¹⁴..2¹⁴, and t is the last entry, for q = 1: its low part has 15 fractional bits and the half that
+/// rounds. Cores that multiply to 64 bits have 2 m in `low` and 2³² t in `translation`: the upper word of the sum with
+/// Σ 2 m 2¹⁶ q is what is asked for.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
     high: [i32; 4],

@@ -1,4 +1,5 @@
-//! Stages 2 and 5: a mesh's triangles one after the other, without those that cannot be seen. The same code for all shaders.
+//! Stages 2 and 5 to 7: a mesh's triangles one after the other, without those that cannot be seen, into the records. The same
+//! code for all shaders.
 
 use super::{Cull, State, Winding};
 use crate::geometry::{Mesh, Outcode, ScreenVertex, Side, Topology, signed_area, small};
@@ -329,7 +330,7 @@ mod tests {
             let data = MeshData { indices: (case % 4 > 1).then_some(&indices[..]), ..MeshData::new(positions) };
             let mesh = Mesh::new(data).expect("a mesh");
             let rows = 32..32 + 16 * STRIPS as i32;
-            let clip = [PixelRect { x: 0..320, y: rows.clone() }, PixelRect { x: 50..60, y: 100..90 }]
+            let clip = [PixelRect { x: 0..320, y: rows.clone() }, PixelRect { x: 50..60, y: 600..rows.start }]
                 [usize::from(case % 7 == 6)]
             .clone();
             let places: Vec<_> = (0..COUNT).flat_map(|_| random.places()).collect();
