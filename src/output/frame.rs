@@ -250,7 +250,6 @@ impl Engine<'_> {
     }
 
     /// A walk over the scene; the number of the draw that differed from the walk before.
-    #[inline(never)]
     fn walk<F: Framebuffer>(
         &mut self,
         progress: &mut Progress,
@@ -513,7 +512,6 @@ impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Frame<'_, '_, P, DE
 /// Draws the next strip of a frame into `color`, if there is one.
 ///
 /// The closure is called through a pointer, once a strip or so: whatever many frames draw, this is linked once.
-#[inline(never)]
 fn next_strip<'c, P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
     engine: &mut Engine<'_>,
     progress: &mut Progress,
