@@ -289,6 +289,42 @@ fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u3
     0
 }
 
+/// [`few_left`] for less than a run.
+#[inline(never)]
+pub(super) fn left_of_few<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u32, dz_dx: i32) -> usize {
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    macro_rules! test {
+        ($($left:literal $depth:ident)*) => {
+            let Some(([$($depth),*], rest)) = core::mem::take(&mut depths).split_first_chunk_mut() else { return 0 };
+            depths = rest;
+            $(
+                let near = (z >> 16) as u16;
+                if !test.passes(near, *$depth) {
+                    return depths.len() + $left;
+                }
+                test.write(near, $depth);
+                z = z.wrapping_add_signed(dz_dx);
+            )*
+        };
+    }
+    if depths.len() >= 8 {
+        test!(8 a 7 b 6 c 5 d 4 e 3 f 2 g 1 h);
+    }
+    if depths.len() >= 4 {
+        test!(4 a 3 b 2 c 1 d);
+    }
+    if depths.len() >= 2 {
+        test!(2 a 1 b);
+    }
+    if depths.is_empty() {
+        // 0, where it is at hand.
+        return depths.len();
+    }
+    test!(1 a);
+    let _ = (depths, z);
+    0
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,12 +1,13 @@
 //! Colours a vertex, interpolated over the triangle.
 
-use super::depth::passing;
+use super::depth::{left_of_few, passing};
 use super::dither::{spread, spread_step};
 use super::flat::channels;
 use super::luma::{luma_span, weighted};
 use super::shader::fragments;
-use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
+use super::{DepthTest, Fragment, Fragments, NoDepth, PixelFormat, Shader, Steps};
 use crate::geometry::{Corner, Light, Lit, VertexShader};
+use crate::math::SMALL_CORE;
 use core::hint::black_box;
 use embedded_graphics_core::pixelcolor::Rgb888;
 
@@ -115,18 +116,13 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
 
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
-        match span {
-            // A line's pixel, or a tip of a triangle.
-            Fragments { color: [color], depth: [depth], z, varyings, position, .. } if P::PACKED => {
-                let mut pen = Pen { z, dz_dx: 0, word: word(spread::<P>(varyings)), step: 0, mask: P::packed_mask() };
-                pen.draw::<P, D>(test, P::dither(position)[0], color, depth);
-            }
-            span if P::PACKED => packed_span(span, test),
-            span if P::IS_LUMA => {
-                let [step, _] = span.steps.words;
-                luma_span(span, step, test);
-            }
-            span => fragments(self, face, span, test),
+        if P::PACKED {
+            packed_span(span, test);
+        } else if P::IS_LUMA {
+            let [step, _] = span.steps.words;
+            luma_span(span, step, test);
+        } else {
+            fragments(self, face, span, test);
         }
     }
 }
@@ -233,77 +229,192 @@ const LONG: usize = 512;
 /// more, over [`LONG`] pixels off by less than 2⁻⁷. With the rounding of the word it is below 0.39. Squeezed channels are
 /// off by at most 1/2, and by 1/16 from the records (1/8 for red, whose word is finer): in all, within 1 of 255 before the
 /// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
-    if span.color.len() > LONG {
-        return long_span(span, test);
+    let Fragments { color, depth, z, varyings, steps, position } = span;
+    let word = word(spread::<P>(varyings));
+    let addends = P::dither(position);
+    if let ([color], [depth]) = (&mut *color, &mut *depth) {
+        // A line's pixel, or a tip of a triangle.
+        Pen { z, dz_dx: 0, word, step: 0, mask: P::packed_mask() }.draw::<P, D>(test, addends[0], color, depth);
+    } else if color.len() < RUN {
+        few::<P, D>(test, depth, z, steps, color, word, addends);
+    } else {
+        // Not as a structure: it would be in memory for short spans, too.
+        let [r, g, b] = varyings;
+        runs::<P, D>(test, depth, z, steps, color, word, addends, r, g, b);
     }
-    let Fragments { mut color, depth, z, varyings, steps, position } = span;
+}
+
+/// The word of changes that are [`rounded`].
+#[inline(always)]
+const fn whole(changes: [i32; 3]) -> u32 {
+    word(changes)
+}
+
+/// What leads from the end of the second group to the first pixel of the third.
+#[inline(always)]
+fn middle<P: PixelFormat>(steps: &Steps<[i32; 3]>) -> u32 {
+    let [step, correction] = steps.words;
+    let [dr, dg, db] = steps.d_dx;
+    let eight = |channel, step| rounded(channel, spread_step::<P>(channel, step).wrapping_mul(2 * GROUP as i32));
+    let group = step.wrapping_mul(GROUP as u32).wrapping_add(correction);
+    whole([eight(0, dr), eight(1, dg), eight(2, db)]).wrapping_sub(group << 1).wrapping_add(correction)
+}
+
+/// Draws a span of at least a run.
+#[expect(clippy::too_many_arguments, reason = "see where it is called")]
+#[inline(never)]
+fn runs<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    mut color: &mut [P::Raw],
+    word: u32,
+    addends: &[u32; 8],
+    r: i32,
+    g: i32,
+    b: i32,
+) {
+    if color.len() > LONG {
+        return long_span::<P, D>(test, depth, z, steps, color, addends, [r, g, b]);
+    }
     let Some(mut depth) = depth.get_mut(..color.len()) else { return };
     let [step, correction] = steps.words;
-    let addends = P::dither(position);
-    let first = spread::<P>(varyings);
-    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(first), step, mask: P::packed_mask() };
-    // What leads from the end of the second group to the first pixel of the third.
-    let mut middle = correction;
-    if color.len() > 2 * GROUP {
-        let [dr, dg, db] = steps.d_dx;
-        let of_run = |channel, step| spread_step::<P>(channel, step).wrapping_mul(RUN as i32);
-        let [r, g, b] = [of_run(0, dr), of_run(1, dg), of_run(2, db)];
-        let eight = word([rounded(0, r >> 1), rounded(1, g >> 1), rounded(2, b >> 1)]);
-        let group = step.wrapping_mul(GROUP as u32).wrapping_add(correction);
-        middle = eight.wrapping_sub(group << 1).wrapping_add(correction);
-        let [hr, hg, hb] = LOW_HALVES;
-        let run = [r.wrapping_add(hr), g.wrapping_add(hg), b.wrapping_add(hb)];
-        let (run, run_low) = (word(run), low(run));
-        let mut lower = low(first);
-        while color.len() >= RUN {
-            let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<RUN>() else { return };
-            color = rest;
-            let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
-            depth = rest;
-            let passed = passing(test, depths, pen.z, pen.dz_dx);
-            if passed == RUN {
-                pen.colors::<P>([correction, middle], addends, colors);
-            } else {
-                // A copy, so that the pen itself need not be in memory.
-                Pen { ..pen }.some::<P, D>(test, passed, [correction, middle], addends, colors, depths);
-                // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
-                pen.dz_dx = black_box(pen.dz_dx);
-            }
-            pen.z = pen.z.wrapping_add_signed(pen.dz_dx.wrapping_mul(RUN as i32));
-            lower = lower.wrapping_add(run_low);
-            let carries = lower >> CARRY & UNITS;
-            lower = lower.wrapping_sub(carries << CARRY);
-            pen.word = pen.word.wrapping_add(run).wrapping_add(carries);
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, word, step, mask: P::packed_mask() };
+    let middle = middle::<P>(steps);
+    let [dr, dg, db] = steps.d_dx;
+    let of_run =
+        |channel, step| spread_step::<P>(channel, step).wrapping_mul(RUN as i32).wrapping_add(LOW_HALVES[channel]);
+    let run = [of_run(0, dr), of_run(1, dg), of_run(2, db)];
+    let (run, run_low) = (self::word(run), low(run));
+    let mut lower = low(spread::<P>([r, g, b]));
+    while color.len() >= RUN {
+        let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<RUN>() else { return };
+        color = rest;
+        let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
+        depth = rest;
+        let passed = passing(test, depths, pen.z, pen.dz_dx);
+        if passed == RUN {
+            pen.colors::<P>([correction, middle], addends, colors);
+        } else {
+            some::<P, D>(test, depths, pen.z, steps, colors, pen.word, addends, RUN - passed);
+            // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
+            pen.dz_dx = black_box(pen.dz_dx);
+        }
+        pen.z = pen.z.wrapping_add_signed(pen.dz_dx.wrapping_mul(RUN as i32));
+        lower = lower.wrapping_add(run_low);
+        let carries = lower >> CARRY & UNITS;
+        lower = lower.wrapping_sub(carries << CARRY);
+        pen.word = pen.word.wrapping_add(run).wrapping_add(carries);
+    }
+    if !color.is_empty() {
+        few::<P, D>(test, depth, pen.z, steps, color, pen.word, addends);
+    }
+}
+
+/// Draws less than a run.
+#[inline(always)]
+fn few<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    word: u32,
+    addends: &[u32; 8],
+) {
+    if !SMALL_CORE {
+        few_at_once::<P, D>(test, depth, z, steps, color, word, addends);
+    } else if !D::ENABLED {
+        few_colors::<P>(color, word, steps, addends);
+    } else {
+        // Depths first and colours then: each with all of its values, and its parameters, in registers.
+        match left_of_few(test, depth, z, steps.dz_dx) {
+            0 => few_colors::<P>(color, word, steps, addends),
+            left => some::<P, D>(test, depth, z, steps, color, word, addends, left),
         }
     }
-    let groups = color.len() / GROUP;
-    let mut colors = color.chunks_exact_mut(GROUP);
-    let mut depths = depth.chunks_exact_mut(GROUP);
-    for (k, group) in (&mut colors).zip(&mut depths).enumerate() {
-        // Hidden from the compiler: it would prepare all multiples of the step, and spill them.
-        pen.dz_dx = black_box(pen.dz_dx);
-        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
-        let ([a, b, c, d], [az, bz, cz, dz]) = group else { return };
-        pen.draw::<P, D>(test, addend::<P>(addends, GROUP * k), a, az);
-        pen.draw::<P, D>(test, addend::<P>(addends, GROUP * k + 1), b, bz);
-        pen.draw::<P, D>(test, addend::<P>(addends, GROUP * k + 2), c, cz);
-        pen.draw::<P, D>(test, addend::<P>(addends, GROUP * k + 3), d, dz);
-        pen.word = pen.word.wrapping_add(if k == 1 { middle } else { correction });
-    }
-    for (k, (color, depth)) in colors.into_remainder().iter_mut().zip(depths.into_remainder()).enumerate() {
-        pen.draw::<P, D>(test, addend::<P>(addends, GROUP * groups + k), color, depth);
+}
+
+/// Colours less than a run.
+#[inline(never)]
+fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
+    let mut nothing = [(); usize::MAX];
+    let Some(nothing) = nothing.get_mut(..color.len()) else { return };
+    let [step, _] = steps.words;
+    Pen { z: 0, dz_dx: 0, word, step, mask: P::packed_mask() }
+        .few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
+}
+
+/// Tests and colours less than a run.
+#[inline(never)]
+fn few_at_once<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    word: u32,
+    addends: &[u32; 8],
+) {
+    let Some(depth) = depth.get_mut(..color.len()) else { return };
+    let [step, _] = steps.words;
+    Pen { z, dz_dx: steps.dz_dx, word, step, mask: P::packed_mask() }.few::<P, D>(test, steps, addends, color, depth);
+}
+
+/// Draws a run or less, of which the depths have been tested but for the last ones.
+#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
+#[cold]
+#[inline(never)]
+fn some<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depths: &mut [D::Stored],
+    mut z: u32,
+    steps: &Steps<[i32; 3]>,
+    colors: &mut [P::Raw],
+    mut word: u32,
+    addends: &[u32; 8],
+    left: usize,
+) {
+    let [step, correction] = steps.words;
+    let (dz_dx, mask) = (steps.dz_dx, P::packed_mask());
+    let passed = depths.len().wrapping_sub(left);
+    for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
+        if k % GROUP == 0 && k > 0 {
+            word = word.wrapping_add(if k == 2 * GROUP { middle::<P>(steps) } else { correction });
+        }
+        let near = (z >> 16) as u16;
+        if k < passed || test.passes(near, *depth) {
+            test.write(near, depth);
+            *color = P::from_packed(word.wrapping_add(addend::<P>(addends, k)), mask);
+        }
+        z = z.wrapping_add_signed(dz_dx);
+        word = word.wrapping_add(step);
     }
 }
 
 /// A span part by part.
 #[cold]
 #[inline(never)]
-fn long_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
-    let Fragments { color, depth, mut z, mut varyings, steps, position } = span;
+fn long_span<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    mut z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    addends: &[u32; 8],
+    mut varyings: [i32; 3],
+) {
     for (color, depth) in color.chunks_mut(LONG).zip(depth.chunks_mut(LONG)) {
-        packed_span::<P, D>(Fragments { color, depth, z, varyings, steps, position }, test);
+        let word = word(spread::<P>(varyings));
+        if color.len() < RUN {
+            few::<P, D>(test, depth, z, steps, color, word, addends);
+        } else {
+            let [r, g, b] = varyings;
+            runs::<P, D>(test, depth, z, steps, color, word, addends, r, g, b);
+        }
         z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(LONG as i32));
         for (value, step) in varyings.iter_mut().zip(&steps.d_dx) {
             *value = value.wrapping_add(step.wrapping_mul(LONG as i32));
@@ -360,38 +471,57 @@ impl Pen {
         let _ = word;
     }
 
-    /// Draws a run, of which the first depths have been tested.
-    #[cold]
-    #[inline(never)]
-    fn some<P: PixelFormat, D: DepthTest>(
-        &self,
+    /// Draws less than a run.
+    #[inline(always)]
+    fn few<P: PixelFormat, D: DepthTest>(
+        &mut self,
         test: D,
-        passed: usize,
-        [correction, middle]: [u32; 2],
+        steps: &Steps<[i32; 3]>,
         addends: &[u32; 8],
-        colors: &mut [P::Raw; RUN],
-        depths: &mut [D::Stored; RUN],
+        mut color: &mut [P::Raw],
+        mut depth: &mut [D::Stored],
     ) {
-        let Self { mut z, mut word, .. } = *self;
-        for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
-            if k % GROUP == 0 && k > 0 {
-                word = word.wrapping_add(if k == 2 * GROUP { middle } else { correction });
-            }
-            let near = (z >> 16) as u16;
-            if k < passed || test.passes(near, *depth) {
-                test.write(near, depth);
-                *color = P::from_packed(word.wrapping_add(addend::<P>(addends, k)), self.mask);
-            }
-            z = z.wrapping_add_signed(self.dz_dx);
-            word = word.wrapping_add(self.step);
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        macro_rules! draw {
+            ($first:ident $($k:literal $color:ident $depth:ident)*) => {
+                let Some(([$($color),*], rest)) = core::mem::take(&mut color).split_first_chunk_mut() else { return };
+                color = rest;
+                let Some(([$($depth),*], rest)) = core::mem::take(&mut depth).split_first_chunk_mut() else { return };
+                depth = rest;
+                $( self.draw::<P, D>(test, addend::<P>(addends, $first + $k), $color, $depth); )*
+            };
         }
+        let [_, correction] = steps.words;
+        let mut first = 0;
+        if color.len() >= 2 * GROUP {
+            draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
+            self.word = self.word.wrapping_add(correction);
+            draw!(first 4 a az 5 b bz 6 c cz 7 d dz);
+            if color.is_empty() {
+                return;
+            }
+            self.word = self.word.wrapping_add(middle::<P>(steps));
+        }
+        if color.len() >= GROUP {
+            draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
+            self.word = self.word.wrapping_add(correction);
+            first = GROUP;
+        }
+        if color.len() >= 2 {
+            draw!(first 0 a az 1 b bz);
+            first += 2;
+        }
+        if !color.is_empty() {
+            draw!(first 0 a az);
+        }
+        let _ = (color, depth);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fragment::{LessWrite, Steps};
+    use crate::fragment::LessWrite;
     use crate::geometry::Side;
     use embedded_graphics_core::pixelcolor::Rgb565;
 
