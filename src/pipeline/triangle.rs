@@ -131,11 +131,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             area,
             face,
             depth: PlaneEquation::default(),
-            corner: S::Varyings::ZERO,
-            d_dy: S::Varyings::ZERO,
+            // Not what they are going to be; but zeros, all in a row, would be a call.
+            corner: varyings[0],
+            d_dy: varyings[0],
             steps: Steps {
                 dz_dx: 0,
-                d_dx: S::Varyings::ZERO,
+                d_dx: varyings[0],
                 words: [0; 2],
                 side: self.state.side(area),
                 level: 0,
