@@ -181,17 +181,25 @@ const fn rounded(channel: usize, change: i32) -> i32 {
 /// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next.
 #[inline(never)]
 pub(super) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
-    let mut one = [0; 3];
-    let mut group = [0; 3];
-    for (k, (value, &step)) in rgb.iter_mut().zip(d_dx).enumerate() {
-        let step = spread_step::<P>(k, step);
-        let (four, eight) = (step.wrapping_mul(GROUP as i32), step.wrapping_mul(2 * GROUP as i32));
-        (one[k], group[k]) = (rounded(k, step), rounded(k, four));
-        let lost = 3 * step.wrapping_sub(one[k]) + four.wrapping_sub(group[k]) + eight.wrapping_sub(rounded(k, eight));
-        *value = value.wrapping_add(half_unit(k) + (lost >> 1));
-    }
-    let step = word(one);
-    [step, word(group).wrapping_sub(step.wrapping_mul(GROUP as u32))]
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+    let ([r, g, b], [dr, dg, db]) = (rgb, d_dx);
+    let (r_one, r_group) = settle::<P>(0, r, *dr);
+    let (g_one, g_group) = settle::<P>(1, g, *dg);
+    let (b_one, b_group) = settle::<P>(2, b, *db);
+    let step = word([r_one, g_one, b_one]);
+    [step, word([r_group, g_group, b_group]).wrapping_sub(step.wrapping_mul(GROUP as u32))]
+}
+
+/// [`prepare`] for a channel: moves it, and yields the changes of a pixel and of a group.
+#[inline(always)]
+fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> (i32, i32) {
+    let step = spread_step::<P>(channel, step);
+    let (four, eight) = (step.wrapping_mul(GROUP as i32), step.wrapping_mul(2 * GROUP as i32));
+    let (one, group) = (rounded(channel, step), rounded(channel, four));
+    let kept = one.wrapping_mul(3).wrapping_add(group).wrapping_add(rounded(channel, eight));
+    let lost = step.wrapping_mul(15).wrapping_sub(kept);
+    *value = value.wrapping_add(half_unit(channel) + (lost >> 1));
+    (one, group)
 }
 
 /// What a word of channels leaves out, 9 or 10 bits of each, with a bit above for what they carry into the word.
