@@ -76,12 +76,16 @@ impl VertexShader for Gouraud {
 
     #[inline]
     fn vertex(&self, vertex: &Corner<'_>) -> [i32; 3] {
-        let rgb = match &self.colors {
+        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
+        let [r, g, b] = match &self.colors {
             Colors::One(lit) => lit.shade(vertex.normal()),
             Colors::Lit(light) => light.on(vertex.color()).shade(vertex.normal()),
-            Colors::Unlit => vertex.color().map(|c| i32::from(c) << 8),
+            Colors::Unlit => {
+                let [r, g, b] = vertex.color();
+                [i32::from(r) << 8, i32::from(g) << 8, i32::from(b) << 8]
+            }
         };
-        rgb.map(squeeze)
+        [squeeze(r), squeeze(g), squeeze(b)]
     }
 
     #[inline]
