@@ -58,6 +58,6 @@ pub(super) fn dithered_span<P: PixelFormat, D: DepthTest>(
     let Fragments { color, depth, z, steps, position, .. } = span;
     let [r, g, b] = rgb;
     let varyings = [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)];
-    let steps = &Steps::linear(steps.dz_dx, [0; 3], [0; 2], steps.side);
+    let steps = &Steps::linear(steps.dz_dx, [0; 3], [0; 3], steps.side);
     packed_span::<P, D>(Fragments { color, depth, z, varyings, steps, position }, test);
 }

@@ -108,13 +108,13 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     }
 
     #[inline]
-    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
+    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
         if P::PACKED {
             prepare::<P>(rgb, d_dx)
         } else if P::IS_LUMA {
-            [weighted(*d_dx), 0]
+            [weighted(*d_dx), 0, 0]
         } else {
-            [0; 2]
+            [0; 3]
         }
     }
 
@@ -123,7 +123,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
         if P::PACKED {
             packed_span(span, test);
         } else if P::IS_LUMA {
-            let [step, _] = span.steps.words;
+            let [step, ..] = span.steps.words;
             luma_span(span, step, test);
         } else {
             fragments(self, face, span, test);
@@ -182,28 +182,31 @@ const fn rounded(channel: usize, change: i32) -> i32 {
 }
 
 /// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
-/// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next.
+/// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next: within eight
+/// pixels, and in the middle of a run.
 #[inline(never)]
-pub(super) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
+pub(super) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
     // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
     let ([r, g, b], [dr, dg, db]) = (rgb, d_dx);
-    let (r_one, r_group) = settle::<P>(0, r, *dr);
-    let (g_one, g_group) = settle::<P>(1, g, *dg);
-    let (b_one, b_group) = settle::<P>(2, b, *db);
-    let step = word([r_one, g_one, b_one]);
-    [step, word([r_group, g_group, b_group]).wrapping_sub(step.wrapping_mul(GROUP as u32))]
+    let [r_one, r_four, r_eight] = settle::<P>(0, r, *dr);
+    let [g_one, g_four, g_eight] = settle::<P>(1, g, *dg);
+    let [b_one, b_four, b_eight] = settle::<P>(2, b, *db);
+    let (step, four, eight) =
+        (word([r_one, g_one, b_one]), word([r_four, g_four, b_four]), word([r_eight, g_eight, b_eight]));
+    let correction = four.wrapping_sub(step.wrapping_mul(GROUP as u32));
+    [step, correction, eight.wrapping_sub(four << 1).wrapping_add(correction)]
 }
 
-/// [`prepare`] for a channel: moves it, and yields the changes of a pixel and of a group.
+/// [`prepare`] for a channel: moves it, and yields the changes of one pixel, of four and of eight.
 #[inline(always)]
-fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> (i32, i32) {
+fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i32; 3] {
     let step = spread_step::<P>(channel, step);
-    let (four, eight) = (step.wrapping_mul(GROUP as i32), step.wrapping_mul(2 * GROUP as i32));
-    let (one, group) = (rounded(channel, step), rounded(channel, four));
-    let kept = one.wrapping_mul(3).wrapping_add(group).wrapping_add(rounded(channel, eight));
-    let lost = step.wrapping_mul(15).wrapping_sub(kept);
+    let one = rounded(channel, step);
+    let four = rounded(channel, step.wrapping_mul(GROUP as i32));
+    let eight = rounded(channel, step.wrapping_mul(2 * GROUP as i32));
+    let lost = step.wrapping_mul(15).wrapping_sub(one.wrapping_mul(3).wrapping_add(four).wrapping_add(eight));
     *value = value.wrapping_add(half_unit(channel) + (lost >> 1));
-    (one, group)
+    [one, four, eight]
 }
 
 /// What a word of channels leaves out, 9 or 10 bits of each, with a bit above for what they carry into the word.
@@ -258,22 +261,6 @@ pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [
     }
 }
 
-/// The word of changes that are [`rounded`].
-#[inline(always)]
-const fn whole(changes: [i32; 3]) -> u32 {
-    word(changes)
-}
-
-/// What leads from the end of the second group to the first pixel of the third.
-#[inline(always)]
-fn middle<P: PixelFormat>(steps: &Steps<[i32; 3]>) -> u32 {
-    let [step, correction] = steps.words;
-    let [dr, dg, db] = steps.d_dx;
-    let eight = |channel, step| rounded(channel, spread_step::<P>(channel, step).wrapping_mul(2 * GROUP as i32));
-    let group = step.wrapping_mul(GROUP as u32).wrapping_add(correction);
-    whole([eight(0, dr), eight(1, dg), eight(2, db)]).wrapping_sub(group << 1).wrapping_add(correction)
-}
-
 /// Draws a span of at least a run.
 #[expect(clippy::too_many_arguments, reason = "see where it is called")]
 #[inline(never)]
@@ -293,9 +280,8 @@ fn runs<P: PixelFormat, D: DepthTest>(
         return long_span::<P, D>(test, depth, z, steps, color, addends, [r, g, b]);
     }
     let Some(mut depth) = depth.get_mut(..color.len()) else { return };
-    let [step, correction] = steps.words;
+    let [step, correction, middle] = steps.words;
     let mut pen = Pen { z, dz_dx: steps.dz_dx, word, step, mask: P::packed_mask() };
-    let middle = middle::<P>(steps);
     let [dr, dg, db] = steps.d_dx;
     let of_run =
         |channel, step| spread_step::<P>(channel, step).wrapping_mul(RUN as i32).wrapping_add(LOW_HALVES[channel]);
@@ -355,7 +341,7 @@ fn few<P: PixelFormat, D: DepthTest>(
 fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
-    let [step, _] = steps.words;
+    let [step, ..] = steps.words;
     Pen { z: 0, dz_dx: 0, word, step, mask: P::packed_mask() }
         .few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
 }
@@ -372,7 +358,7 @@ fn few_at_once<P: PixelFormat, D: DepthTest>(
     addends: &[u32; 8],
 ) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
-    let [step, _] = steps.words;
+    let [step, ..] = steps.words;
     Pen { z, dz_dx: steps.dz_dx, word, step, mask: P::packed_mask() }.few::<P, D>(test, steps, addends, color, depth);
 }
 
@@ -390,12 +376,12 @@ fn some<P: PixelFormat, D: DepthTest>(
     addends: &[u32; 8],
     left: usize,
 ) {
-    let [step, correction] = steps.words;
+    let [step, correction, middle] = steps.words;
     let (dz_dx, mask) = (steps.dz_dx, P::packed_mask());
     let passed = depths.len().wrapping_sub(left);
     for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
         if k % GROUP == 0 && k > 0 {
-            word = word.wrapping_add(if k == 2 * GROUP { middle::<P>(steps) } else { correction });
+            word = word.wrapping_add(if k == 2 * GROUP { middle } else { correction });
         }
         let near = (z >> 16) as u16;
         if k < passed || test.passes(near, *depth) {
@@ -503,7 +489,7 @@ impl Pen {
                 $( self.draw::<P, D>(test, addend::<P>(addends, $first + $k), $color, $depth); )*
             };
         }
-        let [_, correction] = steps.words;
+        let [_, correction, middle] = steps.words;
         let mut first = 0;
         if color.len() >= 2 * GROUP {
             draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
@@ -512,7 +498,7 @@ impl Pen {
             if color.is_empty() {
                 return;
             }
-            self.word = self.word.wrapping_add(middle::<P>(steps));
+            self.word = self.word.wrapping_add(middle);
         }
         if color.len() >= GROUP {
             draw!(first 0 a az 1 b bz 2 c cz 3 d dz);

@@ -138,8 +138,8 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     }
 
     #[inline]
-    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
-        if Format::PACKED { prepare::<Format>(rgb, d_dx) } else { [0; 2] }
+    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
+        if Format::PACKED { prepare::<Format>(rgb, d_dx) } else { [0; 3] }
     }
 
     #[inline]

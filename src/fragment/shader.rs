@@ -48,7 +48,7 @@ pub struct Steps<V: Varyings> {
     /// What to make of perspective-correct ones.
     pub correction: V::Correction,
     /// What [`Shader::prepare`] made of them.
-    pub words: [u32; 2],
+    pub words: [u32; 3],
     /// Which side of the triangle is seen.
     pub side: Side,
     /// What [`Shader::level`] made of it.
@@ -58,7 +58,7 @@ pub struct Steps<V: Varyings> {
 impl<V: Varyings> Steps<V> {
     /// Of something that is linear on the screen.
     #[inline]
-    pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 2], side: Side) -> Self {
+    pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 3], side: Side) -> Self {
         Self { dz_dx, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
     }
 }
@@ -87,9 +87,9 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// its pixels, which may be moved (all of its spans will be), and with their changes a pixel. Yields words for the
     /// spans.
     #[inline]
-    fn prepare(&self, varyings: &mut Self::Varyings, d_dx: &Self::Varyings) -> [u32; 2] {
+    fn prepare(&self, varyings: &mut Self::Varyings, d_dx: &Self::Varyings) -> [u32; 3] {
         let _ = (varyings, d_dx);
-        [0; 2]
+        [0; 3]
     }
 
     /// Colours a pixel, or discards the fragment and says `false`. Only what blends with the pixel that is there has to

@@ -137,7 +137,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             steps: Steps {
                 dz_dx: 0,
                 d_dx: varyings[0],
-                words: [0; 2],
+                words: [0; 3],
                 side: self.state.side(area),
                 level: 0,
                 correction: <S::Varyings as Varyings>::Correction::NONE,
