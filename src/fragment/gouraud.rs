@@ -5,7 +5,7 @@ use super::dither::{spread, spread_step};
 use super::flat::channels;
 use super::luma::{luma_span, weighted};
 use super::shader::fragments;
-use super::{DepthTest, Fragment, Fragments, NoDepth, PixelFormat, Shader, Steps};
+use super::{DepthTest, Fragment, Fragments, NoDepth, PixelFormat, Shader, Steps, TriangleSpan};
 use crate::geometry::{Corner, Light, Lit, VertexShader};
 use crate::math::SMALL_CORE;
 use core::hint::black_box;
@@ -129,6 +129,15 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
             fragments(self, face, span, test);
         }
     }
+
+    #[inline(always)]
+    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+        if P::PACKED {
+            packed_triangle_span(span, test);
+        } else {
+            Shader::<P>::span(self, face, span.fragments(), test);
+        }
+    }
 }
 
 /// Channels in one word of the records.
@@ -247,47 +256,141 @@ const LONG: usize = 512;
 #[inline(always)]
 pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
     let Fragments { color, depth, z, varyings, steps, position } = span;
-    let word = word(spread::<P>(varyings));
     let addends = P::dither(position);
+    let word = word(spread::<P>(varyings));
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
-        // A line's pixel, or a tip of a triangle.
+        // A line's pixel.
         Pen { z, dz_dx: 0, word, step: 0, mask: P::packed_mask() }.draw::<P, D>(test, addends[0], color, depth);
     } else if color.len() < RUN {
         few::<P, D>(test, depth, z, steps, color, word, addends);
     } else {
-        // Not as a structure: it would be in memory for short spans, too.
-        let [r, g, b] = varyings;
-        runs::<P, D>(test, depth, z, steps, color, word, addends, r, g, b);
+        runs::<P, D>(test, depth, z, steps, color, varyings, addends);
     }
 }
 
+/// [`packed_span`] of a triangle: of what a short span does not need, nothing is even passed on.
+#[inline(always)]
+pub(super) fn packed_triangle_span<P: PixelFormat, D: DepthTest>(
+    span: TriangleSpan<'_, P, [i32; 3], D::Stored>,
+    test: D,
+) {
+    let TriangleSpan { color, depth, z, steps, position } = span;
+    let (x, y) = position;
+    if let ([color], [depth]) = (&mut *color, &mut *depth) {
+        // A tip.
+        let word = word_at::<P>(steps, x, y);
+        let addends = P::dither(position);
+        Pen { z, dz_dx: 0, word, step: 0, mask: P::packed_mask() }.draw::<P, D>(test, addends[0], color, depth);
+    } else if color.len() >= RUN {
+        runs_at::<P, D>(test, depth, z, steps, color, x, y);
+    } else if !SMALL_CORE {
+        few_at::<P, D>(test, depth, z, steps, color, x, y);
+    } else if !D::ENABLED {
+        few_colors_at::<P>(color, steps, x, y);
+    } else {
+        // See `few`.
+        match left_of_few(test, depth, z, steps.dz_dx) {
+            0 => few_colors_at::<P>(color, steps, x, y),
+            left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
+        }
+    }
+}
+
+/// The word of a pixel. Out of line: a loop over rows would keep all that it takes on the stack.
+#[inline(never)]
+fn word_at<P: PixelFormat>(steps: &Steps<[i32; 3]>, x: i32, y: i32) -> u32 {
+    word(spread::<P>(steps.at((x, y))))
+}
+
+/// [`runs`] from a pixel on.
+#[inline(never)]
+fn runs_at<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    x: i32,
+    y: i32,
+) {
+    runs_here::<P, D>(test, depth, z, steps, color, steps.at((x, y)), P::dither((x, y)));
+}
+
+/// [`few_at_once`] from a pixel on.
+#[inline(never)]
+fn few_at<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    x: i32,
+    y: i32,
+) {
+    few_here::<P, D>(test, depth, z, steps, color, || word(spread::<P>(steps.at((x, y)))), P::dither((x, y)));
+}
+
+/// [`few_colors`] from a pixel on.
+#[inline(never)]
+fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], steps: &Steps<[i32; 3]>, x: i32, y: i32) {
+    few_colors_here::<P>(color, || word(spread::<P>(steps.at((x, y)))), steps, P::dither((x, y)));
+}
+
+/// [`some`] from a pixel on.
+#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
+#[cold]
+#[inline(never)]
+fn some_at<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    x: i32,
+    y: i32,
+    left: usize,
+) {
+    let word = word(spread::<P>(steps.at((x, y))));
+    some::<P, D>(test, depth, z, steps, color, word, P::dither((x, y)), left);
+}
+
 /// Draws a span of at least a run.
-#[expect(clippy::too_many_arguments, reason = "see where it is called")]
 #[inline(never)]
 fn runs<P: PixelFormat, D: DepthTest>(
     test: D,
     depth: &mut [D::Stored],
     z: u32,
     steps: &Steps<[i32; 3]>,
-    mut color: &mut [P::Raw],
-    word: u32,
+    color: &mut [P::Raw],
+    varyings: [i32; 3],
     addends: &[u32; 8],
-    r: i32,
-    g: i32,
-    b: i32,
+) {
+    runs_here::<P, D>(test, depth, z, steps, color, varyings, addends);
+}
+
+#[inline(always)]
+fn runs_here<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    mut color: &mut [P::Raw],
+    varyings: [i32; 3],
+    addends: &[u32; 8],
 ) {
     if color.len() > LONG {
-        return long_span::<P, D>(test, depth, z, steps, color, addends, [r, g, b]);
+        return long_span::<P, D>(test, depth, z, steps, color, varyings, addends);
     }
+    let first = spread::<P>(varyings);
     let Some(mut depth) = depth.get_mut(..color.len()) else { return };
     let [step, correction, middle] = steps.words;
-    let mut pen = Pen { z, dz_dx: steps.dz_dx, word, step, mask: P::packed_mask() };
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(first), step, mask: P::packed_mask() };
     let [dr, dg, db] = steps.d_dx;
     let of_run =
         |channel, step| spread_step::<P>(channel, step).wrapping_mul(RUN as i32).wrapping_add(LOW_HALVES[channel]);
     let run = [of_run(0, dr), of_run(1, dg), of_run(2, db)];
-    let (run, run_low) = (self::word(run), low(run));
-    let mut lower = low(spread::<P>([r, g, b]));
+    let (run, run_low) = (word(run), low(run));
+    let mut lower = low(first);
     while color.len() >= RUN {
         let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<RUN>() else { return };
         color = rest;
@@ -339,11 +442,16 @@ fn few<P: PixelFormat, D: DepthTest>(
 /// Colours less than a run.
 #[inline(never)]
 fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
+    few_colors_here::<P>(color, || word, steps, addends);
+}
+
+#[inline(always)]
+fn few_colors_here<P: PixelFormat>(color: &mut [P::Raw], word: impl FnOnce() -> u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
+    let mask = P::packed_mask();
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
     let [step, ..] = steps.words;
-    Pen { z: 0, dz_dx: 0, word, step, mask: P::packed_mask() }
-        .few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
+    Pen { z: 0, dz_dx: 0, word: word(), step, mask }.few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
 }
 
 /// Tests and colours less than a run.
@@ -357,9 +465,22 @@ fn few_at_once<P: PixelFormat, D: DepthTest>(
     word: u32,
     addends: &[u32; 8],
 ) {
+    few_here::<P, D>(test, depth, z, steps, color, || word, addends);
+}
+
+#[inline(always)]
+fn few_here<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    word: impl FnOnce() -> u32,
+    addends: &[u32; 8],
+) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
     let [step, ..] = steps.words;
-    Pen { z, dz_dx: steps.dz_dx, word, step, mask: P::packed_mask() }.few::<P, D>(test, steps, addends, color, depth);
+    Pen { z, dz_dx: steps.dz_dx, word: word(), step, mask: P::packed_mask() }.few::<P, D>(test, steps, addends, color, depth);
 }
 
 /// Draws a run or less, of which the depths have been tested but for the last ones.
@@ -402,16 +523,14 @@ fn long_span<P: PixelFormat, D: DepthTest>(
     mut z: u32,
     steps: &Steps<[i32; 3]>,
     color: &mut [P::Raw],
-    addends: &[u32; 8],
     mut varyings: [i32; 3],
+    addends: &[u32; 8],
 ) {
     for (color, depth) in color.chunks_mut(LONG).zip(depth.chunks_mut(LONG)) {
-        let word = word(spread::<P>(varyings));
         if color.len() < RUN {
-            few::<P, D>(test, depth, z, steps, color, word, addends);
+            few::<P, D>(test, depth, z, steps, color, word(spread::<P>(varyings)), addends);
         } else {
-            let [r, g, b] = varyings;
-            runs::<P, D>(test, depth, z, steps, color, word, addends, r, g, b);
+            runs::<P, D>(test, depth, z, steps, color, varyings, addends);
         }
         z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(LONG as i32));
         for (value, step) in varyings.iter_mut().zip(&steps.d_dx) {

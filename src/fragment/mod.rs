@@ -90,7 +90,7 @@ pub use perspective::Corrected;
 pub use pixel::PixelFormat;
 pub use sample::{Bilinear, Clamp, Filter, Mirror, Nearest, Repeat, Wrap};
 pub use shaded::{PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
-pub use shader::{Fragment, Fragments, Shader, Steps};
+pub use shader::{Fragment, Fragments, Shader, Steps, TriangleSpan};
 pub use texel::{Gray8Texel, Keyed, MaskTexel, PaletteTexel, Rgb565LeTexel, Rgb565Texel, Rgb888Texel, TexelFormat};
 pub use texture::{Image, Texture, TextureError, Tile, WithAlpha};
 pub use textured::{LitTexture, Textured};

@@ -43,6 +43,10 @@ pub struct Fragments<'a, P: PixelFormat, V: Varyings, Z> {
 pub struct Steps<V: Varyings> {
     /// Change of depth a pixel, modulo 2³².
     pub dz_dx: i32,
+    /// Varyings at the screen's corner, modulo 2³².
+    pub corner: V,
+    /// Change of the varyings a row, modulo 2³².
+    pub d_dy: V,
     /// Change of the varyings a pixel, modulo 2³².
     pub d_dx: V,
     /// What to make of perspective-correct ones.
@@ -56,10 +60,44 @@ pub struct Steps<V: Varyings> {
 }
 
 impl<V: Varyings> Steps<V> {
-    /// Of something that is linear on the screen.
+    /// Of something that is linear on the screen, and no triangle: from row to row, nothing changes.
     #[inline]
     pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 3], side: Side) -> Self {
-        Self { dz_dx, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
+        let (corner, d_dy) = (V::ZERO, V::ZERO);
+        Self { dz_dx, corner, d_dy, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
+    }
+
+    /// Varyings at a pixel.
+    #[inline(always)]
+    pub fn at(&self, (x, y): (i32, i32)) -> V {
+        let mut values = self.corner;
+        values.advance(&self.d_dy, y);
+        values.advance(&self.d_dx, x);
+        values
+    }
+}
+
+/// [`Fragments`] whose varyings have not been worked out.
+#[derive(Debug)]
+pub struct TriangleSpan<'a, P: PixelFormat, V: Varyings, Z> {
+    /// Colours, to be written where the depth test passes.
+    pub color: &'a mut [P::Raw],
+    /// Stored depths, as many ([`DepthTest::Stored`]).
+    pub depth: &'a mut [Z],
+    /// Depth at the first pixel, 16.16, with the half that rounds it already added.
+    pub z: u32,
+    /// How depth and varyings change.
+    pub steps: &'a Steps<V>,
+    /// Position of the first pixel on the screen.
+    pub position: (i32, i32),
+}
+
+impl<'a, P: PixelFormat, V: Varyings, Z> TriangleSpan<'a, P, V, Z> {
+    /// Works them out.
+    #[inline(always)]
+    pub fn fragments(self) -> Fragments<'a, P, V, Z> {
+        let Self { color, depth, z, steps, position } = self;
+        Fragments { color, depth, z, varyings: steps.at(position), steps, position }
     }
 }
 
@@ -103,6 +141,18 @@ pub trait Shader<P: PixelFormat>: VertexShader {
             }
             None => false,
         }
+    }
+
+    /// Draws a span of a triangle, by default as any other [`span`](Self::span). Override it where varyings are better worked
+    /// out later.
+    #[inline(always)]
+    fn triangle_span<D: DepthTest>(
+        &self,
+        face: u32,
+        span: TriangleSpan<'_, P, Self::Varyings, D::Stored>,
+        test: D,
+    ) {
+        self.span(face, span.fragments(), test);
     }
 
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
