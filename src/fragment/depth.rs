@@ -268,7 +268,7 @@ fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], mut z: u32
     RUN
 }
 
-/// [`passing`] for fewer depths: how many are left.
+/// [`passing`] for fewer depths than a run has: how many are left.
 #[inline(always)]
 pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
     if D::ENABLED { few_left_apart(test, depths, z, dz_dx) } else { 0 }
@@ -277,21 +277,6 @@ pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, 
 /// Out of line, where its registers are its own.
 #[inline(never)]
 fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u32, dz_dx: i32) -> usize {
-    while let [depth, rest @ ..] = depths {
-        let near = (z >> 16) as u16;
-        if !test.passes(near, *depth) {
-            return rest.len() + 1;
-        }
-        test.write(near, depth);
-        z = z.wrapping_add_signed(dz_dx);
-        depths = rest;
-    }
-    0
-}
-
-/// [`few_left`] for less than a run.
-#[inline(never)]
-pub(super) fn left_of_few<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u32, dz_dx: i32) -> usize {
     // Spelled out: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! test {
         ($($left:literal $depth:ident)*) => {

@@ -1,6 +1,6 @@
 //! Colours a vertex, interpolated over the triangle.
 
-use super::depth::{left_of_few, passing};
+use super::depth::{few_left, passing};
 use super::dither::{spread, spread_step};
 use super::flat::channels;
 use super::luma::{luma_span, weighted};
@@ -289,7 +289,7 @@ pub(super) fn packed_triangle_span<P: PixelFormat, D: DepthTest>(
         few_colors_at::<P>(color, steps, x, y);
     } else {
         // See `few`.
-        match left_of_few(test, depth, z, steps.dz_dx) {
+        match few_left(test, depth, z, steps.dz_dx) {
             0 => few_colors_at::<P>(color, steps, x, y),
             left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
         }
@@ -432,7 +432,7 @@ fn few<P: PixelFormat, D: DepthTest>(
         few_colors::<P>(color, word, steps, addends);
     } else {
         // Depths first and colours then: each with all of its values, and its parameters, in registers.
-        match left_of_few(test, depth, z, steps.dz_dx) {
+        match few_left(test, depth, z, steps.dz_dx) {
             0 => few_colors::<P>(color, word, steps, addends),
             left => some::<P, D>(test, depth, z, steps, color, word, addends, left),
         }
