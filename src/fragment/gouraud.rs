@@ -107,6 +107,12 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
         Some(P::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
     }
 
+    /// What [`packed_span`] wants at hand.
+    #[inline]
+    fn level(&self, _: &[[i32; 3]; 3], _: u64) -> u32 {
+        P::packed_mask()
+    }
+
     #[inline]
     fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
         if P::PACKED {
@@ -121,7 +127,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     #[inline]
     fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
         if P::PACKED {
-            packed_span(span, test);
+            packed_fragments(span, test);
         } else if P::IS_LUMA {
             let [step, ..] = span.steps.words;
             luma_span(span, step, test);
@@ -133,7 +139,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     #[inline(always)]
     fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
         if P::PACKED {
-            packed_triangle_span(span, test);
+            packed_span(span, test);
         } else {
             Shader::<P>::span(self, face, span.fragments(), test);
         }
@@ -254,104 +260,49 @@ const LONG: usize = 512;
 /// off by at most 1/2, and by 1/16 from the records (1/8 for red, whose word is finer): in all, within 1 of 255 before the
 /// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(always)]
-pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
-    let Fragments { color, depth, z, varyings, steps, position } = span;
-    let addends = P::dither(position);
-    let word = word(spread::<P>(varyings));
-    if let ([color], [depth]) = (&mut *color, &mut *depth) {
-        // A line's pixel.
-        Pen { z, dz_dx: 0, word, step: 0, mask: P::packed_mask() }.draw::<P, D>(test, addends[0], color, depth);
-    } else if color.len() < RUN {
-        few::<P, D>(test, depth, z, steps, color, word, addends);
-    } else {
-        runs::<P, D>(test, depth, z, steps, color, varyings, addends);
-    }
-}
-
-/// [`packed_span`] of a triangle: of what a short span does not need, nothing is even passed on.
-#[inline(always)]
-pub(super) fn packed_triangle_span<P: PixelFormat, D: DepthTest>(
-    span: TriangleSpan<'_, P, [i32; 3], D::Stored>,
-    test: D,
-) {
+pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
     let TriangleSpan { color, depth, z, steps, position } = span;
     let (x, y) = position;
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
-        // A tip.
-        let word = word_at::<P>(steps, x, y);
-        let addends = P::dither(position);
-        Pen { z, dz_dx: 0, word, step: 0, mask: P::packed_mask() }.draw::<P, D>(test, addends[0], color, depth);
-    } else if color.len() >= RUN {
-        runs_at::<P, D>(test, depth, z, steps, color, x, y);
+        // A tip of a triangle.
+        let pen = Pen { z, dz_dx: 0, word: word_at::<P>(steps, x, y), step: 0, mask: steps.level };
+        return pen.dot::<P, D>(test, position, color, depth);
+    }
+    // Of what a short span does not need, nothing is even passed on.
+    if color.len() >= RUN {
+        runs::<P, D>(test, depth, z, steps, color, x, y);
     } else if !SMALL_CORE {
         few_at::<P, D>(test, depth, z, steps, color, x, y);
-    } else if !D::ENABLED {
-        few_colors_at::<P>(color, steps, x, y);
     } else {
-        // See `few`.
+        // Depths first and colours then: each with all of its values, and its parameters, in registers.
         match few_left(test, depth, z, steps.dz_dx) {
             0 => few_colors_at::<P>(color, steps, x, y),
-            left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
+            left => some::<P, D>(test, depth, z, steps, color, word_at::<P>(steps, x, y), P::dither(position), left),
         }
     }
+}
+
+/// [`packed_span`] of anything.
+#[inline(always)]
+pub(super) fn packed_fragments<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
+    let Fragments { color, depth, z, varyings, steps, position } = span;
+    if let ([color], [depth]) = (&mut *color, &mut *depth) {
+        // A line's pixel.
+        let pen = Pen { z, dz_dx: 0, word: word(spread::<P>(varyings)), step: 0, mask: P::packed_mask() };
+        return pen.dot::<P, D>(test, position, color, depth);
+    }
+    let ([mut r, mut g, mut b], [dr, dg, db], x) = (varyings, steps.d_dx, position.0);
+    r = r.wrapping_sub(dr.wrapping_mul(x));
+    g = g.wrapping_sub(dg.wrapping_mul(x));
+    b = b.wrapping_sub(db.wrapping_mul(x));
+    let steps = &Steps { corner: [r, g, b], d_dy: [0; 3], level: P::packed_mask(), ..*steps };
+    packed_span::<P, D>(TriangleSpan { color, depth, z, steps, position }, test);
 }
 
 /// The word of a pixel. Out of line: a loop over rows would keep all that it takes on the stack.
 #[inline(never)]
 fn word_at<P: PixelFormat>(steps: &Steps<[i32; 3]>, x: i32, y: i32) -> u32 {
     word(spread::<P>(steps.at((x, y))))
-}
-
-/// [`runs`] from a pixel on.
-#[inline(never)]
-fn runs_at<P: PixelFormat, D: DepthTest>(
-    test: D,
-    depth: &mut [D::Stored],
-    z: u32,
-    steps: &Steps<[i32; 3]>,
-    color: &mut [P::Raw],
-    x: i32,
-    y: i32,
-) {
-    runs_here::<P, D>(test, depth, z, steps, color, steps.at((x, y)), P::dither((x, y)));
-}
-
-/// [`few_at_once`] from a pixel on.
-#[inline(never)]
-fn few_at<P: PixelFormat, D: DepthTest>(
-    test: D,
-    depth: &mut [D::Stored],
-    z: u32,
-    steps: &Steps<[i32; 3]>,
-    color: &mut [P::Raw],
-    x: i32,
-    y: i32,
-) {
-    few_here::<P, D>(test, depth, z, steps, color, || word(spread::<P>(steps.at((x, y)))), P::dither((x, y)));
-}
-
-/// [`few_colors`] from a pixel on.
-#[inline(never)]
-fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], steps: &Steps<[i32; 3]>, x: i32, y: i32) {
-    few_colors_here::<P>(color, || word(spread::<P>(steps.at((x, y)))), steps, P::dither((x, y)));
-}
-
-/// [`some`] from a pixel on.
-#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
-#[cold]
-#[inline(never)]
-fn some_at<P: PixelFormat, D: DepthTest>(
-    test: D,
-    depth: &mut [D::Stored],
-    z: u32,
-    steps: &Steps<[i32; 3]>,
-    color: &mut [P::Raw],
-    x: i32,
-    y: i32,
-    left: usize,
-) {
-    let word = word(spread::<P>(steps.at((x, y))));
-    some::<P, D>(test, depth, z, steps, color, word, P::dither((x, y)), left);
 }
 
 /// Draws a span of at least a run.
@@ -361,30 +312,18 @@ fn runs<P: PixelFormat, D: DepthTest>(
     depth: &mut [D::Stored],
     z: u32,
     steps: &Steps<[i32; 3]>,
-    color: &mut [P::Raw],
-    varyings: [i32; 3],
-    addends: &[u32; 8],
-) {
-    runs_here::<P, D>(test, depth, z, steps, color, varyings, addends);
-}
-
-#[inline(always)]
-fn runs_here<P: PixelFormat, D: DepthTest>(
-    test: D,
-    depth: &mut [D::Stored],
-    z: u32,
-    steps: &Steps<[i32; 3]>,
     mut color: &mut [P::Raw],
-    varyings: [i32; 3],
-    addends: &[u32; 8],
+    x: i32,
+    y: i32,
 ) {
     if color.len() > LONG {
-        return long_span::<P, D>(test, depth, z, steps, color, varyings, addends);
+        return long_span::<P, D>(test, depth, z, steps, color, x, y);
     }
-    let first = spread::<P>(varyings);
+    let first = spread::<P>(steps.at((x, y)));
+    let addends = P::dither((x, y));
     let Some(mut depth) = depth.get_mut(..color.len()) else { return };
     let [step, correction, middle] = steps.words;
-    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(first), step, mask: P::packed_mask() };
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(first), step, mask: steps.level };
     let [dr, dg, db] = steps.d_dx;
     let of_run =
         |channel, step| spread_step::<P>(channel, step).wrapping_mul(RUN as i32).wrapping_add(LOW_HALVES[channel]);
@@ -410,13 +349,35 @@ fn runs_here<P: PixelFormat, D: DepthTest>(
         lower = lower.wrapping_sub(carries << CARRY);
         pen.word = pen.word.wrapping_add(run).wrapping_add(carries);
     }
-    if !color.is_empty() {
+    if color.is_empty() {
+    } else if !SMALL_CORE {
         few::<P, D>(test, depth, pen.z, steps, color, pen.word, addends);
+    } else {
+        match few_left(test, depth, pen.z, pen.dz_dx) {
+            0 => few_colors::<P>(color, pen.word, steps, addends),
+            left => some::<P, D>(test, depth, pen.z, steps, color, pen.word, addends, left),
+        }
     }
 }
 
-/// Draws less than a run.
-#[inline(always)]
+/// Draws less than a run, from a pixel on.
+#[inline(never)]
+fn few_at<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    x: i32,
+    y: i32,
+) {
+    let Some(depth) = depth.get_mut(..color.len()) else { return };
+    let word = word(spread::<P>(steps.at((x, y))));
+    Pen::new(z, word, steps).few::<P, D>(test, steps, P::dither((x, y)), color, depth);
+}
+
+/// The same, from a word on.
+#[inline(never)]
 fn few<P: PixelFormat, D: DepthTest>(
     test: D,
     depth: &mut [D::Stored],
@@ -426,61 +387,25 @@ fn few<P: PixelFormat, D: DepthTest>(
     word: u32,
     addends: &[u32; 8],
 ) {
-    if !SMALL_CORE {
-        few_at_once::<P, D>(test, depth, z, steps, color, word, addends);
-    } else if !D::ENABLED {
-        few_colors::<P>(color, word, steps, addends);
-    } else {
-        // Depths first and colours then: each with all of its values, and its parameters, in registers.
-        match few_left(test, depth, z, steps.dz_dx) {
-            0 => few_colors::<P>(color, word, steps, addends),
-            left => some::<P, D>(test, depth, z, steps, color, word, addends, left),
-        }
-    }
+    let Some(depth) = depth.get_mut(..color.len()) else { return };
+    Pen::new(z, word, steps).few::<P, D>(test, steps, addends, color, depth);
 }
 
-/// Colours less than a run.
+/// Colours less than a run, from a pixel on.
 #[inline(never)]
-fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
-    few_colors_here::<P>(color, || word, steps, addends);
-}
-
-#[inline(always)]
-fn few_colors_here<P: PixelFormat>(color: &mut [P::Raw], word: impl FnOnce() -> u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
-    let mask = P::packed_mask();
+fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], steps: &Steps<[i32; 3]>, x: i32, y: i32) {
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
-    let [step, ..] = steps.words;
-    Pen { z: 0, dz_dx: 0, word: word(), step, mask }.few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
+    let word = word(spread::<P>(steps.at((x, y))));
+    Pen::new(0, word, steps).few::<P, NoDepth>(NoDepth, steps, P::dither((x, y)), color, nothing);
 }
 
-/// Tests and colours less than a run.
+/// The same, from a word on.
 #[inline(never)]
-fn few_at_once<P: PixelFormat, D: DepthTest>(
-    test: D,
-    depth: &mut [D::Stored],
-    z: u32,
-    steps: &Steps<[i32; 3]>,
-    color: &mut [P::Raw],
-    word: u32,
-    addends: &[u32; 8],
-) {
-    few_here::<P, D>(test, depth, z, steps, color, || word, addends);
-}
-
-#[inline(always)]
-fn few_here<P: PixelFormat, D: DepthTest>(
-    test: D,
-    depth: &mut [D::Stored],
-    z: u32,
-    steps: &Steps<[i32; 3]>,
-    color: &mut [P::Raw],
-    word: impl FnOnce() -> u32,
-    addends: &[u32; 8],
-) {
-    let Some(depth) = depth.get_mut(..color.len()) else { return };
-    let [step, ..] = steps.words;
-    Pen { z, dz_dx: steps.dz_dx, word: word(), step, mask: P::packed_mask() }.few::<P, D>(test, steps, addends, color, depth);
+fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
+    let mut nothing = [(); usize::MAX];
+    let Some(nothing) = nothing.get_mut(..color.len()) else { return };
+    Pen::new(0, word, steps).few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
 }
 
 /// Draws a run or less, of which the depths have been tested but for the last ones.
@@ -490,15 +415,15 @@ fn few_here<P: PixelFormat, D: DepthTest>(
 fn some<P: PixelFormat, D: DepthTest>(
     test: D,
     depths: &mut [D::Stored],
-    mut z: u32,
+    z: u32,
     steps: &Steps<[i32; 3]>,
     colors: &mut [P::Raw],
-    mut word: u32,
+    word: u32,
     addends: &[u32; 8],
     left: usize,
 ) {
-    let [step, correction, middle] = steps.words;
-    let (dz_dx, mask) = (steps.dz_dx, P::packed_mask());
+    let [_, correction, middle] = steps.words;
+    let Pen { mut z, dz_dx, mut word, step, mask } = Pen::new(z, word, steps);
     let passed = depths.len().wrapping_sub(left);
     for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
         if k % GROUP == 0 && k > 0 {
@@ -523,19 +448,13 @@ fn long_span<P: PixelFormat, D: DepthTest>(
     mut z: u32,
     steps: &Steps<[i32; 3]>,
     color: &mut [P::Raw],
-    mut varyings: [i32; 3],
-    addends: &[u32; 8],
+    mut x: i32,
+    y: i32,
 ) {
     for (color, depth) in color.chunks_mut(LONG).zip(depth.chunks_mut(LONG)) {
-        if color.len() < RUN {
-            few::<P, D>(test, depth, z, steps, color, word(spread::<P>(varyings)), addends);
-        } else {
-            runs::<P, D>(test, depth, z, steps, color, varyings, addends);
-        }
+        packed_span::<P, D>(TriangleSpan { color, depth, z, steps, position: (x, y) }, test);
         z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(LONG as i32));
-        for (value, step) in varyings.iter_mut().zip(&steps.d_dx) {
-            *value = value.wrapping_add(step.wrapping_mul(LONG as i32));
-        }
+        x = x.wrapping_add(LONG as i32);
     }
 }
 
@@ -555,6 +474,24 @@ struct Pen {
 }
 
 impl Pen {
+    #[inline(always)]
+    fn new(z: u32, word: u32, steps: &Steps<[i32; 3]>) -> Self {
+        let [step, ..] = steps.words;
+        Self { z, dz_dx: steps.dz_dx, word, step, mask: steps.level }
+    }
+
+    /// Draws a single pixel.
+    #[inline(always)]
+    fn dot<P: PixelFormat, D: DepthTest>(
+        mut self,
+        test: D,
+        position: (i32, i32),
+        color: &mut P::Raw,
+        depth: &mut D::Stored,
+    ) {
+        self.draw::<P, D>(test, P::dither(position)[0], color, depth);
+    }
+
     /// Draws a pixel and steps to the next one.
     #[inline(always)]
     fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, addend: u32, color: &mut P::Raw, depth: &mut D::Stored) {
@@ -664,7 +601,7 @@ mod tests {
             let mut color = std::vec![0x1234; length];
             let span =
                 Fragments { color: &mut color, depth: &mut depth, z: 200 << 16, varyings, steps, position: (0, 0) };
-            packed_span::<Rgb565, _>(span, LessWrite);
+            packed_fragments::<Rgb565, _>(span, LessWrite);
             for (x, (&pixel, &depth)) in color.iter().zip(&depth).enumerate() {
                 if x / hidden % 3 == 2 {
                     assert_eq!((pixel, depth), (0x1234, 100), "{case}: {x}");

@@ -146,12 +146,7 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// Draws a span of a triangle, by default as any other [`span`](Self::span). Override it where varyings are better worked
     /// out later.
     #[inline(always)]
-    fn triangle_span<D: DepthTest>(
-        &self,
-        face: u32,
-        span: TriangleSpan<'_, P, Self::Varyings, D::Stored>,
-        test: D,
-    ) {
+    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, Self::Varyings, D::Stored>, test: D) {
         self.span(face, span.fragments(), test);
     }
 
