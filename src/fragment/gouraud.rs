@@ -265,7 +265,10 @@ pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P
     let (x, y) = position;
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
         // A tip of a triangle.
-        let pen = Pen { z, dz_dx: 0, word: word_at::<P>(steps, x, y), step: 0, mask: steps.level };
+        let word = word_at::<P>(steps, x, y);
+        // Small cores would keep the triangle's on the stack.
+        let mask = if SMALL_CORE { P::packed_mask() } else { steps.level };
+        let pen = Pen { z, dz_dx: 0, word, step: 0, mask };
         return pen.dot::<P, D>(test, position, color, depth);
     }
     // Of what a short span does not need, nothing is even passed on.
