@@ -548,20 +548,19 @@ impl Pen {
                 $( self.draw::<P, D>(test, addend::<P>(addends, $first + $k), $color, $depth); )*
             };
         }
-        let [_, correction, middle] = steps.words;
         let mut first = 0;
         if color.len() >= 2 * GROUP {
             draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
-            self.word = self.word.wrapping_add(correction);
+            self.word = self.word.wrapping_add(steps.words[1]);
             draw!(first 4 a az 5 b bz 6 c cz 7 d dz);
             if color.is_empty() {
                 return;
             }
-            self.word = self.word.wrapping_add(middle);
+            self.word = self.word.wrapping_add(steps.words[2]);
         }
         if color.len() >= GROUP {
             draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
-            self.word = self.word.wrapping_add(correction);
+            self.word = self.word.wrapping_add(steps.words[1]);
             first = GROUP;
         }
         if color.len() >= 2 {
