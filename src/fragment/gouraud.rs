@@ -183,19 +183,6 @@ pub(super) const fn word([r, g, b]: [i32; 3]) -> u32 {
     pack(r >> 13, g >> 14, b >> 13)
 }
 
-/// Half a unit of what a word has of a channel.
-#[inline(always)]
-const fn half_unit(channel: usize) -> i32 {
-    if channel == 1 { 1 << 13 } else { 1 << 12 }
-}
-
-/// A change of a channel, rounded to what a word has of it.
-#[inline(always)]
-const fn rounded(channel: usize, change: i32) -> i32 {
-    let half = half_unit(channel);
-    change.wrapping_add(half) & -(2 * half)
-}
-
 /// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
 /// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next: within eight
 /// pixels, and in the middle of a run.
@@ -204,23 +191,25 @@ pub(super) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u
     // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
     let ([r, g, b], [dr, dg, db]) = (rgb, d_dx);
     let [r_one, r_four, r_eight] = settle::<P>(0, r, *dr);
-    let [g_one, g_four, g_eight] = settle::<P>(1, g, *dg);
     let [b_one, b_four, b_eight] = settle::<P>(2, b, *db);
-    let (step, four, eight) =
-        (word([r_one, g_one, b_one]), word([r_four, g_four, b_four]), word([r_eight, g_eight, b_eight]));
+    let [g_one, g_four, g_eight] = settle::<P>(1, g, *dg);
+    let (step, four, eight) = (pack(r_one, g_one, b_one), pack(r_four, g_four, b_four), pack(r_eight, g_eight, b_eight));
     let correction = four.wrapping_sub(step.wrapping_mul(GROUP as u32));
     [step, correction, eight.wrapping_sub(four << 1).wrapping_add(correction)]
 }
 
-/// [`prepare`] for a channel: moves it, and yields the changes of one pixel, of four and of eight.
+/// [`prepare`] for a channel: moves it, and yields the changes of one pixel, of four and of eight, rounded to units of the word.
 #[inline(always)]
 fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i32; 3] {
     let step = spread_step::<P>(channel, step);
-    let one = rounded(channel, step);
-    let four = rounded(channel, step.wrapping_mul(GROUP as i32));
-    let eight = rounded(channel, step.wrapping_mul(2 * GROUP as i32));
-    let lost = step.wrapping_mul(15).wrapping_sub(one.wrapping_mul(3).wrapping_add(four).wrapping_add(eight));
-    *value = value.wrapping_add(half_unit(channel) + (lost >> 1));
+    let (half, bits) = if channel == 1 { (1 << 13, 14) } else { (1 << 12, 13) };
+    let units = |change: i32| change.wrapping_add(half) >> bits;
+    let one = units(step);
+    let four = units(step.wrapping_mul(GROUP as i32));
+    let eight = units(step.wrapping_mul(2 * GROUP as i32));
+    let kept = (one + one + one + four + eight) << bits;
+    let lost = step.wrapping_mul(15).wrapping_sub(kept);
+    *value = value.wrapping_add(half + (lost >> 1));
     [one, four, eight]
 }
 
