@@ -210,6 +210,7 @@ fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i32; 3
     let kept = (one + one + one + four + eight) << bits;
     let lost = step.wrapping_mul(15).wrapping_sub(kept);
     *value = value.wrapping_add(half + (lost >> 1));
+    core::sync::atomic::compiler_fence(core::sync::atomic::Ordering::SeqCst);
     [one, four, eight]
 }
 
