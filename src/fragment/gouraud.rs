@@ -366,6 +366,8 @@ fn few_at<P: PixelFormat, D: DepthTest>(
 ) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
     let word = word(spread::<P>(steps.at((x, y))));
+    // Loaded when it is needed.
+    core::sync::atomic::compiler_fence(core::sync::atomic::Ordering::SeqCst);
     Pen::new(z, word, steps).few::<P, D>(test, steps, P::dither((x, y)), color, depth);
 }
 
