@@ -9,6 +9,7 @@ use super::{DepthTest, Fragment, Fragments, NoDepth, PixelFormat, Shader, Steps,
 use crate::geometry::{Corner, Light, Lit, VertexShader};
 use crate::math::SMALL_CORE;
 use core::hint::black_box;
+use core::sync::atomic::{Ordering, compiler_fence};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// Gouraud shading: lit at the vertices, by the mesh's normals, and interpolated linearly on the screen. A mesh without
@@ -210,7 +211,8 @@ fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i32; 3
     let kept = (one + one + one + four + eight) << bits;
     let lost = step.wrapping_mul(15).wrapping_sub(kept);
     *value = value.wrapping_add(half + (lost >> 1));
-    core::sync::atomic::compiler_fence(core::sync::atomic::Ordering::SeqCst);
+    // Channel by channel: all at once would need more registers than there are.
+    compiler_fence(Ordering::SeqCst);
     [one, four, eight]
 }
 
@@ -270,7 +272,7 @@ pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P
         // Depths first and colours then: each with all of its values, and its parameters, in registers.
         match few_left(test, depth, z, steps.dz_dx) {
             0 => few_colors_at::<P>(color, steps, x, y),
-            left => some::<P, D>(test, depth, z, steps, color, word_at::<P>(steps, x, y), P::dither(position), left),
+            left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
         }
     }
 }
@@ -343,13 +345,14 @@ fn runs<P: PixelFormat, D: DepthTest>(
         pen.word = pen.word.wrapping_add(run).wrapping_add(carries);
     }
     if color.is_empty() {
-    } else if !SMALL_CORE {
-        few::<P, D>(test, depth, pen.z, steps, color, pen.word, addends);
-    } else {
-        match few_left(test, depth, pen.z, pen.dz_dx) {
-            0 => few_colors::<P>(color, pen.word, steps, addends),
-            left => some::<P, D>(test, depth, pen.z, steps, color, pen.word, addends, left),
-        }
+        return;
+    }
+    if !SMALL_CORE {
+        return few::<P, D>(test, depth, pen.z, steps, color, pen.word, addends);
+    }
+    match few_left(test, depth, pen.z, pen.dz_dx) {
+        0 => few_colors::<P>(color, pen.word, steps, addends),
+        left => some::<P, D>(test, depth, pen.z, steps, color, pen.word, addends, left),
     }
 }
 
@@ -366,8 +369,8 @@ fn few_at<P: PixelFormat, D: DepthTest>(
 ) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
     let word = word(spread::<P>(steps.at((x, y))));
-    // Loaded when it is needed.
-    core::sync::atomic::compiler_fence(core::sync::atomic::Ordering::SeqCst);
+    // What comes now is loaded now.
+    compiler_fence(Ordering::SeqCst);
     Pen::new(z, word, steps).few::<P, D>(test, steps, P::dither((x, y)), color, depth);
 }
 
@@ -403,7 +406,24 @@ fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i3
     Pen::new(0, word, steps).few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
 }
 
-/// Draws a run or less, of which the depths have been tested but for the last ones.
+/// Draws less than a run, from a pixel on, of which the depths have been tested but for the last ones.
+#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
+#[cold]
+#[inline(never)]
+fn some_at<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depths: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    colors: &mut [P::Raw],
+    x: i32,
+    y: i32,
+    left: usize,
+) {
+    some_here::<P, D>(test, depths, z, steps, colors, || word_at::<P>(steps, x, y), P::dither((x, y)), left);
+}
+
+/// The same for up to a run, from a word on.
 #[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
 #[cold]
 #[inline(never)]
@@ -417,20 +437,54 @@ fn some<P: PixelFormat, D: DepthTest>(
     addends: &[u32; 8],
     left: usize,
 ) {
-    let [_, correction, middle] = steps.words;
-    let Pen { mut z, dz_dx, mut word, step, mask } = Pen::new(z, word, steps);
-    let passed = depths.len().wrapping_sub(left);
-    for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
-        if k % GROUP == 0 && k > 0 {
-            word = word.wrapping_add(if k == 2 * GROUP { middle } else { correction });
+    some_here::<P, D>(test, depths, z, steps, colors, || word, addends, left);
+}
+
+#[expect(clippy::too_many_arguments, reason = "as above")]
+#[inline(always)]
+fn some_here<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depths: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    colors: &mut [P::Raw],
+    word: impl FnOnce() -> u32,
+    addends: &[u32; 8],
+    left: usize,
+) {
+    let (dz_dx, passed) = (steps.dz_dx, depths.len().wrapping_sub(left));
+    let (mut next, mut z) = (passed, z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32)));
+    // Where one is hidden, the next ones often are.
+    for depth in depths.get(passed..).unwrap_or_default() {
+        if test.passes((z >> 16) as u16, *depth) {
+            break;
         }
+        next += 1;
+        z = z.wrapping_add_signed(dz_dx);
+    }
+    if passed == 0 && next == depths.len() {
+        return;
+    }
+    let (word, mask, [step, correction, middle]) = (word(), steps.level, steps.words);
+    let pixel = |k: usize| {
+        let mut word = word.wrapping_add(step.wrapping_mul(k as u32));
+        for (first, change) in [(GROUP, correction), (2 * GROUP, middle), (3 * GROUP, correction)] {
+            if k >= first {
+                word = word.wrapping_add(change);
+            }
+        }
+        P::from_packed(word.wrapping_add(addend::<P>(addends, k)), mask)
+    };
+    for (k, color) in colors.iter_mut().take(passed).enumerate() {
+        *color = pixel(k);
+    }
+    for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate().skip(next) {
         let near = (z >> 16) as u16;
-        if k < passed || test.passes(near, *depth) {
+        if test.passes(near, *depth) {
             test.write(near, depth);
-            *color = P::from_packed(word.wrapping_add(addend::<P>(addends, k)), mask);
+            *color = pixel(k);
         }
         z = z.wrapping_add_signed(dz_dx);
-        word = word.wrapping_add(step);
     }
 }
 
