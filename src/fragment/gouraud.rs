@@ -453,39 +453,44 @@ fn some_here<P: PixelFormat, D: DepthTest>(
     left: usize,
 ) {
     let (dz_dx, passed) = (steps.dz_dx, depths.len().wrapping_sub(left));
-    let (mut next, mut z) = (passed, z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32)));
-    // Where one is hidden, the next ones often are.
-    for depth in depths.get(passed..).unwrap_or_default() {
-        if test.passes((z >> 16) as u16, *depth) {
-            break;
-        }
-        next += 1;
-        z = z.wrapping_add_signed(dz_dx);
-    }
-    if passed == 0 && next == depths.len() {
+    let mut z = z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32));
+    if passed == 0 && all_hidden(test, depths, z, dz_dx) {
         return;
     }
-    let (word, mask, [step, correction, middle]) = (word(), steps.level, steps.words);
-    let pixel = |k: usize| {
-        let mut word = word.wrapping_add(step.wrapping_mul(k as u32));
-        for (first, change) in [(GROUP, correction), (2 * GROUP, middle), (3 * GROUP, correction)] {
-            if k >= first {
-                word = word.wrapping_add(change);
+    let (first, mask, [step, correction, middle]) = (word(), steps.level, steps.words);
+    for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
+        if k >= passed {
+            let near = (z >> 16) as u16;
+            z = z.wrapping_add_signed(dz_dx);
+            if !test.passes(near, *depth) {
+                continue;
             }
-        }
-        P::from_packed(word.wrapping_add(addend::<P>(addends, k)), mask)
-    };
-    for (k, color) in colors.iter_mut().take(passed).enumerate() {
-        *color = pixel(k);
-    }
-    for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate().skip(next) {
-        let near = (z >> 16) as u16;
-        if test.passes(near, *depth) {
             test.write(near, depth);
-            *color = pixel(k);
+        }
+        let mut word = first.wrapping_add(step.wrapping_mul(k as u32));
+        if k >= GROUP {
+            word = word.wrapping_add(correction);
+        }
+        if k >= 2 * GROUP {
+            word = word.wrapping_add(middle);
+        }
+        if k >= 3 * GROUP {
+            word = word.wrapping_add(correction);
+        }
+        *color = P::from_packed(word.wrapping_add(addend::<P>(addends, k)), mask);
+    }
+}
+
+/// Whether none of the depths passes: where the first one does not, that is usual.
+#[inline(always)]
+fn all_hidden<D: DepthTest>(test: D, depths: &[D::Stored], mut z: u32, dz_dx: i32) -> bool {
+    for depth in depths {
+        if test.passes((z >> 16) as u16, *depth) {
+            return false;
         }
         z = z.wrapping_add_signed(dz_dx);
     }
+    true
 }
 
 /// A span part by part.
