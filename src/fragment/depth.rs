@@ -315,6 +315,30 @@ mod tests {
     use super::*;
 
     #[test]
+    fn few_depths_are_tested_one_by_one() {
+        let mut state = 1_u32;
+        for case in 0..4000 {
+            let mut random = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                state ^ state >> 15
+            };
+            let (length, z, dz_dx) = (case % RUN, random() >> 1, random() as i32 >> 12);
+            let mut expected = [(); RUN].map(|()| if random() % 16 < 1 { 0 } else { u16::MAX });
+            let mut found = expected;
+            let mut left = length;
+            for (k, depth) in expected[..length].iter_mut().enumerate() {
+                let near = (z.wrapping_add_signed(dz_dx * k as i32) >> 16) as u16;
+                if near >= *depth {
+                    break;
+                }
+                (*depth, left) = (near, left - 1);
+            }
+            assert_eq!(few_left(LessWrite, &mut found[..length], z, dz_dx), left, "{case}");
+            assert_eq!(found, expected, "{case}");
+        }
+    }
+
+    #[test]
     fn all_tests_compare_as_they_say() {
         use Compare::*;
         let depths = [0, 1, 2, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF_u16];

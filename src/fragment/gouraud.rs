@@ -194,7 +194,8 @@ pub(super) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u
     let [r_one, r_four, r_eight] = settle::<P>(0, r, *dr);
     let [b_one, b_four, b_eight] = settle::<P>(2, b, *db);
     let [g_one, g_four, g_eight] = settle::<P>(1, g, *dg);
-    let (step, four, eight) = (pack(r_one, g_one, b_one), pack(r_four, g_four, b_four), pack(r_eight, g_eight, b_eight));
+    let (step, four, eight) =
+        (pack(r_one, g_one, b_one), pack(r_four, g_four, b_four), pack(r_eight, g_eight, b_eight));
     let correction = four.wrapping_sub(step.wrapping_mul(GROUP as u32));
     [step, correction, eight.wrapping_sub(four << 1).wrapping_add(correction)]
 }
@@ -253,28 +254,7 @@ const LONG: usize = 512;
 /// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(always)]
 pub(super) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
-    let TriangleSpan { color, depth, z, steps, position } = span;
-    let (x, y) = position;
-    if let ([color], [depth]) = (&mut *color, &mut *depth) {
-        // A tip of a triangle.
-        let word = word_at::<P>(steps, x, y);
-        // Small cores would keep the triangle's on the stack.
-        let mask = if SMALL_CORE { P::packed_mask() } else { steps.level };
-        let pen = Pen { z, dz_dx: 0, word, step: 0, mask };
-        return pen.dot::<P, D>(test, position, color, depth);
-    }
-    // Of what a short span does not need, nothing is even passed on.
-    if color.len() >= RUN {
-        runs::<P, D>(test, depth, z, steps, color, x, y);
-    } else if !SMALL_CORE {
-        few_at::<P, D>(test, depth, z, steps, color, x, y);
-    } else {
-        // Depths first and colours then: each with all of its values, and its parameters, in registers.
-        match few_left(test, depth, z, steps.dz_dx) {
-            0 => few_colors_at::<P>(color, steps, x, y),
-            left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
-        }
-    }
+    drawn::<P, D, SMALL_CORE>(span, test);
 }
 
 /// [`packed_span`] of anything.
@@ -294,6 +274,32 @@ pub(super) fn packed_fragments<P: PixelFormat, D: DepthTest>(span: Fragments<'_,
     packed_span::<P, D>(TriangleSpan { color, depth, z, steps, position }, test);
 }
 
+/// Draws a span; less than a run of it in one loop, or in two: first depths and then colours, each with all of its values, and its
+/// parameters, in registers, even if they are few.
+#[inline(always)]
+fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+    let TriangleSpan { color, depth, z, steps, position } = span;
+    let (x, y) = position;
+    if let ([color], [depth]) = (&mut *color, &mut *depth) {
+        // A tip of a triangle.
+        let word = word_at::<P>(steps, x, y);
+        // Small cores would keep the triangle's on the stack.
+        let mask = if SMALL_CORE { P::packed_mask() } else { steps.level };
+        return Pen { z, dz_dx: 0, word, step: 0, mask }.dot::<P, D>(test, position, color, depth);
+    }
+    // Of what a short span does not need, nothing is even passed on.
+    if color.len() >= RUN {
+        runs::<P, D, IN_TWO>(test, depth, z, steps, color, x, y);
+    } else if !IN_TWO {
+        few_at::<P, D>(test, depth, z, steps, color, x, y);
+    } else {
+        match few_left(test, depth, z, steps.dz_dx) {
+            0 => few_colors_at::<P>(color, steps, x, y),
+            left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
+        }
+    }
+}
+
 /// The word of a pixel. Out of line: a loop over rows would keep all that it takes on the stack.
 #[inline(never)]
 fn word_at<P: PixelFormat>(steps: &Steps<[i32; 3]>, x: i32, y: i32) -> u32 {
@@ -302,7 +308,7 @@ fn word_at<P: PixelFormat>(steps: &Steps<[i32; 3]>, x: i32, y: i32) -> u32 {
 
 /// Draws a span of at least a run.
 #[inline(never)]
-fn runs<P: PixelFormat, D: DepthTest>(
+fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     test: D,
     depth: &mut [D::Stored],
     z: u32,
@@ -312,7 +318,7 @@ fn runs<P: PixelFormat, D: DepthTest>(
     y: i32,
 ) {
     if color.len() > LONG {
-        return long_span::<P, D>(test, depth, z, steps, color, x, y);
+        return long_span::<P, D, IN_TWO>(test, depth, z, steps, color, x, y);
     }
     let first = spread::<P>(steps.at((x, y)));
     let addends = P::dither((x, y));
@@ -347,7 +353,7 @@ fn runs<P: PixelFormat, D: DepthTest>(
     if color.is_empty() {
         return;
     }
-    if !SMALL_CORE {
+    if !IN_TWO {
         return few::<P, D>(test, depth, pen.z, steps, color, pen.word, addends);
     }
     match few_left(test, depth, pen.z, pen.dz_dx) {
@@ -496,7 +502,7 @@ fn all_hidden<D: DepthTest>(test: D, depths: &[D::Stored], mut z: u32, dz_dx: i3
 /// A span part by part.
 #[cold]
 #[inline(never)]
-fn long_span<P: PixelFormat, D: DepthTest>(
+fn long_span<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     test: D,
     depth: &mut [D::Stored],
     mut z: u32,
@@ -506,7 +512,7 @@ fn long_span<P: PixelFormat, D: DepthTest>(
     y: i32,
 ) {
     for (color, depth) in color.chunks_mut(LONG).zip(depth.chunks_mut(LONG)) {
-        packed_span::<P, D>(TriangleSpan { color, depth, z, steps, position: (x, y) }, test);
+        drawn::<P, D, IN_TWO>(TriangleSpan { color, depth, z, steps, position: (x, y) }, test);
         z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(LONG as i32));
         x = x.wrapping_add(LONG as i32);
     }
@@ -628,9 +634,94 @@ impl Pen {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fragment::LessWrite;
+    use crate::fragment::{AnyDepth, Compare, DepthState, LessWrite};
     use crate::geometry::Side;
+    use crate::output::{Dithered, Rgb332};
+    use core::fmt::Debug;
     use embedded_graphics_core::pixelcolor::Rgb565;
+
+    /// [`packed_span`], pixel by pixel.
+    fn plain<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+        let TriangleSpan { color, depth, mut z, steps, position: (x, y) } = span;
+        let ([step, correction, middle], addends) = (steps.words, P::dither((x, y)));
+        let run = core::array::from_fn(|k| spread_step::<P>(k, steps.d_dx[k]) * RUN as i32 + LOW_HALVES[k]);
+        let (mut of_run, mut lower, mut next) = (0, 0, 0);
+        for (k, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
+            if k % LONG == 0 {
+                let first = spread::<P>(steps.at((x + k as i32, y)));
+                (of_run, lower) = (word(first), low(first));
+            } else if k % RUN == 0 {
+                lower += low(run);
+                let carries = lower >> CARRY & UNITS;
+                lower -= carries << CARRY;
+                of_run = of_run.wrapping_add(word(run)).wrapping_add(carries);
+            }
+            next = match k % RUN {
+                0 => of_run,
+                4 | 12 => correction.wrapping_add(next),
+                8 => middle.wrapping_add(next),
+                _ => next,
+            };
+            let near = (z >> 16) as u16;
+            if test.passes(near, *depth) {
+                test.write(near, depth);
+                *color = P::from_packed(next.wrapping_add(addends[k % 8]), P::packed_mask());
+            }
+            next = next.wrapping_add(step);
+            z = z.wrapping_add_signed(steps.dz_dx);
+        }
+    }
+
+    /// Spans of all lengths over depths of which all, some or none pass, in a format and by a test.
+    fn compare<P: PixelFormat<Raw: PartialEq + Debug>, D: DepthTest<Stored: PartialEq + Debug>>(
+        test: D,
+        stored: impl Fn(u16) -> D::Stored,
+    ) {
+        let mut state = 1_u32;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % below
+        };
+        for case in 0..2000 {
+            let length = if case % 50 == 0 { random(1600) } else { random(70) } as usize;
+            let position = (random(300) as i32, random(300) as i32);
+            let ends = [0; 3].map(|_: i32| [random(256), random(256)].map(|c| squeeze((c << 8) as i32)));
+            let d_dx = ends.map(|[a, b]| (b - a) / (length.max(2) as i32 - 1));
+            let mut varyings = ends.map(|[a, _]| a);
+            let words = prepare::<P>(&mut varyings, &d_dx);
+            let d_dy = [(); 3].map(|()| random(1 << 20) as i32);
+            let mut steps = Steps { d_dy, ..Steps::linear(random(1 << 12) as i32 - 2048, d_dx, words, Side::Front) };
+            let at = steps.at(position);
+            steps.corner = core::array::from_fn(|k| varyings[k].wrapping_sub(at[k]));
+            steps.level = P::packed_mask();
+            let steps = &steps;
+            assert_eq!(steps.at(position), varyings);
+            let (z, far) = (20_000 << 16, random(3));
+            let depth: std::vec::Vec<D::Stored> = (0..length)
+                .map(|k| stored(if far == 0 || far == 1 && random(8) > 0 { 60_000 - k as u16 % 9 } else { 100 }))
+                .collect();
+            let color = std::vec![P::pack([1, 2, 3]); length];
+            let drawn_by = |how: fn(TriangleSpan<'_, P, [i32; 3], D::Stored>, D)| {
+                let (mut color, mut depth) = (color.clone(), depth.clone());
+                how(TriangleSpan { color: &mut color, depth: &mut depth, z, steps, position }, test);
+                (color, depth)
+            };
+            let expected = drawn_by(plain::<P, D>);
+            assert!(drawn_by(drawn::<P, D, false>) == expected, "{case}: {length} pixels");
+            assert!(drawn_by(drawn::<P, D, true>) == expected, "{case}: {length} pixels, in two loops");
+            assert!(drawn_by(|span, test| packed_fragments(span.fragments(), test)) == expected, "{case}, fragments");
+        }
+    }
+
+    #[test]
+    fn spans_are_those_pixel_by_pixel() {
+        compare::<Rgb565, _>(LessWrite, |depth| depth);
+        compare::<Dithered<Rgb565>, _>(LessWrite, |depth| depth);
+        compare::<Rgb332, _>(LessWrite, |depth| depth);
+        compare::<Rgb565, _>(NoDepth, |_| ());
+        compare::<Dithered<Rgb332>, _>(NoDepth, |_| ());
+        compare::<Rgb565, _>(AnyDepth::new(DepthState { compare: Compare::Greater, write: false }), |depth| depth);
+    }
 
     /// Any lengths, any colours at both ends, some pixels hidden: the others are within 1 of 255 before their bits are cut.
     #[test]
