@@ -4,7 +4,8 @@
 //! All three channels lie in one word, as Gouraud shading steps them, and so do the thresholds: one addition a pixel. Between
 //! 4 levels or more, light is close enough to linear that levels, not light, can be mixed.
 
-use super::gouraud::{pack, packed_fragments, squeeze, word};
+use super::gouraud::squeeze;
+use super::packed_span::{pack, packed_fragments, word};
 use super::{DepthTest, Fragments, PixelFormat, Steps};
 
 /// Makes room above the channels for what dithering adds.

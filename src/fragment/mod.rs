@@ -18,7 +18,7 @@
 //! | instructions a pixel | Cortex-M0+ | Cortex-M4 |
 //! |---|--:|--:|
 //! | `Flat`; `Shaded` per face | 10 | 10 |
-//! | `Gouraud`; `Shaded` per vertex | 19 | 14 |
+//! | `Gouraud`; `Shaded` per vertex | 18 | 14 |
 //! | `Matcap` | 47 | 25 |
 //! | `Textured`, nearest, repeated, w constant | 22 | 17 |
 //! | the same in perspective | 24 | 18 |
@@ -62,6 +62,7 @@ mod fog;
 mod gouraud;
 mod luma;
 mod matcap;
+mod packed_span;
 mod perspective;
 mod pixel;
 mod sample;

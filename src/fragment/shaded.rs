@@ -1,7 +1,8 @@
 //! A material under any lights, per face, per vertex or per fragment.
 
 use super::flat::{flat_span, round, unpacked};
-use super::gouraud::{load, packed_fragments, packed_span, prepare, squeeze, store, unsqueeze};
+use super::gouraud::{load, squeeze, store, unsqueeze};
+use super::packed_span::{packed_fragments, packed_span, prepare};
 use super::shader::fragments;
 use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader, TriangleSpan};
 use crate::geometry::{Corner, Face, LitMaterial, Side, VertexShader};

@@ -77,7 +77,7 @@ impl<V: Varyings> Steps<V> {
     }
 }
 
-/// [`Fragments`] whose varyings have not been worked out.
+/// [`Fragments`] of a triangle, whose varyings have not been worked out: a loop over short spans has no registers for it.
 #[derive(Debug)]
 pub struct TriangleSpan<'a, P: PixelFormat, V: Varyings, Z> {
     /// Colours, to be written where the depth test passes.
@@ -93,7 +93,7 @@ pub struct TriangleSpan<'a, P: PixelFormat, V: Varyings, Z> {
 }
 
 impl<'a, P: PixelFormat, V: Varyings, Z> TriangleSpan<'a, P, V, Z> {
-    /// Works them out.
+    /// With its varyings.
     #[inline(always)]
     pub fn fragments(self) -> Fragments<'a, P, V, Z> {
         let Self { color, depth, z, steps, position } = self;
@@ -143,8 +143,8 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         }
     }
 
-    /// Draws a span of a triangle, by default as any other [`span`](Self::span). Override it where varyings are better worked
-    /// out later.
+    /// Draws a span of a triangle, by default as any other [`span`](Self::span). Override it, too, where most of what is drawn
+    /// is a few pixels long and varyings are better worked out later, or not at all.
     #[inline(always)]
     fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, Self::Varyings, D::Stored>, test: D) {
         self.span(face, span.fragments(), test);
