@@ -554,15 +554,19 @@ mod tests {
                 .map(|k| stored(if far == 0 || far == 1 && random(8) > 0 { 60_000 - k as u16 % 9 } else { 100 }))
                 .collect();
             let color = std::vec![P::pack([1, 2, 3]); length];
-            let drawn_by = |how: fn(TriangleSpan<'_, P, [i32; 3], D::Stored>, D)| {
-                let (mut color, mut depth) = (color.clone(), depth.clone());
-                how(TriangleSpan { color: &mut color, depth: &mut depth, z, steps, position }, test);
-                (color, depth)
-            };
-            let expected = drawn_by(plain::<P, D>);
-            assert!(drawn_by(drawn::<P, D, false>) == expected, "{case}: {length} pixels");
-            assert!(drawn_by(drawn::<P, D, true>) == expected, "{case}: {length} pixels, in two loops");
-            assert!(drawn_by(|span, test| packed_fragments(span.fragments(), test)) == expected, "{case}, fragments");
+            macro_rules! drawn_by {
+                ($how:expr) => {{
+                    let (mut color, mut depth) = (color.clone(), depth.clone());
+                    $how(TriangleSpan { color: &mut color, depth: &mut depth, z, steps, position }, test);
+                    (color, depth)
+                }};
+            }
+            let expected = drawn_by!(plain::<P, D>);
+            assert!(drawn_by!(drawn::<P, D, false>) == expected, "{case}: {length} pixels");
+            assert!(drawn_by!(drawn::<P, D, true>) == expected, "{case}: {length} pixels, in two loops");
+            let by_fragments =
+                drawn_by!(|span: TriangleSpan<'_, P, _, _>, test: D| packed_fragments::<P, D>(span.fragments(), test));
+            assert!(by_fragments == expected, "{case}: {length} pixels, their channels given");
         }
     }
 
