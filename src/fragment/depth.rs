@@ -268,7 +268,7 @@ fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], mut z: u32
     RUN
 }
 
-/// [`passing`] for fewer depths: how many are left.
+/// [`passing`] for any number of depths, best for fewer than a run has: how many are left.
 #[inline(always)]
 pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
     if D::ENABLED { few_left_apart(test, depths, z, dz_dx) } else { 0 }
@@ -277,21 +277,66 @@ pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, 
 /// Out of line, where its registers are its own.
 #[inline(never)]
 fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u32, dz_dx: i32) -> usize {
-    while let [depth, rest @ ..] = depths {
-        let near = (z >> 16) as u16;
-        if !test.passes(near, *depth) {
-            return rest.len() + 1;
-        }
-        test.write(near, depth);
-        z = z.wrapping_add_signed(dz_dx);
-        depths = rest;
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    macro_rules! test {
+        ($($left:literal $depth:ident)*) => {
+            let Some(([$($depth),*], rest)) = core::mem::take(&mut depths).split_first_chunk_mut() else { return 0 };
+            depths = rest;
+            $(
+                let near = (z >> 16) as u16;
+                if !test.passes(near, *$depth) {
+                    return depths.len() + $left;
+                }
+                test.write(near, $depth);
+                z = z.wrapping_add_signed(dz_dx);
+            )*
+        };
     }
+    while depths.len() >= 8 {
+        test!(8 a 7 b 6 c 5 d 4 e 3 f 2 g 1 h);
+    }
+    if depths.len() >= 4 {
+        test!(4 a 3 b 2 c 1 d);
+    }
+    if depths.len() >= 2 {
+        test!(2 a 1 b);
+    }
+    if depths.is_empty() {
+        // 0, where it is at hand.
+        return depths.len();
+    }
+    test!(1 a);
+    let _ = (depths, z);
     0
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn few_depths_are_tested_one_by_one() {
+        let mut state = 1_u32;
+        for case in 0..4000 {
+            let mut random = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                state ^ state >> 15
+            };
+            let (length, z, dz_dx) = (case % 40, random() >> 1, random() as i32 >> 12);
+            let mut expected = [(); 40].map(|()| if random() % 16 < 1 { 0 } else { u16::MAX });
+            let mut found = expected;
+            let mut left = length;
+            for (k, depth) in expected[..length].iter_mut().enumerate() {
+                let near = (z.wrapping_add_signed(dz_dx * k as i32) >> 16) as u16;
+                if near >= *depth {
+                    break;
+                }
+                (*depth, left) = (near, left - 1);
+            }
+            assert_eq!(few_left(LessWrite, &mut found[..length], z, dz_dx), left, "{case}");
+            assert_eq!(found, expected, "{case}");
+        }
+    }
 
     #[test]
     fn all_tests_compare_as_they_say() {

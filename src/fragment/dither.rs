@@ -4,7 +4,8 @@
 //! All three channels lie in one word, as Gouraud shading steps them, and so do the thresholds: one addition a pixel. Between
 //! 4 levels or more, light is close enough to linear that levels, not light, can be mixed.
 
-use super::gouraud::{pack, packed_span, squeeze, word};
+use super::gouraud::squeeze;
+use super::packed_span::{pack, packed_fragments, word};
 use super::{DepthTest, Fragments, PixelFormat, Steps};
 
 /// Makes room above the channels for what dithering adds.
@@ -58,6 +59,6 @@ pub(super) fn dithered_span<P: PixelFormat, D: DepthTest>(
     let Fragments { color, depth, z, steps, position, .. } = span;
     let [r, g, b] = rgb;
     let varyings = [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)];
-    let steps = &Steps::linear(steps.dz_dx, [0; 3], [0; 2], steps.side);
-    packed_span::<P, D>(Fragments { color, depth, z, varyings, steps, position }, test);
+    let steps = &Steps::linear(steps.dz_dx, [0; 3], [0; 3], steps.side);
+    packed_fragments::<P, D>(Fragments { color, depth, z, varyings, steps, position }, test);
 }

@@ -18,7 +18,7 @@
 //! | instructions a pixel | Cortex-M0+ | Cortex-M4 |
 //! |---|--:|--:|
 //! | `Flat`; `Shaded` per face | 10 | 10 |
-//! | `Gouraud`; `Shaded` per vertex | 19 | 14 |
+//! | `Gouraud`; `Shaded` per vertex | 18 | 14 |
 //! | `Matcap` | 47 | 25 |
 //! | `Textured`, nearest, repeated, w constant | 22 | 17 |
 //! | the same in perspective | 24 | 18 |
@@ -62,6 +62,7 @@ mod fog;
 mod gouraud;
 mod luma;
 mod matcap;
+mod packed_span;
 mod perspective;
 mod pixel;
 mod sample;
@@ -90,7 +91,7 @@ pub use perspective::Corrected;
 pub use pixel::PixelFormat;
 pub use sample::{Bilinear, Clamp, Filter, Mirror, Nearest, Repeat, Wrap};
 pub use shaded::{PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
-pub use shader::{Fragment, Fragments, Shader, Steps};
+pub use shader::{Fragment, Fragments, Shader, Steps, TriangleSpan};
 pub use texel::{Gray8Texel, Keyed, MaskTexel, PaletteTexel, Rgb565LeTexel, Rgb565Texel, Rgb888Texel, TexelFormat};
 pub use texture::{Image, Texture, TextureError, Tile, WithAlpha};
 pub use textured::{LitTexture, Textured};

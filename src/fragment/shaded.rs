@@ -1,9 +1,10 @@
 //! A material under any lights, per face, per vertex or per fragment.
 
 use super::flat::{flat_span, round, unpacked};
-use super::gouraud::{load, packed_span, prepare, squeeze, store, unsqueeze};
+use super::gouraud::{load, squeeze, store, unsqueeze};
+use super::packed_span::{packed_fragments, packed_span, prepare};
 use super::shader::fragments;
-use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader};
+use super::{DepthTest, Fragment, Fragments, PixelFormat, Shader, TriangleSpan};
 use crate::geometry::{Corner, Face, LitMaterial, Side, VertexShader};
 use crate::math::unit_vector;
 use core::marker::PhantomData;
@@ -138,16 +139,30 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     }
 
     #[inline]
-    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 2] {
-        if Format::PACKED { prepare::<Format>(rgb, d_dx) } else { [0; 2] }
+    fn level(&self, _: &[[i32; 3]; 3], _: u64) -> u32 {
+        Format::packed_mask()
+    }
+
+    #[inline]
+    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
+        if Format::PACKED { prepare::<Format>(rgb, d_dx) } else { [0; 3] }
     }
 
     #[inline]
     fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 3], T::Stored>, test: T) {
         if Format::PACKED {
-            packed_span(span, test);
+            packed_fragments(span, test);
         } else {
             fragments(self, face, span, test);
+        }
+    }
+
+    #[inline(always)]
+    fn triangle_span<T: DepthTest>(&self, face: u32, span: TriangleSpan<'_, Format, [i32; 3], T::Stored>, test: T) {
+        if Format::PACKED {
+            packed_span(span, test);
+        } else {
+            fragments(self, face, span.fragments(), test);
         }
     }
 }

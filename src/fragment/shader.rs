@@ -43,12 +43,16 @@ pub struct Fragments<'a, P: PixelFormat, V: Varyings, Z> {
 pub struct Steps<V: Varyings> {
     /// Change of depth a pixel, modulo 2³².
     pub dz_dx: i32,
+    /// Varyings at the screen's corner, modulo 2³².
+    pub corner: V,
+    /// Change of the varyings a row, modulo 2³².
+    pub d_dy: V,
     /// Change of the varyings a pixel, modulo 2³².
     pub d_dx: V,
     /// What to make of perspective-correct ones.
     pub correction: V::Correction,
     /// What [`Shader::prepare`] made of them.
-    pub words: [u32; 2],
+    pub words: [u32; 3],
     /// Which side of the triangle is seen.
     pub side: Side,
     /// What [`Shader::level`] made of it.
@@ -56,10 +60,44 @@ pub struct Steps<V: Varyings> {
 }
 
 impl<V: Varyings> Steps<V> {
-    /// Of something that is linear on the screen.
+    /// Of something that is linear on the screen, and no triangle: from row to row, nothing changes.
     #[inline]
-    pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 2], side: Side) -> Self {
-        Self { dz_dx, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
+    pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 3], side: Side) -> Self {
+        let (corner, d_dy) = (V::ZERO, V::ZERO);
+        Self { dz_dx, corner, d_dy, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
+    }
+
+    /// Varyings at a pixel.
+    #[inline(always)]
+    pub fn at(&self, (x, y): (i32, i32)) -> V {
+        let mut values = self.corner;
+        values.advance(&self.d_dy, y);
+        values.advance(&self.d_dx, x);
+        values
+    }
+}
+
+/// [`Fragments`] of a triangle, whose varyings have not been worked out: a loop over short spans has no registers for it.
+#[derive(Debug)]
+pub struct TriangleSpan<'a, P: PixelFormat, V: Varyings, Z> {
+    /// Colours, to be written where the depth test passes.
+    pub color: &'a mut [P::Raw],
+    /// Stored depths, as many ([`DepthTest::Stored`]).
+    pub depth: &'a mut [Z],
+    /// Depth at the first pixel, 16.16, with the half that rounds it already added.
+    pub z: u32,
+    /// How depth and varyings change.
+    pub steps: &'a Steps<V>,
+    /// Position of the first pixel on the screen.
+    pub position: (i32, i32),
+}
+
+impl<'a, P: PixelFormat, V: Varyings, Z> TriangleSpan<'a, P, V, Z> {
+    /// With its varyings.
+    #[inline(always)]
+    pub fn fragments(self) -> Fragments<'a, P, V, Z> {
+        let Self { color, depth, z, steps, position } = self;
+        Fragments { color, depth, z, varyings: steps.at(position), steps, position }
     }
 }
 
@@ -87,9 +125,9 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// its pixels, which may be moved (all of its spans will be), and with their changes a pixel. Yields words for the
     /// spans.
     #[inline]
-    fn prepare(&self, varyings: &mut Self::Varyings, d_dx: &Self::Varyings) -> [u32; 2] {
+    fn prepare(&self, varyings: &mut Self::Varyings, d_dx: &Self::Varyings) -> [u32; 3] {
         let _ = (varyings, d_dx);
-        [0; 2]
+        [0; 3]
     }
 
     /// Colours a pixel, or discards the fragment and says `false`. Only what blends with the pixel that is there has to
@@ -103,6 +141,13 @@ pub trait Shader<P: PixelFormat>: VertexShader {
             }
             None => false,
         }
+    }
+
+    /// Draws a span of a triangle, by default as any other [`span`](Self::span). Override it, too, where most of what is drawn
+    /// is a few pixels long and varyings are better worked out later, or not at all.
+    #[inline(always)]
+    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, Self::Varyings, D::Stored>, test: D) {
+        self.span(face, span.fragments(), test);
     }
 
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.

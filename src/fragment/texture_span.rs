@@ -416,7 +416,7 @@ mod tests {
             let q = [random(), random()].map(|q| ((q >> 1 >> (random() % 9)) | 1 << 22) as i32);
             // |d q| up to q / 8, at both ends.
             let mut corner = Perspective::<2, 3>::ZERO;
-            let mut steps = Steps::linear(0, corner, [0; 2], Side::Front);
+            let mut steps = Steps::linear(0, corner, [0; 3], Side::Front);
             let ends = [0, 1].map(|_| q.map(|q| ((i64::from(random() as i32) * i64::from(q)) >> 34) as i32));
             let per_pixel = |a: i32, b: i32| (b - a) / way.max(1);
             corner.as_mut().copy_from_slice(&[ends[0][0], ends[1][0], q[0]]);

@@ -4,7 +4,7 @@ use super::assembly::Assembly;
 use super::scan::Seen;
 use super::{State, Target};
 use crate::fragment::{
-    AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps,
+    AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps, TriangleSpan,
 };
 use crate::geometry::{
     Correction, DepthRange, DepthScale, FEW, Outcode, ScreenVertex, Transform, Varyings, signed_area,
@@ -126,18 +126,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         varyings: &mut [S::Varyings; 3],
         face: u32,
     ) {
+        let side = self.state.side(area);
         let mut set_up = SetUp {
             v,
             area,
             face,
             depth: PlaneEquation::default(),
-            corner: S::Varyings::ZERO,
-            d_dy: S::Varyings::ZERO,
+            // Not what varyings are going to be; but zeros, all in a row, would be a call.
             steps: Steps {
                 dz_dx: 0,
-                d_dx: S::Varyings::ZERO,
-                words: [0; 2],
-                side: self.state.side(area),
+                corner: varyings[0],
+                d_dy: varyings[0],
+                d_dx: varyings[0],
+                words: [0; 3],
+                side,
                 level: 0,
                 correction: <S::Varyings as Varyings>::Correction::NONE,
             },
@@ -151,7 +153,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// its own, and in place, for the stack that it takes.
     #[inline(never)]
     fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings>, varyings: &mut [S::Varyings; 3]) {
-        let SetUp { v, area, depth, corner, d_dy, steps, .. } = set_up;
+        let SetUp { v, area, depth, steps, .. } = set_up;
         steps.level = self.shader.level(varyings, area.unsigned_abs());
         if S::Varyings::LEN == 0 && v[0].z == v[1].z && v[0].z == v[2].z {
             // A plane that is known, and no other.
@@ -164,7 +166,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             }
             let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
             widen(&gradients, &values, &mut steps.correction);
-            let planes = corner.as_mut().iter_mut().zip(steps.d_dx.as_mut()).zip(d_dy.as_mut());
+            let Steps { corner, d_dx, d_dy, .. } = &mut *steps;
+            let planes = corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut());
             for (k, ((corner, dx), dy)) in planes.enumerate() {
                 let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
                 let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
@@ -176,7 +179,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             let steps = bias(&self.state.bias, v, depth);
             depth.base = depth.base.wrapping_add((steps as u32) << 16);
         }
-        steps.words = self.shader.prepare(corner, &steps.d_dx);
+        steps.words = self.shader.prepare(&mut steps.corner, &steps.d_dx);
     }
 
     /// 9. Spans, between two edges from row to row.
@@ -185,7 +188,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         if S::Varyings::LEN > FEW {
             return self.spans_apart(set_up, test);
         }
-        let SetUp { v, area, face, depth, corner, d_dy, steps } = set_up;
+        let SetUp { v, area, face, depth, steps } = set_up;
         let columns = self.clip.x.clone();
         let width = usize::from(self.screen.0);
         let first = self.target.rows.start;
@@ -199,8 +202,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         // What is at column 0 of the row; depth with the half that rounds.
         let mut y = outline.top;
         let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
-        let mut values = *corner;
-        values.advance(d_dy, y);
         while y < outline.end {
             if y == outline.bend {
                 let edge = outline.side(outline.bend_right, y);
@@ -234,18 +235,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                     let Some(color) = part(colors, at, length) else { return };
                     let Some(depth) = part(depths, at, length) else { return };
                     let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
-                    let mut varyings = values;
-                    varyings.advance(&steps.d_dx, start);
                     // 10, 11. Depth test and fragments.
-                    let span = Fragments { color, depth, z, varyings, steps, position: (start, y) };
-                    self.shader.span(*face, span, test);
+                    let span = TriangleSpan { color, depth, z, steps, position: (start, y) };
+                    self.shader.triangle_span(*face, span, test);
                 }
                 left.step();
                 right.step();
                 y += 1;
                 row = row.wrapping_add(width);
                 z = z.wrapping_add_signed(depth.dy);
-                values.step(d_dy);
             }
         }
     }
@@ -272,15 +270,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         nothing: &'a mut [(); MAX_SPAN],
     ) -> Fragments<'a, F::Format, S::Varyings, D::Stored> {
         let (y, x) = (spans.y, &spans.x);
-        let SetUp { depth: plane, corner, d_dy, steps, .. } = set_up;
+        let SetUp { depth: plane, steps, .. } = set_up;
         let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);
         let color = self.target.framebuffer.span(y as u32, x.start as usize, x.len());
         let depth = D::stored(self.target.depth, nothing, row.wrapping_add(x.start as usize), color.len());
         // The half rounds.
         let z = plane.base.wrapping_add(1 << 15).wrapping_add_signed(plane.dy.wrapping_mul(y));
         let z = z.wrapping_add_signed(plane.dx.wrapping_mul(x.start));
-        let mut span = Fragments { color, depth, z, varyings: *corner, steps, position: (x.start, y) };
-        span.varyings.advance(d_dy, y);
+        let mut span = Fragments { color, depth, z, varyings: steps.corner, steps, position: (x.start, y) };
+        span.varyings.advance(&steps.d_dy, y);
         span.varyings.advance(&steps.d_dx, x.start);
         span
     }
@@ -292,9 +290,6 @@ pub(super) struct SetUp<'a, V: Varyings> {
     area: i64,
     face: u32,
     depth: PlaneEquation,
-    /// Varyings at the screen's corner, and how they change.
-    corner: V,
-    d_dy: V,
     steps: Steps<V>,
 }
 
