@@ -140,7 +140,7 @@ pub const fn reciprocal(x: u32) -> u32 {
 /// What is near 2³¹..2³², kept below 2³² if it has passed that by its error, as that of 2³¹ may.
 #[inline(always)]
 const fn saturated(r: u32) -> u32 {
-    r | ((r >> 30) as i32 - 1 >> 31) as u32
+    r | (((r >> 30) as i32 - 1) >> 31) as u32
 }
 
 /// A number to divide others by: a reciprocal of 16 bits, and what is wrong with it.

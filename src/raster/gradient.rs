@@ -105,10 +105,10 @@ impl Gradients {
             let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
             if up < 0 {
                 if bits >> 29 == 0 {
-                    return self.from_origin(values[0], scale, dx >> -up, dy >> -up);
+                    return self.through_vertex_0(values[0], scale, dx >> -up, dy >> -up);
                 }
             } else if bits >> (29 - up) == 0 {
-                return self.from_origin(values[0], scale, dx << up, dy << up);
+                return self.through_vertex_0(values[0], scale, dx << up, dy << up);
             }
         }
         self.plane_apart(values, scale)
@@ -119,7 +119,7 @@ impl Gradients {
     fn plane_apart(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
         let numerators = self.numerators(values);
         match self.gentle(&numerators, scale) {
-            Some([dx, dy]) => self.from_origin(values[0], scale, dx, dy),
+            Some([dx, dy]) => self.through_vertex_0(values[0], scale, dx, dy),
             None => {
                 let plane = self.steep(values[0], &numerators, scale);
                 PlaneEquation { base: plane.base.wrapping_sub(self.along(plane.dx, plane.dy)), ..plane }
@@ -133,7 +133,7 @@ impl Gradients {
     /// Both are below 2²⁹, at a pixel at most half a pixel from vertex 0: 2²⁹⁻⁶ · 2⁷ twice, below 2³¹. The cut bits are 2⁻¹¹ of a
     /// unit in 16.16.
     #[inline(always)]
-    fn from_origin(&self, v0: i32, scale: u32, dx: i32, dy: i32) -> PlaneEquation {
+    fn through_vertex_0(&self, v0: i32, scale: u32, dx: i32, dy: i32) -> PlaneEquation {
         let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
         let base = ((v0 as u32) << scale).wrapping_add(offset as u32);
         PlaneEquation { dx, dy, base: base.wrapping_sub(self.along(dx, dy)) }
