@@ -227,7 +227,7 @@ impl Triangles<'_> {
 
     /// The next triangle of the draw in this strip, if its number is below `last`. If it reaches beyond `end`, see
     /// [`end_of`](Self::end_of), it moves on to the next strip.
-    #[inline(never)]
+    #[inline(always)]
     pub(crate) fn replay(&mut self, last: u32, end: i32, to: &mut TriangleRecord) -> bool {
         let number = self.layout.next;
         if u32::from(number) >= last {
