@@ -268,7 +268,16 @@ fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], mut z: u32
     RUN
 }
 
-/// [`passing`] for any number of depths, best for fewer than a run has: how many are left.
+/// [`passing`] for up to a run: how many are left.
+#[inline(always)]
+pub(super) fn left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
+    match <&mut [D::Stored; RUN]>::try_from(&mut *depths) {
+        Ok(run) => RUN - passing(test, run, z, dz_dx),
+        Err(_) => few_left(test, depths, z, dz_dx),
+    }
+}
+
+/// [`left`] of fewer depths than a run has.
 #[inline(always)]
 pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
     if D::ENABLED { few_left_apart(test, depths, z, dz_dx) } else { 0 }
@@ -292,7 +301,7 @@ fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u3
             )*
         };
     }
-    while depths.len() >= 8 {
+    if depths.len() >= 8 {
         test!(8 a 7 b 6 c 5 d 4 e 3 f 2 g 1 h);
     }
     if depths.len() >= 4 {
@@ -322,8 +331,8 @@ mod tests {
                 state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
                 state ^ state >> 15
             };
-            let (length, z, dz_dx) = (case % 40, random() >> 1, random() as i32 >> 12);
-            let mut expected = [(); 40].map(|()| if random() % 16 < 1 { 0 } else { u16::MAX });
+            let (length, z, dz_dx) = (case % (RUN + 1), random() >> 1, random() as i32 >> 12);
+            let mut expected = [(); RUN].map(|()| if random() % 16 < 1 { 0 } else { u16::MAX });
             let mut found = expected;
             let mut left = length;
             for (k, depth) in expected[..length].iter_mut().enumerate() {
@@ -333,7 +342,7 @@ mod tests {
                 }
                 (*depth, left) = (near, left - 1);
             }
-            assert_eq!(few_left(LessWrite, &mut found[..length], z, dz_dx), left, "{case}");
+            assert_eq!(super::left(LessWrite, &mut found[..length], z, dz_dx), left, "{case}");
             assert_eq!(found, expected, "{case}");
         }
     }

@@ -7,7 +7,7 @@
 //! Every [`STEP`] pixels, and at the last pixel of a span, both are made anew. In between, steps rounded to 2⁻¹⁶ are off
 //! by at most 2⁻¹³; in the last run of a span they are taken backwards from its end, so that ends are exact.
 
-use super::depth::{RUN, few_left, passing};
+use super::depth::{RUN, left, passing};
 use super::perspective::nth;
 use super::{DepthTest, Fragments, PixelFormat, Steps, Texture};
 use crate::geometry::{Correction, Lane, PerspectiveClass, Varyings};
@@ -175,7 +175,7 @@ impl Pen {
         }
     }
 
-    /// Draws fewer pixels than a run, in two loops too.
+    /// Draws up to a run of pixels, in two loops too.
     #[inline(always)]
     fn few_in_two<P: PixelFormat, T: Texture, D: DepthTest>(
         self,
@@ -184,7 +184,7 @@ impl Pen {
         colors: &mut [P::Raw],
         depths: &mut [D::Stored],
     ) {
-        let left = few_left(test, depths, self.z, self.dz_dx);
+        let left = left(test, depths, self.z, self.dz_dx);
         if left == 0 {
             few_colors::<P, T>(texture, colors, self.vu, self.step);
         } else {
