@@ -66,14 +66,16 @@ pub fn place(vertex: &ClipVertex) -> Placed {
 #[inline(never)]
 fn scale(value: i64, shift: i32) -> i64 {
     match shift {
-        ..=0 => value << -shift,
+        0 => value,
+        ..0 => value << -shift,
         1..=62 => ((value >> (shift - 1)) + 1) >> 1,
         _ => 0,
     }
 }
 
 /// `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶: at most 2⁶¹.
-#[inline(never)]
+#[cfg_attr(target_has_atomic = "32", inline)]
+#[cfg_attr(not(target_has_atomic = "32"), inline(never))]
 fn times(a: i64, b: i32) -> i64 {
     // The lower half of `a` in two products of 16 bits, below 2³¹ and 2³².
     let (high, low) = ((a >> 16) as i32, a as u32 & 0xFFFF);

@@ -202,10 +202,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         // What is at column 0 of the row; depth with the half that rounds.
         let mut y = outline.top;
         let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
-        while y < outline.end {
-            if y == outline.bend {
-                let edge = outline.side(outline.bend_right, y);
-                if outline.bend_right {
+        let (bend, last, bend_right) = (outline.bend, outline.end, outline.bend_right);
+        while y < last {
+            if y == bend {
+                let edge = outline.side(bend_right, y);
+                if bend_right {
                     right = edge;
                 } else {
                     left = edge;
@@ -213,7 +214,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             }
             // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
             let mut row = width.wrapping_mul((y - first) as usize);
-            let mut end = if y < outline.bend { outline.bend.min(outline.end) } else { outline.end };
+            let mut end = if y < bend { bend.min(last) } else { last };
             let mut depths = D::whole(self.target.depth, &mut nothing);
             let mut colors = framebuffer.rows(first as u32, width).unwrap_or_default();
             let mut right_end = columns.end;
@@ -230,20 +231,19 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             while y < end {
                 let start = left.pixel().max(columns.start);
                 let past = right.pixel().min(right_end);
+                left.step();
                 if start < past {
                     let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
+                    let Some(depth_part) = part(depths, at, length) else { return };
                     let Some(color) = part(colors, at, length) else { return };
-                    let Some(depth) = part(depths, at, length) else { return };
                     let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
-                    // 10, 11. Depth test and fragments.
-                    let span = TriangleSpan { color, depth, z, steps, position: (start, y) };
+                    let span = TriangleSpan { color, depth: depth_part, z, steps, position: (start, y) };
                     self.shader.triangle_span(*face, span, test);
                 }
-                left.step();
-                right.step();
                 y += 1;
                 row = row.wrapping_add(width);
                 z = z.wrapping_add_signed(depth.dy);
+                right.step();
             }
         }
     }
