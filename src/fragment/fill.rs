@@ -3,7 +3,7 @@
 use crate::math::SMALL_CORE;
 use bytemuck::Pod;
 
-/// Halves of words below which words do not pay: there are 8 whole words in more.
+/// Halves of words below which words do not pay: so many hold 8 whole words, wherever they begin.
 const SHORT: usize = 17;
 
 /// Sets all pixels to `value`: like `slice::fill`, which the compiler leaves a loop of single pixels.

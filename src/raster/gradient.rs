@@ -250,3 +250,35 @@ fn moderate(difference: i32) -> bool {
 fn minor(v: &[i64; 2], c: &[i32; 2]) -> i64 {
     v[0] * i64::from(c[1]) - v[1] * i64::from(c[0])
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn both_cores_multiply_alike() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 15
+        };
+        for case in 0..100_000 {
+            let (a, b) = (random() as i32 >> (2 + case % 20), random() as i32 >> (2 + case % 17));
+            let n = [random(), random() >> 1, u32::MAX, 0][case % 4] | 1 << 31;
+            let exact = |a: i32| ((i64::from(a) * i64::from(n)) >> 32) as i32;
+            assert_eq!(high(a, b, n), (exact(a), exact(b)), "{a} {b} {n}");
+            assert_eq!(high_two(a, b, n), (exact(a), exact(b)), "{a} {b} {n}");
+        }
+    }
+
+    #[test]
+    fn what_is_within_a_range_is_so_at_its_ends() {
+        for at in 0..4 {
+            for (value, expected) in [(-32_769, false), (-32_768, true), (0, true), (32_767, true), (32_768, false)] {
+                let mut values = [7, -7, 0, 1];
+                values[at] = value;
+                assert_eq!(within(1 << 15, values), expected, "{values:?}");
+            }
+        }
+    }
+}
