@@ -66,6 +66,8 @@ pub fn place(vertex: &ClipVertex) -> Placed {
 #[inline(never)]
 fn scale(value: i64, shift: i32) -> i64 {
     match shift {
+        // Many entries of matrices are 0.
+        _ if value == 0 => 0,
         0 => value,
         ..0 => value << -shift,
         1..=62 => ((value >> (shift - 1)) + 1) >> 1,
@@ -139,6 +141,7 @@ impl View {
     pub fn fold(&mut self, mvp: &Projective, viewport: &Viewport) {
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
         let shift = excess(mvp.rows().as_flattened(), 44).max(0);
+        let cut = |entry: i64| if shift == 0 { entry } else { scale(entry, shift) };
         // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
         let [.., w] = mvp.rows();
         let (width, height) = (i32::from(viewport.width()), i32::from(viewport.height()));
@@ -146,15 +149,17 @@ impl View {
         let factors = [(width, x), (-height, y), (1 << 10, 0), (1 << 10, 0)];
         for ((to, row), (size, offset)) in self.rows.iter_mut().zip(mvp.rows()).zip(&factors) {
             for ((to, r), w) in to.iter_mut().zip(row).zip(w) {
-                *to = i64::from(*size) * scale(*r, shift);
+                *to = i64::from(*size) * cut(*r);
                 if *offset != 0 {
-                    *to += i64::from(*offset) * scale(*w, shift);
+                    *to += i64::from(*offset) * cut(*w);
                 }
             }
         }
         let more = excess(self.rows.as_flattened(), 45);
         for entry in self.rows.as_flattened_mut() {
-            *entry = scale(*entry, more);
+            if *entry != 0 {
+                *entry = scale(*entry, more);
+            }
         }
         self.scale = 10 - shift - more;
     }
@@ -188,7 +193,9 @@ impl View {
         let [.., mut least] = *row;
         let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
         for ((entry, center), half) in row.iter().zip(&center).zip(&half) {
-            least += times(*entry, *center) - times(entry.abs(), *half);
+            if *entry != 0 {
+                least += times(*entry, *center) - times(entry.abs(), *half);
+            }
         }
         least
     }
@@ -238,6 +245,8 @@ impl Numbers {
     #[inline]
     fn entries(&self, row: &[i64; 4]) -> impl Iterator<Item = i64> {
         row.iter().take(if self.homogeneous { 4 } else { 3 }).map(|r| match self.factor {
+            // As many are.
+            _ if *r == 0 => 0,
             Some(factor) => times(*r, factor),
             None => *r << 15,
         })
