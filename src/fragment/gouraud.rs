@@ -104,7 +104,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
         Some(P::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
     }
 
-    /// The bits of a pixel that its channels leave, for spans of packed ones.
+    /// What colours packed in a word want at hand in a register.
     #[inline]
     fn level(&self, _: &[[i32; 3]; 3], _: u64) -> u32 {
         P::packed_mask()
