@@ -43,9 +43,9 @@ pub struct Fragments<'a, P: PixelFormat, V: Varyings, Z> {
 pub struct Steps<V: Varyings> {
     /// Change of depth a pixel, modulo 2³².
     pub dz_dx: i32,
-    /// Varyings at the screen's corner, modulo 2³².
+    /// Of a triangle: varyings at the screen's corner, modulo 2³².
     pub corner: V,
-    /// Change of the varyings a row, modulo 2³².
+    /// Of a triangle: change of the varyings a row, modulo 2³².
     pub d_dy: V,
     /// Change of the varyings a pixel, modulo 2³².
     pub d_dx: V,
@@ -67,7 +67,7 @@ impl<V: Varyings> Steps<V> {
         Self { dz_dx, corner, d_dy, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
     }
 
-    /// Varyings at a pixel.
+    /// Varyings of a triangle at a pixel. Other spans come with theirs.
     #[inline(always)]
     pub fn at(&self, (x, y): (i32, i32)) -> V {
         let mut values = self.corner;
@@ -121,9 +121,9 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         0
     }
 
-    /// Whatever of the span loop's work can be done once a triangle: called before its spans with the varyings at one of
-    /// its pixels, which may be moved (all of its spans will be), and with their changes a pixel. Yields words for the
-    /// spans.
+    /// Whatever of the span loop's work can be done once a triangle: called before its spans with the varyings at the
+    /// screen's corner, modulo 2³² (or at a pixel, of what is no triangle), which may be moved (all of its spans will be), and with their
+    /// changes a pixel. Yields words for the spans.
     #[inline]
     fn prepare(&self, varyings: &mut Self::Varyings, d_dx: &Self::Varyings) -> [u32; 3] {
         let _ = (varyings, d_dx);
@@ -145,6 +145,9 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 
     /// Draws a span of a triangle, by default as any other [`span`](Self::span). Override it, too, where most of what is drawn
     /// is a few pixels long and varyings are better worked out later, or not at all.
+    ///
+    /// Called for shaders of up to three varyings; spans of others come to [`span`](Self::span). One shader's goes with its
+    /// [`prepare`](Self::prepare) and [`level`](Self::level): who hands one on hands on all.
     #[inline(always)]
     fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, Self::Varyings, D::Stored>, test: D) {
         self.span(face, span.fragments(), test);

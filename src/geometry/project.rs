@@ -105,10 +105,10 @@ pub fn inverse_w(v: &ClipVertex) -> u32 {
     reciprocal(((v.w << (exponent - 1)) >> 31) as u32) & !63 | exponent
 }
 
-/// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w < 2³⁰, |x|, |y| < 2³⁰ and 0 ≤ z ≤ w: the same result, bit by bit.
+/// [`project`] of 32-bit clip coordinates with 2²⁶ ≤ w ≤ 2³⁰ + 1, |x|, |y| as much, and 0 ≤ z ≤ w: the same result, bit by bit.
 #[inline]
 pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
-    // 2 to 5; the compiler knows then that no shift is by more than 31.
+    // 1 to 5; the compiler knows then that no shift is by more than 31.
     let zeros = 7 & if SMALL_CORE { byte_zeros((w >> 24) as u8) } else { (w as u32).leading_zeros() };
     divide(x >> (7 - zeros), y >> (7 - zeros), (z as u32) << zeros, (w as u32) << zeros)
 }

@@ -313,7 +313,7 @@ impl Row {
     /// The short path.
     ///
     /// # Format
-    /// Small cores add up products below 2³⁰, to sums that are below 2³¹ as the result is below 2³⁰.
+    /// Small cores add up products below 2³⁰, to sums that are below 2³¹ as the result is not above 2³⁰ + 1.
     #[inline(always)]
     fn apply_short(&self, q: [i16; 3]) -> i32 {
         let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
@@ -385,10 +385,11 @@ impl Transform {
     /// The least w, on the scale of the long path, for which quantized positions take the short one.
     ///
     /// # Format
-    /// Values of the short path are those of the long one / 2²⁵, below 2³⁰, off by at most 3: half a unit from each of three
-    /// entries, half from the constant and one from the cut; 4 are added, so that w is not below 2²⁶ for that. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is
-    /// off by at most 2¹⁷ · 3 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/10 as far as |x / w| < 16 lets it
-    /// be, which is well inside the guard band.
+    /// Values of the short path are those of the long one / 2²⁵, below 2³⁰ and a little, off by at most 3.5: half a unit from each of
+    /// three entries, of which one may lose another half to stay below 2³⁰, half from the constant and one from the cut; 4 are
+    /// added, so that w is not below 2²⁶ for that. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at most
+    /// 2¹⁷ · 3.5 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/8 as far as |x / w| < 16 lets it be, which is well
+    /// inside the guard band.
     const SHORT_W: i64 = (1 << 51) + (4 << 25);
 
     /// Clip coordinates of a mesh vertex; the origin for an index past the end.
@@ -491,7 +492,7 @@ mod tests {
             (state ^ state >> 15) as i32 >> (32 - bits)
         };
         for _ in 0..100_000 {
-            // Entries of 30 bits and a sign, the last with 15 fractional bits.
+            // Entries of 28 bits and a sign, the last with 15 fractional bits.
             let m = [random(29), random(29), random(29)];
             let t = i64::from(random(29)) << 15 | i64::from(random(16) & 0x7FFF);
             let q = [random(16) as i16, random(16) as i16, random(16) as i16];

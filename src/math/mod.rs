@@ -26,9 +26,7 @@ pub use inverse_sqrt::{inverse_sqrt, unit_vector};
 pub use micromath::FloatError;
 pub use precision::{DepthPrecision, PrecisionError};
 pub use projective::{ProjectionError, Projective};
-pub use reciprocal::{
-    CoarseDivisor, Divisor, ShortDivisor, mul_high, mul_high_apart, mul_high_signed, product, reciprocal,
-};
-pub(crate) use reciprocal::{SMALL_CORE, byte_zeros, leading_zeros, leading_zeros_long};
+pub use reciprocal::{CoarseDivisor, Divisor, ShortDivisor, mul_high, mul_high_apart, mul_high_signed, reciprocal};
+pub(crate) use reciprocal::{SMALL_CORE, byte_zeros, leading_zeros, leading_zeros_long, product};
 pub use root::isqrt;
 pub use vector::Vec3;

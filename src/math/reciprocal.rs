@@ -18,7 +18,7 @@ pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
 
 /// The product of two numbers: a third of what the compiler's own routine takes on small cores.
 #[inline]
-pub fn product(a: i32, b: i32) -> i64 {
+pub(crate) fn product(a: i32, b: i32) -> i64 {
     if SMALL_CORE { product_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
 }
 
