@@ -89,12 +89,17 @@ impl Light {
     pub fn shade(&self, mut color: u32, normal: [i16; 3]) -> u32 {
         let cosine = cosine(normal, self.direction);
         let mut shaded = 0;
-        for (ambient, diffuse) in self.ambient.iter().zip(&self.diffuse) {
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        let mut shade = |ambient: u16, diffuse: u16| {
             color <<= 8;
             let channel = (color >> 24) as i32;
-            let lit = channel * i32::from(*ambient) + ((channel * i32::from(*diffuse) * cosine) >> 14);
+            let lit = channel * i32::from(ambient) + ((channel * i32::from(diffuse) * cosine) >> 14);
             shaded = shaded << 8 | ((lit.min(WHITE) + 128) >> 8) as u32;
-        }
+        };
+        let ([red, green, blue], [r, g, b]) = (self.ambient, self.diffuse);
+        shade(red, r);
+        shade(green, g);
+        shade(blue, b);
         shaded
     }
 
