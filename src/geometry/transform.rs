@@ -270,13 +270,7 @@ impl Numbers {
             } else {
                 // Rounded, but below 2³⁰.
                 let m = (((e + (1 << 9)) >> 10) as i32).min((1 << 30) - 1);
-                if SMALL_CORE {
-                    // low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
-                    let low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
-                    ((m - low) >> 15, low)
-                } else {
-                    (0, 2 * m)
-                }
+                if SMALL_CORE { halves(m) } else { (0, 2 * m) }
             };
         }
         if short {
@@ -289,6 +283,13 @@ impl Numbers {
             }
         }
     }
+}
+
+/// An entry of the short path in two: 2¹⁵ high + low, low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
+#[inline(always)]
+const fn halves(m: i32) -> (i32, i32) {
+    let low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
+    ((m - low) >> 15, low)
 }
 
 impl Row {
@@ -316,15 +317,22 @@ impl Row {
     /// Small cores add up products below 2³⁰, to sums that are below 2³¹ as the result is not above 2³⁰ + 1.
     #[inline(always)]
     fn apply_short(&self, q: [i16; 3]) -> i32 {
-        let [x, y, z] = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
+        let q = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
+        if SMALL_CORE { self.short_by_halves(q) } else { self.short_by_words(q) }
+    }
+
+    #[inline(always)]
+    fn short_by_halves(&self, [x, y, z]: [i32; 3]) -> i32 {
         let [lx, ly, lz, lt] = self.low;
-        if SMALL_CORE {
-            let [hx, hy, hz, t] = self.high;
-            hx * x + hy * y + hz * z + t + ((lx * x + ly * y + lz * z + lt) >> 15)
-        } else {
-            let product = |m: i32, q: i32| i64::from(m) * i64::from(q << 16);
-            ((self.translation + product(lx, x) + product(ly, y) + product(lz, z)) >> 32) as i32
-        }
+        let [hx, hy, hz, t] = self.high;
+        hx * x + hy * y + hz * z + t + ((lx * x + ly * y + lz * z + lt) >> 15)
+    }
+
+    #[inline(always)]
+    fn short_by_words(&self, [x, y, z]: [i32; 3]) -> i32 {
+        let [lx, ly, lz, _] = self.low;
+        let product = |m: i32, q: i32| i64::from(m) * i64::from(q << 16);
+        ((self.translation + product(lx, x) + product(ly, y) + product(lz, z)) >> 32) as i32
     }
 }
 
@@ -499,7 +507,12 @@ mod tests {
             let sum = (0..3).fold(t + (1 << 14), |sum, k| sum + i64::from(m[k]) * i64::from(q[k])) >> 15;
             let [a, b, c] = m;
             let row = Row { high: [0; 4], low: [2 * a, 2 * b, 2 * c, 0], translation: (t + (1 << 14)) << 17 };
-            assert_eq!(i64::from(row.apply_short(q)), sum, "{m:?} {t} {q:?}");
+            let numbers = q.map(i32::from);
+            assert_eq!(i64::from(row.short_by_words(numbers)), sum, "{m:?} {t} {q:?}");
+            let ((ah, al), (bh, bl), (ch, cl)) = (halves(a), halves(b), halves(c));
+            let (high, low) = ([ah, bh, ch, (t >> 15) as i32], [al, bl, cl, (t & 0x7FFF) as i32 + (1 << 14)]);
+            let small = Row { high, low, translation: 0 };
+            assert_eq!(i64::from(small.short_by_halves(numbers)), sum, "{m:?} {t} {q:?}");
             let [x, y, z] = q.map(|q| i32::from(q) << 16);
             assert_eq!(row.apply(&[x, y, z, 0], true), sum, "{m:?} {t} {q:?}");
         }

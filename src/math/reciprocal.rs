@@ -187,16 +187,22 @@ impl Divisor {
     /// one for the defect's, and twice the second of two steps' 2⁻²⁹·⁸.
     #[inline(always)]
     pub const fn divide_normalized(&self, n: i32) -> i32 {
-        if SMALL_CORE {
-            let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
-            let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
-            h.wrapping_add((h.wrapping_add(1 << 15) >> 16).wrapping_mul(self.defect) >> 15)
-        } else {
-            // The same in two instructions, each of 32 by 16 bits: the reciprocal less 2¹⁶ fits 16 bits and a sign.
-            let h = n.wrapping_add(((n as i64 * (self.reciprocal as i16) as i64) >> 16) as i32);
-            let top = (h.wrapping_add(1 << 15) >> 16) as i16;
-            h.wrapping_add((((self.defect << 1) as i64 * top as i64) >> 16) as i32)
-        }
+        if SMALL_CORE { self.divide_by_halves(n) } else { self.divide_by_words(n) }
+    }
+
+    #[inline(always)]
+    const fn divide_by_halves(&self, n: i32) -> i32 {
+        let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
+        let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
+        h.wrapping_add((h.wrapping_add(1 << 15) >> 16).wrapping_mul(self.defect) >> 15)
+    }
+
+    /// The same in two instructions, each of 32 by 16 bits: the reciprocal less 2¹⁶ fits 16 bits and a sign.
+    #[inline(always)]
+    const fn divide_by_words(&self, n: i32) -> i32 {
+        let h = n.wrapping_add(((n as i64 * (self.reciprocal as i16) as i64) >> 16) as i32);
+        let top = (h.wrapping_add(1 << 15) >> 16) as i16;
+        h.wrapping_add((((self.defect << 1) as i64 * top as i64) >> 16) as i32)
     }
 
     /// `n` / x as 1.31 for an `x` with its top bit set and `n` ≤ x; exact for an `x` of one bit.
@@ -323,6 +329,23 @@ impl CoarseDivisor {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_cores_divide_alike() {
+        let mut state = 1_u32;
+        let mut next = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 13
+        };
+        for case in 0..300_000 {
+            let x = if case % 3 == 0 { 1 << 31 | next() >> (8 + next() % 24) } else { 1 << 31 | next() };
+            let divisor = Divisor::of_normalized(x);
+            let half = (x / 2) as i32;
+            for n in [next() as i32 % half, (next() >> (next() % 32)) as i32 % half, half, -half, 0, -1] {
+                assert_eq!(divisor.divide_by_halves(n), divisor.divide_by_words(n), "{n} / {x}");
+            }
+        }
+    }
 
     #[test]
     fn products_by_halves_are_products() {
