@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! cargo run --release --example formats -- --png formats.png
-//! ci/formats --plugin insn_count.so
+//! ci/formats
 //! ```
-//! The firmware prints `name pixels` for each run between two instructions that mark it for a counting plugin.
+//! The firmware prints `name pixels ticks` for each run: SysTick's, one in five instructions under QEMU's `-icount`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -13,6 +13,9 @@ mod firmware;
 #[cfg(not(target_os = "none"))]
 mod host;
 mod scenes;
+#[cfg(target_os = "none")]
+#[path = "firmware/ticks.rs"]
+mod ticks;
 
 use core::convert::Infallible;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565};
@@ -23,8 +26,8 @@ use zstrip::output::{Buffers, Dither, Dithered, Packer, Renderer, Rgb332, Rows, 
 #[cfg(target_os = "none")]
 mod counting {
     use super::*;
-    use core::arch::asm;
     use core::hint::black_box;
+    use cortex_m::peripheral::Peripherals;
     use semihosting::println;
     use zstrip::fragment::{DepthState, Gouraud};
     use zstrip::geometry::{Mesh, MeshData, Positions};
@@ -44,15 +47,13 @@ mod counting {
 
     static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _], packed: [0; _] };
 
-    /// Marks a run for the plugin.
+    /// Counts a run.
     #[inline(never)]
     fn count(name: &str, mut run: impl FnMut()) {
-        // SAFETY: copies a register to itself.
-        unsafe { asm!("mov r10, r10") };
+        let start = ticks::now();
         run();
-        // SAFETY: as above.
-        unsafe { asm!("mov r11, r11") };
-        println!("{name} {PIXELS}");
+        let ticks = ticks::now().wrapping_sub(start);
+        println!("{name} {PIXELS} {ticks}");
     }
 
     /// Packs a strip of all pixels.
@@ -111,6 +112,10 @@ mod counting {
         let memory = &raw mut MEMORY;
         // SAFETY: `run` is called once; this is the only reference.
         let memory = unsafe { &mut *memory };
+        let Some(mut peripherals) = Peripherals::take() else {
+            return;
+        };
+        ticks::start(&mut peripherals.SYST);
         pack::<Pages>("Packer<Pages>", memory, Dither::BAYER_8);
         pack::<Rows<BinaryColor>>("Packer<Rows<BinaryColor>>", memory, Dither::BAYER_8);
         pack::<RowsLowFirst<BinaryColor>>("Packer<RowsLowFirst<BinaryColor>>", memory, Dither::BAYER_8);
