@@ -85,6 +85,8 @@ fn clamped_meshes_are_not_culled_beyond_the_far_plane() {
         let state = State { range, depth, ..State::default() };
         let (pixels, stats) = lit(|scene| scene.draw_with(state, &squares, &mvp, &white()));
         assert_eq!((pixels > 0, stats.culled == 0), (expected, expected), "{range:?} at {z}");
+        let (single, stats) = lit(|scene| scene.draw_with(state, &square(), &mvp, &white()));
+        assert_eq!((single, stats.culled), (pixels, 0), "a single square, {range:?} at {z}");
     }
 }
 
