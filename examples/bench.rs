@@ -19,8 +19,8 @@ mod workloads;
 use workloads::{HEIGHT, WIDTH, Workload};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 #[cfg(not(target_os = "none"))]
-use zstrip::output::Buffers;
-use zstrip::output::RamBudget;
+use zstrip::frame::Buffers;
+use zstrip::frame::RamBudget;
 
 const NAMED: [(&str, Workload); 10] = [
     ("empty", Workload::Empty),
@@ -63,13 +63,14 @@ const FRONT_FACES: usize = 458;
 
 #[cfg(target_os = "none")]
 mod counting {
-    use super::{Hash, NAMED, SIZES, WIDTH, Workload, firmware::stack, ticks, workloads};
+    use super::firmware::stack;
+    use super::{Hash, NAMED, SIZES, WIDTH, Workload, ticks, workloads};
     use core::arch::asm;
     use core::hint::black_box;
     use cortex_m::peripheral::Peripherals;
     use semihosting::println;
     use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-    use zstrip::output::Buffers;
+    use zstrip::frame::Buffers;
 
     struct Memory {
         color: [u16; WIDTH * SIZES.0],

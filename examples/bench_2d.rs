@@ -26,8 +26,9 @@ mod counting {
     use embedded_graphics::text::{Baseline, Text};
     use semihosting::println;
     use zstrip::Scene;
-    use zstrip::fragment::DepthTest;
-    use zstrip::output::{Buffers, Overlay, Renderer, RendererError, Strip, StripPixels};
+    use zstrip::frame::{Buffers, Renderer, RendererError};
+    use zstrip::span::DepthTest;
+    use zstrip::target::{Overlay, Strip, StripPixels};
 
     const WIDTH: usize = 320;
     const HEIGHT: usize = 240;

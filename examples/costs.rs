@@ -13,17 +13,16 @@ mod firmware;
 #[cfg(target_os = "none")]
 mod rows {
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-    use zstrip::fragment::{
-        Add, AddAlpha, Alpha, AlphaTest, Bilinear, Blend, Clamp, DepthState, Flat, FogCurve, FogTable, Fogged, Gouraud,
-        Image, Matcap, Mirror, Multiply, Opacity, PaletteTexel, PerFragment, PerFragmentNear, Rgb888Texel, ScreenDoor,
-        Shaded, Shader, TexelFormat, Textured, Tile,
-    };
-    use zstrip::geometry::{
-        DirectionalLight, Light, Lighting, LitMaterial, Material, Mesh, MeshData, PointLight, Positions, Topology,
-        Viewer,
-    };
+    use zstrip::light::{DirectionalLight, Light, Lighting, LitMaterial, Material, PointLight, Viewer};
     use zstrip::math::{Affine, Projective, Scalar, Vec3};
-    use zstrip::output::Strip;
+    use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+    use zstrip::shader::{
+        Add, AddAlpha, Alpha, AlphaTest, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity,
+        PerFragment, PerFragmentNear, ScreenDoor, Shaded, Textured,
+    };
+    use zstrip::span::{DepthState, Shader};
+    use zstrip::target::Strip;
+    use zstrip::texture::{Bilinear, Clamp, Image, Mirror, PaletteTexel, Rgb888Texel, TexelFormat, Tile};
     use zstrip::{Scene, State};
 
     type S<'s, 'a, 'p> = &'s mut Scene<'a, Strip<'p, Rgb565>>;
@@ -178,10 +177,11 @@ mod counting {
     use super::rows::{ROWS, Row};
     use core::arch::asm;
     use core::hint::black_box;
-    use cortex_m::peripheral::{Peripherals, SYST, syst::SystClkSource};
+    use cortex_m::peripheral::syst::SystClkSource;
+    use cortex_m::peripheral::{Peripherals, SYST};
     use semihosting::println;
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-    use zstrip::output::StripPixels;
+    use zstrip::target::StripPixels;
     use zstrip::{Buffers, Renderer};
 
     const WIDTH: usize = 320;

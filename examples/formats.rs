@@ -18,10 +18,11 @@ mod scenes;
 mod ticks;
 
 use core::convert::Infallible;
+use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332};
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565};
-use zstrip::fragment::PixelFormat;
+use zstrip::frame::{Buffers, Renderer};
 use zstrip::math::Angle;
-use zstrip::output::{Buffers, Dither, Dithered, Packer, Renderer, Rgb332, Rows, StripPixels};
+use zstrip::target::{Packer, Rows, StripPixels};
 
 #[cfg(target_os = "none")]
 mod counting {
@@ -29,10 +30,12 @@ mod counting {
     use core::hint::black_box;
     use cortex_m::peripheral::Peripherals;
     use semihosting::println;
-    use zstrip::fragment::{DepthState, Gouraud};
-    use zstrip::geometry::{Mesh, MeshData, Positions};
+    use zstrip::color::{Bgr565Be, Rgb565Be};
     use zstrip::math::{Projective, Scalar};
-    use zstrip::output::{Bgr565Be, PackedFormat, Pages, Rgb565Be, RowsLowFirst};
+    use zstrip::mesh::{Mesh, MeshData, Positions};
+    use zstrip::shader::Gouraud;
+    use zstrip::span::DepthState;
+    use zstrip::target::{PackedFormat, Pages, RowsLowFirst};
     use zstrip::{Cull, State};
 
     const SCREEN: (u16, u16) = (320, 240);
@@ -83,7 +86,7 @@ mod counting {
             [corner(-EDGE, EDGE), corner(-EDGE, -EDGE), corner(EDGE, EDGE), corner(EDGE, -EDGE)];
         let colors = [[255, 0, 30], [0, 99, 200], [60, 255, 0], [255, 255, 255]];
         let data = MeshData::new(Positions::Homogeneous(&CORNERS));
-        let topology = zstrip::geometry::Topology::Strip;
+        let topology = zstrip::mesh::Topology::Strip;
         let mesh = Mesh::new(MeshData { topology, colors: Some(&colors), ..data }).expect("a mesh");
         let Memory { color, depth, records, .. } = memory;
         let color = &mut bytemuck::cast_slice_mut(&mut color[..PIXELS])[..PIXELS];
@@ -139,8 +142,8 @@ use counting::run;
 #[cfg(not(target_os = "none"))]
 mod sheet {
     use super::*;
+    use zstrip::color::Levels;
     use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
-    use zstrip::output::Levels;
 
     pub const CELL: (usize, usize) = (160, 120);
     const COLUMNS: usize = 5;

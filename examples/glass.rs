@@ -8,9 +8,10 @@ mod scenes;
 
 use host::program::{Demo, show};
 use zstrip::Scene;
+use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle;
-use zstrip::output::{Dithered, Strip};
+use zstrip::target::Strip;
 
 struct Glass;
 

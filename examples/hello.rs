@@ -1,10 +1,11 @@
 //! A lit cube, one frame of it, drawn in strips of 16 rows straight into a PNG file.
 use std::io::Write;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
-use zstrip::fragment::Flat;
-use zstrip::geometry::{Light, Mesh, MeshData, Positions, Topology};
+use zstrip::light::Light;
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::StripPixels;
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::Flat;
+use zstrip::target::StripPixels;
 use zstrip::{Buffers, Renderer};
 
 #[rustfmt::skip]

@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle;
-use zstrip::output::Strip;
+use zstrip::target::Strip;
 
 /// The aircraft's attitude: what is steered, and what the wind adds.
 #[derive(Default)]

@@ -11,7 +11,7 @@ use host::program::{Demo, show};
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle;
-use zstrip::output::Strip;
+use zstrip::target::Strip;
 
 struct Labels;
 

@@ -12,10 +12,12 @@ use std::convert::Infallible;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb888, RgbColor};
-use zstrip::fragment::Gouraud;
+use zstrip::frame::{Buffers, RamBudget, Renderer};
 use zstrip::math::{Affine, Angle, Scalar, Vec3};
-use zstrip::output::{Buffers, Dither, Packer, Pages, RamBudget, Renderer, StripPixels};
+use zstrip::shader::Gouraud;
+use zstrip::target::{Packer, Pages, StripPixels};
 use zstrip::{Framebuffer, Scene};
 
 const HELP: &str = "\

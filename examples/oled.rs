@@ -11,9 +11,11 @@ mod firmware;
 mod scenes;
 
 use core::convert::Infallible;
+use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray4, Gray8};
+use zstrip::frame::{Buffers, Renderer};
 use zstrip::math::Angle;
-use zstrip::output::{Buffers, Dither, Packer, Renderer, Rows, StripPixels};
+use zstrip::target::{Packer, Rows, StripPixels};
 
 const WIDTH: usize = 128;
 const HEIGHT: usize = 64;

@@ -9,9 +9,10 @@ mod scenes;
 use host::program::{Demo, show};
 use scenes::light::{Shading, phong};
 use zstrip::Scene;
+use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle;
-use zstrip::output::{Dithered, Strip};
+use zstrip::target::Strip;
 
 const SHADINGS: [Shading; 5] =
     [Shading::PerFragmentNear, Shading::PerVertex, Shading::PerFace, Shading::PerFragment, Shading::Matcap];

@@ -27,7 +27,8 @@ mod image {
     use riscv_rt::entry;
     use semihosting::sys::arm_compat::sys_writec;
     use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-    use zstrip::output::{Buffers, Stats};
+    use zstrip::frame::Buffers;
+    use zstrip::target::Stats;
 
     const WIDTH: usize = 320;
     const HEIGHT: usize = 240;

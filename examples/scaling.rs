@@ -16,8 +16,8 @@ mod ticks;
 /// Tori of radii 1 and 0.4 about the axis y, in as many quads as vertices.
 #[cfg(target_os = "none")]
 mod tori {
-    use zstrip::geometry::{Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
     use zstrip::math::{Angle, Scalar, Vec3};
+    use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
 
     /// Parts of a torus, each a leaf of its hierarchy: eighths of the way around the axis.
     const PARTS: usize = 8;
@@ -119,15 +119,18 @@ mod tori {
 
 #[cfg(target_os = "none")]
 mod counting {
-    use super::{ticks, tori::TORI};
+    use super::ticks;
+    use super::tori::TORI;
     use core::convert::Infallible;
     use cortex_m::peripheral::Peripherals;
     use semihosting::println;
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-    use zstrip::fragment::Gouraud;
-    use zstrip::geometry::{Light, Mesh};
+    use zstrip::frame::RamBudget;
+    use zstrip::light::Light;
     use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-    use zstrip::output::{RamBudget, Stats, StripPixels, records_len};
+    use zstrip::mesh::Mesh;
+    use zstrip::shader::Gouraud;
+    use zstrip::target::{Stats, StripPixels, records_len};
     use zstrip::{Buffers, Renderer};
 
     const PIXELS: usize = 320 * 240;

@@ -9,10 +9,11 @@ mod scenes;
 use host::program::{Demo, show};
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::fragment::{Compare, DepthState, Flat, Gouraud};
-use zstrip::geometry::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::Strip;
+use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::{Compare, DepthState};
+use zstrip::target::Strip;
 use zstrip::{Scene, Smooth, State, Thick, Thin};
 
 /// Points of a cloud.

@@ -15,10 +15,11 @@ use semihosting::println;
 
 use scenes::wires;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{DepthOnly, Flat, Gouraud};
-use zstrip::geometry::{Joined, Lines, MeshData, Positions};
+use zstrip::frame::{Buffers, Renderer};
 use zstrip::math::{Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, Renderer, Strip};
+use zstrip::mesh::{Joined, Lines, MeshData, Positions};
+use zstrip::shader::{DepthOnly, Flat, Gouraud};
+use zstrip::target::Strip;
 use zstrip::{Dashed, Scene, ScreenPoint, Smooth, Stroke, Thick, Thin};
 
 const WIDTH: usize = 320;

@@ -12,7 +12,7 @@ use scenes::SCENES;
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle;
-use zstrip::output::Strip;
+use zstrip::target::Strip;
 
 /// The scenes' names.
 const NAMES: [&str; SCENES.len()] = {

@@ -10,10 +10,12 @@ use host::program::{Demo, show};
 use scenes::wires::BEHIND_LINES;
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::fragment::{Compare, DepthOnly, DepthState, Flat};
-use zstrip::geometry::{Light, Lines, Mesh, MeshData, Positions, Topology, edges};
+use zstrip::light::Light;
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::Strip;
+use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
+use zstrip::shader::{DepthOnly, Flat};
+use zstrip::span::{Compare, DepthState};
+use zstrip::target::Strip;
 use zstrip::{Dashed, Scene, Smooth, State, Thin};
 
 /// Corners of the polygons that stand for circles.

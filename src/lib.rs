@@ -3,10 +3,10 @@
 //!
 //! ```
 //! use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors};
-//! use zstrip::fragment::Flat;
-//! use zstrip::geometry::{Mesh, MeshData, Positions};
+//! use zstrip::shader::Flat;
+//! use zstrip::mesh::{Mesh, MeshData, Positions};
 //! use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-//! use zstrip::output::Rgb565Be;
+//! use zstrip::color::Rgb565Be;
 //! use zstrip::{Buffers, Renderer};
 //!
 //! // A mesh borrows its slices, which may lie in flash. Counter-clockwise is the front.
@@ -35,20 +35,26 @@
 //! ```
 //! Text, images and shapes of embedded-graphics are drawn in the same closure: [`Scene::overlay`], [`Scene::at_depth`].
 //! [`Renderer::frame`] does the loop, for an embedded-graphics display; [`Renderer::frame_to`] for a
-//! [sink](output::StripSink) or a closure; [`FramebufferRenderer`](output::FramebufferRenderer) draws without strips.
+//! [sink](target::StripSink) or a closure; [`FramebufferRenderer`](frame::FramebufferRenderer) draws without strips.
 //!
-//! # The way from a vertex to the display
+//! # The floors
 //!
-//! | folder | takes | hands on | |
-//! |---|---|---|---|
-//! | [`math`] | | | numbers: fixed-point formats, binary angles, vectors, matrices, reciprocals |
-//! | [`geometry`] | meshes, matrices, lights | vertices on the screen | cull, transform, clip, project, snap |
-//! | [`raster`] | triangles on the screen | spans, plane equations | exact edges, gradients |
-//! | [`fragment`] | spans | colours and depths | depth test, shaders: the loops over pixels |
-//! | [`output`] | colours | strips on the display | pixel formats, records, frames, sinks |
+//! | folder | what it holds |
+//! |---|---|
+//! | [`math`] | numbers: fixed-point formats, binary angles, vectors, matrices, reciprocals |
+//! | [`color`] | what a pixel is: formats, packed channels, ordered dither, fills |
+//! | [`texture`] | images in flash, texel formats, sampling |
+//! | [`mesh`] | meshes, lines, points, their bounds and edges, and the order of draws |
+//! | [`light`] | lights and materials |
+//! | [`vertex`] | what a vertex shader sees and returns; transform, clip, project |
+//! | [`raster`] | screen primitives → spans, plane equations |
+//! | [`span`] | the [`Shader`](span::Shader) seam, the depth test, the loops over pixels |
+//! | [`shader`] | the ready-made shaders, ordinary users of that seam |
+//! | [`target`] | framebuffers, strips, sinks, packers, embedded-graphics targets, records |
+//! | `scene` | the one place that calls every stage, in order: [`Scene`] |
+//! | [`frame`] | bands and strips, renderers, views, RAM budgets |
 //!
-//! A folder uses those above it, never those below. One file outside of them, `pipeline.rs`, calls them all, in order:
-//! it holds [`Scene`], through which a frame is drawn.
+//! A folder imports only from those above it in this table, and no two files import each other: `tests/floors.rs` checks both.
 //!
 //! # Conventions
 //!
@@ -59,7 +65,7 @@
 //!   position on the screen 24.8. Vectors and affine transforms saturate. Normals are 2.14, colours 8 bits a channel.
 //! - **Angles** are binary: 65,536 make a turn.
 //! - **Depth** is 16-bit, 0 at the near plane, 65,535 at the far plane, and linear on the screen. Strips are cleared to
-//!   65,535. A fragment is drawn where it is nearer than what is there; [`DepthState`](fragment::DepthState) knows the other
+//!   65,535. A fragment is drawn where it is nearer than what is there; [`DepthState`](span::DepthState) knows the other
 //!   seven comparisons and the write mask.
 //! - **Faces.** Counter-clockwise, with y up, is the front. The back is culled unless [`State`] says otherwise.
 //! - **Fill rule.** A pixel is covered if its centre is inside, or on a left or top edge: triangles that share an edge
@@ -67,7 +73,7 @@
 //! - **Textures.** u points right, v down; centres of texels at .5.
 //! - **Errors** come from constructors and say what was wrong. Drawing fails only with the display's own error, or
 //!   because a frame's closure drew two different things; what was culled or clipped is counted in
-//!   [`Stats`](output::Stats).
+//!   [`Stats`](target::Stats).
 //!
 //! # Features
 //!
@@ -79,16 +85,23 @@
 #[cfg(test)]
 extern crate std;
 
-pub mod fragment;
-pub mod geometry;
+pub mod color;
+pub mod frame;
+pub mod light;
 pub mod math;
-pub mod output;
-mod pipeline;
+pub mod mesh;
 pub mod raster;
+mod scene;
+pub mod shader;
+pub mod span;
+pub mod target;
+pub mod texture;
+pub mod vertex;
 
 pub use embedded_graphics_core;
-pub use output::{Buffers, Framebuffer, Renderer};
-pub use pipeline::{Canvas, Cull, Dashed, Scene, ScreenPoint, Smooth, State, Stroke, Thick, Thin, Winding};
+pub use frame::{Buffers, Renderer};
+pub use scene::{Canvas, Cull, Dashed, Scene, ScreenPoint, Smooth, State, Stroke, Thick, Thin, Winding};
+pub use target::Framebuffer;
 
 /// The README's program compiles.
 #[cfg(doctest)]
@@ -101,16 +114,16 @@ mod tests {
     #[test]
     fn errors_and_statistics_can_be_logged() {
         fn logged<T: defmt::Format>() {}
-        logged::<crate::geometry::MeshError>();
-        logged::<crate::geometry::SortError>();
-        logged::<crate::geometry::ViewportError>();
+        logged::<crate::mesh::MeshError>();
+        logged::<crate::vertex::SortError>();
+        logged::<crate::vertex::ViewportError>();
         logged::<crate::math::PrecisionError>();
         logged::<crate::math::ProjectionError>();
-        logged::<crate::output::FramebufferError>();
-        logged::<crate::output::RendererError>();
-        logged::<crate::output::PackerError>();
-        logged::<crate::output::FrameError>();
-        logged::<crate::output::Stats>();
+        logged::<crate::target::FramebufferError>();
+        logged::<crate::frame::RendererError>();
+        logged::<crate::target::PackerError>();
+        logged::<crate::frame::FrameError>();
+        logged::<crate::target::Stats>();
         #[cfg(feature = "micromath")]
         logged::<crate::math::FloatError>();
     }

@@ -4,14 +4,17 @@ mod reference;
 mod support;
 
 use support::{difference, strips, whole};
+use zstrip::color::{PixelFormat, Rgb565Be, Rgba8888};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
-use zstrip::fragment::{
-    Add, AddAlpha, Alpha, AlphaTest, Blend, BlendMode, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud,
-    Image, Multiply, Opacity, PixelFormat, Replace, Rgb888Texel, Rgba8888, ScreenDoor, Shader, Textured, WithAlpha,
-};
-use zstrip::geometry::{Corner, Mesh, MeshData, Positions, Topology, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::Rgb565Be;
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::{
+    Add, AddAlpha, Alpha, AlphaTest, Blend, BlendMode, Flat, FogCurve, FogTable, Fogged, Gouraud, Multiply, Opacity,
+    Replace, ScreenDoor, Textured,
+};
+use zstrip::span::{DepthState, Fragment, Shader};
+use zstrip::texture::{Image, Rgb888Texel, WithAlpha};
+use zstrip::vertex::{Corner, VertexShader};
 use zstrip::{Cull, State};
 
 #[test]

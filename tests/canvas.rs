@@ -10,10 +10,11 @@ use support::{difference, strips, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
-use zstrip::fragment::{Compare, DepthState, Fragment, Shader};
-use zstrip::geometry::{Corner, VertexShader};
-use zstrip::output::{FrameSlice, Framebuffer, FramebufferRenderer};
+use zstrip::frame::FramebufferRenderer;
 use zstrip::raster::{Line, PixelRect};
+use zstrip::span::{Compare, DepthState, Fragment, Shader};
+use zstrip::target::{FrameSlice, Framebuffer};
+use zstrip::vertex::{Corner, VertexShader};
 use zstrip::{Canvas, Dashed, Scene, ScreenPoint, Smooth, Thick, Thin};
 
 const SCREEN: (u16, u16) = (64, 48);

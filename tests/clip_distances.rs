@@ -7,9 +7,11 @@ use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{strips, vector};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::fragment::{Blend, DepthState, Fragment, Replace, ScreenDoor, Shader};
-use zstrip::geometry::{Corner, Mesh, MeshData, Perspective, Positions, VertexShader};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::shader::{Blend, Replace, ScreenDoor};
+use zstrip::span::{DepthState, Fragment, Shader};
+use zstrip::vertex::{Corner, Perspective, VertexShader};
 use zstrip::{Cull, State};
 
 const SCREEN: (u16, u16) = (64, 64);

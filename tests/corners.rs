@@ -10,13 +10,13 @@ use reference::scenes::depth_soup;
 use reference::subject::Subject;
 use std::cell::Cell;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{Compare, DepthState, Flat, Fragment, Gouraud, Shader};
-use zstrip::geometry::{
-    BoundingBox, BoundingSphere, Bounds, Corner, DepthRange, Face, Mesh, MeshData, MeshError, Placed, Positions,
-    Topology, Transform, VertexShader, Viewport,
-};
+use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, Renderer};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, FrameError, FrameSlice, FramebufferRenderer, Renderer, Stats, Strip, StripPixels};
+use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, Mesh, MeshData, MeshError, Positions, Topology};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::{Compare, DepthState, Fragment, Shader};
+use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
+use zstrip::vertex::{Corner, DepthRange, Face, Placed, Transform, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State};
 
 const SQUARE: [Vec3; 4] =

@@ -8,12 +8,10 @@ mod support;
 use reference::rng::Rng;
 use support::{apply, difference, matrix, on_screen, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::Gouraud;
-use zstrip::geometry::{
-    BoundingBox, BoundingSphere, Bounds, BoundsNode, Containment, Frustum, Mesh, MeshData, Positions, Topology,
-    Viewport,
-};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
+use zstrip::shader::Gouraud;
+use zstrip::vertex::{Containment, Frustum, Viewport};
 use zstrip::{Cull, State};
 
 /// A camera of any kind, wherever it stands, and how far it sees.

@@ -6,9 +6,11 @@ mod support;
 use reference::rng::Rng;
 use support::{strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{DepthBias, DepthState, Flat};
-use zstrip::geometry::{DepthScale, Mesh, MeshData, Placed, Positions, Transform, Viewport};
 use zstrip::math::{Affine, Angle, DepthPrecision, PrecisionError, ProjectionError, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::shader::Flat;
+use zstrip::span::{DepthBias, DepthState};
+use zstrip::vertex::{DepthScale, Placed, Transform, Viewport};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 const SCREEN: (u16, u16) = (160, 120);

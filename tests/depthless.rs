@@ -7,13 +7,16 @@ mod support;
 
 use reference::rng::Rng;
 use support::{Soup, difference, strips};
+use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
-use zstrip::fragment::{DepthState, Flat, Gouraud, PixelFormat, Shader};
-use zstrip::geometry::{Joined, Lines, Mesh, Points};
+use zstrip::frame::{FramebufferRenderer, RamBudget, Renderer};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{FrameSlice, FramebufferRenderer, RamBudget, Renderer, Strip, StripPixels, WithoutDepth};
+use zstrip::mesh::{Joined, Lines, Mesh, Points};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::{DepthState, Shader};
+use zstrip::target::{FrameSlice, Strip, StripPixels, WithoutDepth};
 use zstrip::{Cull, Dashed, Framebuffer, Scene, ScreenPoint, Smooth, State, Thin};
 
 const SCREEN: (u16, u16) = (77, 50);

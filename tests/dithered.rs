@@ -7,11 +7,11 @@ mod support;
 
 use reference::rng::Rng;
 use support::{Soup, difference, strips, whole};
+use zstrip::color::{Bgr565Be, Ditherable, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Bgr565, Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{Flat, Gouraud, PixelFormat};
-use zstrip::geometry::{Mesh, MeshData, Positions};
 use zstrip::math::{Angle, Projective, Scalar};
-use zstrip::output::{Bgr565Be, Ditherable, Dithered, Rgb332, Rgb565Be};
+use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::shader::{Flat, Gouraud};
 use zstrip::{Cull, State};
 
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };

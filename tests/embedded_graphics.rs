@@ -14,8 +14,10 @@ use embedded_graphics::primitives::*;
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyleBuilder};
 use reference::rng::Rng;
 use support::strips;
-use zstrip::fragment::{DepthState, NoDepth, PixelFormat};
-use zstrip::output::{Dithered, FrameSlice, FramebufferRenderer, Overlay, Renderer, Rgb332, Rgb565Be, StripPixels};
+use zstrip::color::{Dithered, PixelFormat, Rgb332, Rgb565Be};
+use zstrip::frame::{FramebufferRenderer, Renderer};
+use zstrip::span::{DepthState, NoDepth};
+use zstrip::target::{FrameSlice, Overlay, StripPixels};
 
 const WIDTH: usize = 96;
 const HEIGHT: usize = 70;
@@ -263,6 +265,6 @@ fn images_are_drawn_by_the_part_in_the_strip() {
 #[test]
 fn pixels_in_no_order_and_far_away_are_those_in_a_framebuffer() {
     let colors = [Rgb565::CSS_TAN, Rgb565::CSS_TEAL, Rgb565::WHITE];
-    let plain = |overlay: &mut Overlay<'_, zstrip::output::Strip<'_, Rgb565>, _>| sprinkle(overlay, &colors);
+    let plain = |overlay: &mut Overlay<'_, zstrip::target::Strip<'_, Rgb565>, _>| sprinkle(overlay, &colors);
     check!(Rgb565, Rgb565, |target: &mut _| sprinkle(target, &colors), plain);
 }

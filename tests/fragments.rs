@@ -7,13 +7,12 @@ use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{scalar, strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::fragment::{Compare, DepthState, Fragment, Shader};
-use zstrip::geometry::{
-    Corner, Face, Mesh, MeshData, Placed, Positions, Side, Transform, Varyings, VertexShader, Viewport, signed_area,
-};
 use zstrip::math::{Projective, Scalar, Vec3};
-use zstrip::output::Strip;
+use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::raster::{self, PixelRect};
+use zstrip::span::{Compare, DepthState, Fragment, Shader};
+use zstrip::target::Strip;
+use zstrip::vertex::{Corner, Face, Placed, Side, Transform, Varyings, VertexShader, Viewport, signed_area};
 use zstrip::{Cull, Scene, State, Winding};
 
 const SCREEN: (u16, u16) = (32, 32);

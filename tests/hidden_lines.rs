@@ -11,13 +11,12 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use support::whole;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{DepthBias, DepthOnly, DepthState, Flat, Fragment, Gouraud, Shader};
-use zstrip::geometry::{
-    Corner, Face, Joined, Lines, Mesh, MeshData, Placed, Positions, ScreenVertex, Topology, Transform, VertexShader,
-    Viewport,
-};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Joined, Lines, Mesh, MeshData, Positions, Topology};
 use zstrip::raster::{Line, PixelRect};
+use zstrip::shader::{DepthOnly, Flat, Gouraud};
+use zstrip::span::{DepthBias, DepthState, Fragment, Shader};
+use zstrip::vertex::{Corner, Face, Placed, ScreenVertex, Transform, VertexShader, Viewport};
 use zstrip::{State, Thin};
 
 const SCREEN: (u16, u16) = (320, 240);

@@ -8,20 +8,19 @@ mod support;
 use core::convert::Infallible;
 use std::error::Error;
 use support::{difference, strips};
+use zstrip::color::{PixelFormat, Rgb565Be};
+use zstrip::embedded_graphics_core::Pixel;
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
 use zstrip::embedded_graphics_core::geometry::{OriginDimensions, Size};
-use zstrip::embedded_graphics_core::pixelcolor::{Gray8, GrayColor, Rgb565, Rgb888, RgbColor};
+use zstrip::embedded_graphics_core::pixelcolor::{Gray8, GrayColor, PixelColor, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
-use zstrip::embedded_graphics_core::{Pixel, pixelcolor::PixelColor};
-use zstrip::fragment::{Flat, Gouraud, PixelFormat, Shader};
-use zstrip::geometry::{
-    Bounds, BoundsNode, Mesh, MeshData, MeshError, Positions, Topology, VertexShader, Viewport, ViewportError,
-};
+use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, RamBudget, Renderer, RendererError};
 use zstrip::math::{Affine, Angle, ProjectionError, Projective, Scalar, Vec3};
-use zstrip::output::{
-    Buffers, FrameError, FrameSlice, FramebufferError, FramebufferRenderer, RamBudget, Renderer, RendererError,
-    Rgb565Be, StripPixels, StripSink, records_len,
-};
+use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, MeshError, Positions, Topology};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::Shader;
+use zstrip::target::{FrameSlice, FramebufferError, StripPixels, StripSink, records_len};
+use zstrip::vertex::{VertexShader, Viewport, ViewportError};
 
 /// The error, and that it says more than nothing.
 fn told<T, E: Error>(result: Result<T, E>) -> E {
@@ -398,7 +397,7 @@ where
     let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
     let mut renderer = Renderer::<P>::new((20, 16), buffers).expect("a renderer");
     let mut display = Display::new();
-    let draw = |scene: &mut zstrip::Scene<'_, zstrip::output::Strip<'_, P>>| {
+    let draw = |scene: &mut zstrip::Scene<'_, zstrip::target::Strip<'_, P>>| {
         scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(COLOR));
     };
     renderer.frame(&mut display, background, draw).expect("a display that works");

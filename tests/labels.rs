@@ -12,12 +12,13 @@ use embedded_graphics::primitives::{Circle, PrimitiveStyle, Rectangle};
 use embedded_graphics::text::{Baseline, Text};
 use reference::rng::Rng;
 use support::{Soup, angle, apply, difference, matrix, on_screen, rigid, scalar, strips, vector, whole};
-use zstrip::fragment::{Compare, DepthState, Flat, Gouraud, PixelFormat};
-use zstrip::geometry::{
-    DepthScale, Mesh, MeshData, Placed, Positions, ScreenVertex, Topology, Transform, Viewport, place,
-};
+use zstrip::color::PixelFormat;
+use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, FramebufferRenderer, Renderer};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::{Compare, DepthState};
+use zstrip::vertex::{DepthScale, Placed, ScreenVertex, Transform, Viewport, place};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 const SCREEN: (u16, u16) = (64, 48);

@@ -6,11 +6,11 @@ mod support;
 use reference::rng::Rng;
 use support::{strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{Matcap, PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded, Shader};
-use zstrip::geometry::{
-    DirectionalLight, Light, Lighting, Material, Mesh, MeshData, PointLight, Positions, Topology, Viewer,
-};
+use zstrip::light::{DirectionalLight, Light, Lighting, Material, PointLight, Viewer};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::{Matcap, PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
+use zstrip::span::Shader;
 use zstrip::{Cull, State};
 
 type V = [f64; 3];

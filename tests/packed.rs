@@ -10,15 +10,15 @@ use embedded_graphics_core::Pixel;
 use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{OriginDimensions, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888, WebColors};
-use zstrip::embedded_graphics_core;
-use zstrip::fragment::{Flat, Gouraud, PixelFormat};
-use zstrip::geometry::{Mesh, MeshData, Positions};
+use zstrip::color::{Dither, Levels, PixelFormat};
+use zstrip::frame::{Buffers, Renderer};
 use zstrip::math::{Angle, Projective, Scalar};
-use zstrip::output::{
-    Buffers, Dither, DitheredDisplay, Levels, PackedFormat, Packer, PackerError, Pages, Renderer, Rows, RowsLowFirst,
-    Strip, StripPixels,
+use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::target::{
+    DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst, Strip, StripPixels,
 };
-use zstrip::{Cull, Framebuffer, Scene, State};
+use zstrip::{Cull, Framebuffer, Scene, State, embedded_graphics_core};
 
 /// Draws the torus in strips of `rows` rows and hands them, packed, to `sink` with their first row.
 fn torus<P: PixelFormat, F: PackedFormat>(

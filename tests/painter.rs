@@ -8,11 +8,11 @@ mod support;
 use reference::rng::Rng;
 use support::whole;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
-use zstrip::fragment::{DepthState, Gouraud};
-use zstrip::geometry::{
-    Mesh, MeshData, Order, Positions, SortError, Sortable, Topology, Viewport, far_to_near, painters_order,
-};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::Gouraud;
+use zstrip::span::DepthState;
+use zstrip::vertex::{Order, SortError, Sortable, Viewport, far_to_near, painters_order};
 use zstrip::{Cull, State};
 
 const SCREEN: (u16, u16) = (160, 120);

@@ -1,7 +1,7 @@
 //! The README's figures are those of the library.
 
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::output::RamBudget;
+use zstrip::frame::RamBudget;
 
 const README: &str = include_str!("../README.md");
 

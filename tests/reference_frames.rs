@@ -15,11 +15,12 @@ use reference::snapped::{self, Shading, SnappedVertex};
 use scenes::{polygons, soup, torus};
 use support::{apply, matrix, position, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
-use zstrip::fragment::{DepthState, Fragment, Gouraud, Shader};
-use zstrip::geometry::{
-    Corner, DepthRange, Face, Light, Mesh, MeshData, NORMAL_ONE, Positions, Topology, VertexShader, Viewport,
-};
+use zstrip::light::{Light, NORMAL_ONE};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::Gouraud;
+use zstrip::span::{DepthState, Fragment, Shader};
+use zstrip::vertex::{Corner, DepthRange, Face, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State};
 
 /// A draw of a scene.
@@ -85,7 +86,7 @@ fn scene_parts(name: &str, size: (u16, u16), turn: Angle) -> Vec<Part> {
 fn parts_are_what_the_examples_draw() {
     let size = (80, 60);
     let turn = Angle(4321);
-    let frame = |draw: &dyn Fn(&mut Scene<'_, zstrip::output::FrameSlice<'_, Rgb888>>)| {
+    let frame = |draw: &dyn Fn(&mut Scene<'_, zstrip::target::FrameSlice<'_, Rgb888>>)| {
         whole::<Rgb888>(size, Rgb888::BLACK, draw).1
     };
     for (name, depths) in [

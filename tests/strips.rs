@@ -8,13 +8,15 @@ mod support;
 use proptest::prelude::*;
 use reference::rng::Rng;
 use support::{Soup, difference, strips, unrecorded_strips};
+use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
-use zstrip::fragment::{DepthBias, DepthState, Flat, Gouraud, PixelFormat};
-use zstrip::geometry::{DepthScale, Mesh, MeshData, Positions, Viewport};
+use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{
-    Buffers, FrameSlice, Framebuffer, FramebufferRenderer, Renderer, Rgb565Be, Stats, Strip, records_len,
-};
+use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::{DepthBias, DepthState};
+use zstrip::target::{FrameSlice, Framebuffer, Stats, Strip, records_len};
+use zstrip::vertex::{DepthScale, Viewport};
 use zstrip::{Cull, Scene, State};
 
 const SCREEN: (u16, u16) = (320, 240);
@@ -79,8 +81,8 @@ fn every_other_scene_is_the_same_in_any_strips() {
 /// What a random case draws: a soup in a part of the screen, and then turned, in two shaders, in the whole of it.
 fn draw_soup<F: Framebuffer>(scene: &mut Scene<'_, F>, mesh: &Mesh<'_>, state: State, part: Viewport)
 where
-    Gouraud: zstrip::fragment::Shader<F::Format>,
-    Flat: zstrip::fragment::Shader<F::Format>,
+    Gouraud: zstrip::span::Shader<F::Format>,
+    Flat: zstrip::span::Shader<F::Format>,
 {
     let (width, height) = scene.screen();
     scene.set_viewport(part);
@@ -92,8 +94,8 @@ where
 }
 
 fn random_state(rng: &mut Rng) -> State {
-    use zstrip::fragment::Compare;
-    use zstrip::geometry::DepthRange;
+    use zstrip::span::Compare;
+    use zstrip::vertex::DepthRange;
     State {
         cull: rng.pick(&[Cull::Back, Cull::Front, Cull::None]),
         depth: DepthState {

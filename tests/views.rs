@@ -13,10 +13,11 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, PrimitiveStyle, Rectangle};
 use reference::rng::Rng;
 use support::{Soup, strips};
-use zstrip::fragment::{Gouraud, PixelFormat};
-use zstrip::geometry::Mesh;
+use zstrip::color::{PixelFormat, Rgb565Be};
+use zstrip::frame::{Buffers, FrameError, FrameView};
 use zstrip::math::Projective;
-use zstrip::output::{Buffers, FrameError, FrameView, Rgb565Be};
+use zstrip::mesh::Mesh;
+use zstrip::shader::Gouraud;
 use zstrip::{Cull, Framebuffer, Renderer, Scene, State};
 
 const DISPLAY: (i32, i32) = (90, 60);
@@ -34,7 +35,7 @@ fn display() -> Display {
 
 fn draw<F: Framebuffer>(scene: &mut Scene<'_, F>, mesh: &Mesh<'_>)
 where
-    Gouraud: zstrip::fragment::Shader<F::Format>,
+    Gouraud: zstrip::span::Shader<F::Format>,
 {
     let state = State { cull: Cull::None, ..State::DEFAULT };
     scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());

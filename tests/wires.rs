@@ -7,15 +7,15 @@ use reference::rng::Rng;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use support::{difference, strips, whole};
+use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::fragment::{Compare, DepthState, Flat, Fragment, Gouraud, PixelFormat, Shader};
-use zstrip::geometry::{
-    Corner, DepthRange, Face, Joined, Lines, MeshData, Placed, Points, Positions, ScreenVertex, Transform,
-    VertexShader, Viewport,
-};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::Framebuffer;
+use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::raster::{Line, PixelRect, square};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::{Compare, DepthState, Fragment, Shader};
+use zstrip::target::Framebuffer;
+use zstrip::vertex::{Corner, DepthRange, Face, Placed, ScreenVertex, Transform, VertexShader, Viewport};
 use zstrip::{Dashed, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 
 const SCREEN: (u16, u16) = (160, 120);
@@ -110,7 +110,7 @@ impl Shader<Rgb565> for Seen<'_> {
 }
 
 /// Fragments of a draw in a whole frame.
-fn fragments(draw: impl Fn(&mut Scene<'_, zstrip::output::FrameSlice<'_, Rgb565>>, &Seen<'_>)) -> Vec<Hit> {
+fn fragments(draw: impl Fn(&mut Scene<'_, zstrip::target::FrameSlice<'_, Rgb565>>, &Seen<'_>)) -> Vec<Hit> {
     let mut seen = Vec::new();
     let shader = Seen(RefCell::new(&mut seen));
     whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| draw(scene, &shader));
@@ -206,7 +206,7 @@ fn dashes_are_the_pixels_of_the_pattern() {
         let pattern = rng.next_u64() as u32;
         let lines = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
         let draw =
-            |stroke: &dyn Fn(&mut Scene<'_, zstrip::output::FrameSlice<'_, Rgb565>>, &Seen<'_>)| fragments(stroke);
+            |stroke: &dyn Fn(&mut Scene<'_, zstrip::target::FrameSlice<'_, Rgb565>>, &Seen<'_>)| fragments(stroke);
         let all = draw(&|scene, shader| scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Thin));
         let dashed =
             draw(&|scene, shader| scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Dashed(pattern)));
@@ -358,12 +358,12 @@ fn a_stroke_that_changes_between_strips_is_an_error() {
     let buffers = zstrip::Buffers { color: &mut color, depth: &mut depth, records: &mut records };
     let mut renderer = zstrip::Renderer::<Rgb565>::new(SCREEN, buffers).expect("a renderer");
     let mut calls = 0;
-    let sink = |_: &zstrip::output::StripPixels<'_, Rgb565>| Ok::<(), core::convert::Infallible>(());
+    let sink = |_: &zstrip::target::StripPixels<'_, Rgb565>| Ok::<(), core::convert::Infallible>(());
     let result = renderer.frame_to(sink, Rgb565::BLACK, |scene| {
         calls += 1;
         scene.draw_lines(if calls < 4 { &lines } else { &other }, &camera(), &Flat::unlit(Rgb888::RED));
     });
-    assert_eq!(result, Err(zstrip::output::FrameError::SceneChanged(0)));
+    assert_eq!(result, Err(zstrip::frame::FrameError::SceneChanged(0)));
     assert_eq!(calls, 4);
 }
 
@@ -372,8 +372,8 @@ fn depth_decides_between_lines_and_faces() {
     // A line through a square in the middle: half of it is in front.
     let corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]].map(|[x, y, z]| Vec3::from_ints(x, y, z));
     let data = MeshData::new(Positions::Exact(&corners));
-    let mesh = MeshData { topology: zstrip::geometry::Topology::Quads, ..data };
-    let mesh = zstrip::geometry::Mesh::new(mesh).expect("a mesh");
+    let mesh = MeshData { topology: zstrip::mesh::Topology::Quads, ..data };
+    let mesh = zstrip::mesh::Mesh::new(mesh).expect("a mesh");
     let ends = [Vec3::from_milli(-900, 0, 500), Vec3::from_milli(900, 0, -500)];
     let line = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
     let draw = |first: bool| {

@@ -9,8 +9,8 @@ use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
-use zstrip::fragment::PixelFormat;
-use zstrip::output::StripPixels;
+use zstrip::color::PixelFormat;
+use zstrip::target::StripPixels;
 
 /// A whole frame, as a display would keep it: red, green and blue in 8 bits.
 pub struct Picture {

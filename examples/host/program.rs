@@ -8,9 +8,10 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
-use zstrip::fragment::PixelFormat;
+use zstrip::color::PixelFormat;
+use zstrip::frame::RamBudget;
 use zstrip::math::Angle;
-use zstrip::output::{RamBudget, Stats, Strip, StripPixels};
+use zstrip::target::{Stats, Strip, StripPixels};
 use zstrip::{Buffers, Renderer, Scene};
 
 /// What is shown.

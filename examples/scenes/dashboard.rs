@@ -8,9 +8,9 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::*;
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBuilder};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::fragment::NoDepth;
 use zstrip::math::Angle;
-use zstrip::output::Overlay;
+use zstrip::span::NoDepth;
+use zstrip::target::Overlay;
 use zstrip::{Framebuffer, Scene};
 
 type On<'c, F> = Overlay<'c, F, NoDepth>;

@@ -2,10 +2,11 @@
 
 use super::{in_place, room, torus_gouraud};
 use zstrip::Scene;
+use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8};
-use zstrip::fragment::PixelFormat;
+use zstrip::frame::{Buffers, Renderer};
 use zstrip::math::Angle;
-use zstrip::output::{Buffers, Dither, Dithered, PackedFormat, Packer, Pages, Renderer, Rgb332, Rgb565Be, Rows, Strip};
+use zstrip::target::{PackedFormat, Packer, Pages, Rows, Strip};
 
 /// Memory for a frame: colours, packed strips and whatever else a pixel takes are in `color`.
 pub struct Memory<'m> {

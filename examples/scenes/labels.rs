@@ -6,9 +6,9 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle};
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBuilder};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::fragment::{Flat, Gouraud};
-use zstrip::geometry::{Mesh, MeshData, Positions, Topology};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::{Flat, Gouraud};
 use zstrip::{Framebuffer, Scene};
 
 const P: i16 = i16::MAX;

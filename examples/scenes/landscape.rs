@@ -1,7 +1,7 @@
 //! A computed landscape: a height field with colours, a lake, and pines.
 
-use zstrip::geometry::{Mesh, MeshData, Positions, Topology};
 use zstrip::math::{Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 
 /// Cells a side, and half of the side's length.
 const CELLS: usize = 56;

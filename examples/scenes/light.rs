@@ -2,16 +2,17 @@
 
 use super::kept::kept;
 use super::{UNLIT, landscape, pot, tiles};
+use zstrip::color::{PixelFormat, Rgba8888};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
-use zstrip::fragment::{
-    AddAlpha, Blend, DepthState, Flat, FogCurve, FogTable, Fogged, Fragment, Gouraud, Matcap, Multiply, Opacity,
-    PerFace, PerFragment, PerFragmentNear, PerVertex, PixelFormat, Rgba8888, Shaded, Shader,
-};
-use zstrip::geometry::{
-    Corner, DirectionalLight, Light, Lighting, LitMaterial, Material, Mesh, MeshData, PointLight, Positions, Topology,
-    VertexShader, Viewer, sort_back_to_front, view_depth,
-};
+use zstrip::light::{DirectionalLight, Light, Lighting, LitMaterial, Material, PointLight, Viewer};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology, sort_back_to_front, view_depth};
+use zstrip::shader::{
+    AddAlpha, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity, PerFace, PerFragment,
+    PerFragmentNear, PerVertex, Shaded,
+};
+use zstrip::span::{DepthState, Fragment, Shader};
+use zstrip::vertex::{Corner, VertexShader};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// How the pot is shaded.
@@ -435,7 +436,7 @@ fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
             diffuse: [0; 3],
             ..Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48)
         };
-        Blend::new(Shaded::new(PerFragmentNear, lit_pot(turn, &gloss)), zstrip::fragment::Add)
+        Blend::new(Shaded::new(PerFragmentNear, lit_pot(turn, &gloss)), zstrip::shader::Add)
     });
     scene.draw_with(State { cull: Cull::Back, ..GLASS }, pot::mesh(), &mvp, &*shader);
 }

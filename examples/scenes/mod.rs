@@ -24,10 +24,12 @@ pub mod wires;
 
 use kept::kept;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::fragment::{Flat, Gouraud, Shader};
-use zstrip::geometry::Light;
+use zstrip::frame::{Buffers, Renderer};
+use zstrip::light::Light;
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, Renderer, Stats, Strip};
+use zstrip::shader::{Flat, Gouraud};
+use zstrip::span::Shader;
+use zstrip::target::{Stats, Strip};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// Something to draw.

@@ -7,8 +7,9 @@ use zstrip::embedded_graphics_core::geometry::{Dimensions, Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{PixelColor, Rgb565, Rgb888};
 use zstrip::embedded_graphics_core::primitives::{PointsIter, Rectangle};
 use zstrip::embedded_graphics_core::{Drawable, Pixel};
-use zstrip::fragment::{Compare, DepthState, Gouraud};
 use zstrip::math::{Angle, Projective, Vec3};
+use zstrip::shader::Gouraud;
+use zstrip::span::{Compare, DepthState};
 use zstrip::{Framebuffer, Scene};
 
 /// A square of 16 × 16 pixels around a point.

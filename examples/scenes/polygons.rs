@@ -1,7 +1,7 @@
 //! Scenes of a few large polygons.
 
-use zstrip::geometry::{Mesh, MeshData, Positions, Topology};
 use zstrip::math::{Angle, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 
 type Rgb = [u8; 3];
 

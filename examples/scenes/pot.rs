@@ -1,7 +1,7 @@
 //! A pot with a lid, a spout and a handle: surfaces of revolution and tubes along Bézier curves, with smooth normals.
 
-use zstrip::geometry::{Mesh, MeshData, Positions, Topology};
 use zstrip::math::{Angle, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 
 /// A point or a vector of a plane, 16.16.
 type Flat = [i64; 2];

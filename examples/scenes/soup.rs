@@ -1,7 +1,7 @@
 //! Random triangles, from fixed seeds.
 
-use zstrip::geometry::{Mesh, MeshData, Positions};
 use zstrip::math::{Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions};
 
 /// A linear congruential generator that the compiler can run.
 #[derive(Clone, Copy)]

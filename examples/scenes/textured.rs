@@ -2,9 +2,11 @@
 
 use super::kept::kept;
 use super::{LIGHT, camera};
-use zstrip::fragment::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Textured, Tile};
-use zstrip::geometry::{Mesh, MeshData, NORMAL_ONE, Positions, Topology};
+use zstrip::light::NORMAL_ONE;
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::Textured;
+use zstrip::texture::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Tile};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// Sides of the crate's texture.

@@ -1,7 +1,8 @@
 //! A tiled floor: 16 × 16 tiles of half a unit, whose first corners have their colours.
 
-use zstrip::geometry::{Mesh, MeshData, NORMAL_ONE, Positions, Topology};
+use zstrip::light::NORMAL_ONE;
 use zstrip::math::{Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 
 const TILES: usize = 16;
 const ROW: usize = TILES + 1;

@@ -1,7 +1,7 @@
 //! A torus: radii 1 and 0.4, 32 × 16 quads, axis y.
 
-use zstrip::geometry::{Lines, Mesh, MeshData, Positions, Topology, edges};
 use zstrip::math::{Angle, Scalar, Vec3};
+use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
 
 const AROUND: usize = 32;
 const ACROSS: usize = 16;

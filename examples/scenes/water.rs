@@ -2,9 +2,12 @@
 
 use super::kept::kept;
 use super::{LIGHT, camera, textured};
-use zstrip::fragment::{Fragment, PixelFormat, Shader, Textured};
-use zstrip::geometry::{Corner, Mesh, MeshData, Positions, Topology, VertexShader};
+use zstrip::color::PixelFormat;
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::shader::Textured;
+use zstrip::span::{Fragment, Shader};
+use zstrip::vertex::{Corner, VertexShader};
 use zstrip::{Framebuffer, Scene};
 
 /// Squares each way, of 1/4 each.

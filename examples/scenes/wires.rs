@@ -1,9 +1,10 @@
 //! Lines and points in space: a wireframe with its hidden lines removed, axes, a cloud of points.
 
 use super::{Rgb888, seen, torus, torus_model};
-use zstrip::fragment::{Compare, DepthBias, DepthOnly, DepthState, Flat, Gouraud};
-use zstrip::geometry::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::math::{Angle, Projective, Scalar, Vec3};
+use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
+use zstrip::shader::{DepthOnly, Flat, Gouraud};
+use zstrip::span::{Compare, DepthBias, DepthState};
 use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thick};
 
 /// Three axes from the origin, as long as the torus is wide.

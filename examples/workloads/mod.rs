@@ -12,13 +12,17 @@
 #[cfg(not(target_os = "none"))]
 pub mod reference;
 
+use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::fragment::{
-    DepthState, DepthTest, Flat, Fragment, Fragments, Gouraud, PixelFormat, Shader, Textured, Tile,
-};
-use zstrip::geometry::{Corner, Face, Light, Mesh, MeshData, Positions, VertexShader};
+use zstrip::frame::{Buffers, Renderer, RendererError};
+use zstrip::light::Light;
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, Renderer, RendererError, Stats, Strip};
+use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::shader::{Flat, Gouraud, Textured};
+use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
+use zstrip::target::{Stats, Strip};
+use zstrip::texture::Tile;
+use zstrip::vertex::{Corner, Face, VertexShader};
 use zstrip::{Scene, State};
 
 pub const WIDTH: usize = 320;

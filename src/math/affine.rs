@@ -1,7 +1,9 @@
 //! Affine transforms: a 3×3 matrix and a translation, for placing models and cameras.
 
-use super::vector::saturate;
-use super::{Angle, ProjectionError, Scalar, Vec3};
+use super::angle::Angle;
+use super::error::ProjectionError;
+use super::format::Scalar;
+use super::vector::{Vec3, saturate};
 use core::ops::Mul;
 
 /// An affine transform of column vectors, `p -> M p + t`; entries are 16.16.

@@ -1,6 +1,6 @@
 //! Binary angles and the integer sine.
 
-use super::Scalar;
+use super::format::Scalar;
 
 /// An angle in binary units: 65,536 make one turn, and arithmetic wraps as angles do.
 ///

@@ -3,7 +3,9 @@
 //! The only file that knows floats, and it takes them apart rather than calculating with them: a float is an integer
 //! times a power of two, so that conversions are exact up to one rounding and link no float routine.
 
-use super::{Affine, Projective, Vec3};
+use super::affine::Affine;
+use super::projective::Projective;
+use super::vector::Vec3;
 use core::fmt;
 use micromath::Quaternion;
 use micromath::vector::F32x3;

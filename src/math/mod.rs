@@ -5,6 +5,7 @@
 mod affine;
 mod angle;
 mod division;
+mod error;
 mod exponential;
 mod format;
 mod inverse_sqrt;
@@ -19,13 +20,14 @@ mod vector;
 pub use affine::Affine;
 pub use angle::Angle;
 pub(crate) use division::{divide, divide_modulo, divided};
+pub use error::ProjectionError;
 pub use exponential::exp_negative;
 pub use format::{Scalar, Wide};
 pub use inverse_sqrt::{inverse_sqrt, unit_vector};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
 pub use precision::{DepthPrecision, PrecisionError};
-pub use projective::{ProjectionError, Projective};
+pub use projective::Projective;
 pub use reciprocal::{CoarseDivisor, Divisor, ShortDivisor, mul_high, mul_high_apart, mul_high_signed, reciprocal};
 pub(crate) use reciprocal::{SMALL_CORE, byte_zeros, leading_zeros, leading_zeros_long, product};
 pub use root::isqrt;

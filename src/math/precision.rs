@@ -1,6 +1,7 @@
 //! How far apart two things must be to differ in 16-bit depth, and where to put the near plane so that they do.
 
-use super::{ProjectionError, Scalar, Wide};
+use super::error::ProjectionError;
+use super::format::{Scalar, Wide};
 use core::fmt;
 
 /// Steps of depth.
@@ -22,8 +23,8 @@ const STEPS: i128 = 65_535;
 ///
 /// With the near plane at the pilot's nose, a hangar 1 km away and what is 15 m behind it fight, and clouds 10 km away are all at
 /// one distance. A near plane at 10 m mends the one, the cockpit being drawn by a camera of its own in front of everything;
-/// for the other, there is [`DepthScale::Uniform`](crate::geometry::DepthScale::Uniform). The marks on the runway want a
-/// [bias](crate::fragment::DepthBias) in any case.
+/// for the other, there is [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform). The marks on the runway want a
+/// [bias](crate::span::DepthBias) in any case.
 ///
 /// ```
 /// use zstrip::math::{DepthPrecision, Scalar};
@@ -140,7 +141,7 @@ impl DepthPrecision {
         Wide::from_bits((self.boundary(2 * depth + 1) - self.boundary(2 * depth - 1)) as i64)
     }
 
-    /// The same for [`DepthScale::Uniform`](crate::geometry::DepthScale::Uniform), at any distance, rounded up.
+    /// The same for [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform), at any distance, rounded up.
     pub const fn uniform_bin(&self) -> Wide {
         let (n, f) = self.planes();
         Wide::from_bits(((((f - n) << 16) + STEPS - 1) / STEPS) as i64)

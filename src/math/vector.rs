@@ -1,6 +1,6 @@
 //! Three-dimensional vectors in 16.16.
 
-use super::Scalar;
+use super::format::Scalar;
 use core::ops::{Add, Mul, Neg, Sub};
 
 /// A point or direction: three [`Scalar`]s. Arithmetic saturates, so nothing here can panic or wrap.

@@ -7,7 +7,7 @@
 //! ```
 //! One reciprocal a line, no division. Values are kept modulo 2³², as planes over triangles are.
 
-use super::Line;
+use super::line::Line;
 use crate::math::{mul_high, reciprocal};
 
 /// What all quantities on a line share.

@@ -8,8 +8,8 @@
 //! than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the exact one. D is below 2³², and 45
 //! bits behind the point leave room for the rounding of a step in each of 4,096 rows.
 
-use crate::geometry::ScreenVertex;
 use crate::math::{ShortDivisor, divide_modulo, leading_zeros_long, mul_high_apart, reciprocal};
+use crate::vertex::ScreenVertex;
 
 /// The state of an edge at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

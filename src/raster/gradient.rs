@@ -11,10 +11,10 @@
 //! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
 //! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
 
-use crate::geometry::{ScreenVertex, WidePlane};
 use crate::math::{
     SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed, reciprocal,
 };
+use crate::vertex::{ScreenVertex, WidePlane};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +48,7 @@ pub struct PlaneEquation {
 }
 
 impl Gradients {
-    /// Of a triangle with its [`signed_area`](crate::geometry::signed_area), which must not be 0, for a screen of
+    /// Of a triangle with its [`signed_area`](crate::vertex::signed_area), which must not be 0, for a screen of
     /// `width` × `height` px.
     #[inline]
     pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {

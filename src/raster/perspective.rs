@@ -9,9 +9,9 @@
 //! so a pixel takes the planes of d q and of q, and one reciprocal. Since |d| q is at most an eighth of q at the vertices, it is
 //! at every pixel.
 
-use super::Gradients;
-use crate::geometry::{Correction, Lane, PerspectiveClass, ScreenVertex, Varyings, WidePlane};
+use super::gradient::Gradients;
 use crate::math::mul_high_signed;
+use crate::vertex::{Correction, Lane, PerspectiveClass, ScreenVertex, Varyings, WidePlane};
 
 /// Puts d q (or d, where perspective is too weak to be seen) and q in the place of perspective-correct varyings and 1 / w;
 /// `screen` is the screen's size.
@@ -56,7 +56,7 @@ fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
 }
 
 /// # Format
-/// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](super::Gradients)); so are q and d q, which
+/// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](crate::raster::Gradients)); so are q and d q, which
 /// makes h, of 28 bits, wrong by some 2³¹ (reach + 64) / q. [`Narrow`](PerspectiveClass::Narrow) keeps that below 2¹⁵
 /// units, 2⁻¹³ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter of that, 2⁻¹⁶.
 #[inline(never)]
@@ -87,7 +87,7 @@ fn convert(values: [&mut [i32]; 3], lanes: &mut [Lane], reach: u32) -> Perspecti
     class
 }
 
-/// Numbers in the ratio of 1 / w, from the words of [`inverse_w`](crate::geometry::inverse_w): the largest in 2³⁰..2³¹, none
+/// Numbers in the ratio of 1 / w, from the words of [`inverse_w`](crate::vertex::inverse_w): the largest in 2³⁰..2³¹, none
 /// below 1.
 fn weights(words: [u32; 3]) -> [u32; 3] {
     let [a, b, c] = words;

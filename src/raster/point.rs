@@ -1,6 +1,6 @@
 //! Points → squares of pixels.
 
-use super::PixelRect;
+use super::triangle::PixelRect;
 
 /// The pixels of a square: those whose centres are inside of it, or on its left or top side.
 ///

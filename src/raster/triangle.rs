@@ -8,8 +8,8 @@
 //!    c-'
 //! ```
 
-use super::Edge;
-use crate::geometry::ScreenVertex;
+use super::edge::Edge;
+use crate::vertex::ScreenVertex;
 use core::ops::Range;
 
 /// A half-open rectangle of pixels.
@@ -57,11 +57,11 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 /// Walks the spans of a triangle inside a rectangle from top to bottom: calls `span(y, columns)` for each that is not
 /// empty.
 ///
-/// `area` is the triangle's [`signed_area`](crate::geometry::signed_area), vertices are within ±32,767 px. Coverage is
+/// `area` is the triangle's [`signed_area`](crate::vertex::signed_area), vertices are within ±32,767 px. Coverage is
 /// exact: as if computed with infinite precision, with the top-left rule, for either winding.
 ///
 /// ```
-/// use zstrip::geometry::{ScreenVertex, signed_area};
+/// use zstrip::vertex::{ScreenVertex, signed_area};
 /// use zstrip::raster::{PixelRect, spans};
 /// let [a, b, c] = [[0, 0], [0, 2], [2, 0]].map(|[x, y]| ScreenVertex::new(x * 256, y * 256, 0));
 /// let mut found = Vec::new();

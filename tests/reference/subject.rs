@@ -6,11 +6,13 @@
 use super::conformance::{ClipTriangle, PerspectiveTriangle, Rasterizer, ScreenTriangle};
 use std::cell::RefCell;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::fragment::{DepthState, DepthTest, Fragment, Fragments, Shader};
-use zstrip::geometry::{Corner, Face, Mesh, MeshData, Perspective, Positions, VertexShader};
+use zstrip::frame::FramebufferRenderer;
 use zstrip::math::{Projective, Scalar};
-use zstrip::output::{FrameSlice, FramebufferRenderer};
+use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::raster::{Line, PixelRect, square};
+use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
+use zstrip::target::FrameSlice;
+use zstrip::vertex::{Corner, Face, Perspective, VertexShader};
 use zstrip::{Cull, State};
 
 /// Draws with zstrip; strips of `strip_rows` rows, and `records` words of records.

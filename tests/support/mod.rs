@@ -4,13 +4,14 @@
 use crate::reference::rng::Rng;
 use crate::reference::scenes::clip_soup;
 use zstrip::Scene;
-use zstrip::fragment::PixelFormat;
-use zstrip::geometry::{
-    ClipVertex, DepthRange, Mesh, Outcode, Positions, ScreenVertex, Transform, Viewport, clip_triangle, project,
-    weighted,
-};
+use zstrip::color::PixelFormat;
+use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
 use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
-use zstrip::output::{Buffers, FrameSlice, FramebufferRenderer, Renderer, Stats, Strip, StripPixels};
+use zstrip::mesh::{Mesh, Positions};
+use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
+use zstrip::vertex::{
+    ClipVertex, DepthRange, Outcode, ScreenVertex, Transform, Viewport, clip_triangle, project, weighted,
+};
 
 /// Draws a frame into strips of `rows` rows with `records` words of records, and puts it together.
 ///
@@ -106,9 +107,9 @@ impl Soup {
     }
 
     pub fn mesh(&self) -> Mesh<'_> {
-        Mesh::new(zstrip::geometry::MeshData {
+        Mesh::new(zstrip::mesh::MeshData {
             colors: Some(&self.colors),
-            ..zstrip::geometry::MeshData::new(Positions::Homogeneous(&self.positions))
+            ..zstrip::mesh::MeshData::new(Positions::Homogeneous(&self.positions))
         })
         .expect("a soup is a mesh")
     }
@@ -209,7 +210,7 @@ pub fn snapped<const K: usize>(
         if all.0 == 0 {
             fan(vertices.iter().filter_map(placed).collect());
         } else {
-            for part in [zstrip::geometry::Part::Between].into_iter().chain(range.parts_beyond(all)) {
+            for part in [zstrip::vertex::Part::Between].into_iter().chain(range.parts_beyond(all)) {
                 let mut corners = Vec::new();
                 let varyings = vertices.map(|v| v.1);
                 clip_triangle(vertices.map(|v| v.0), all, part, |corner| {

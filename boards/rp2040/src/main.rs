@@ -29,8 +29,10 @@ use rp2040_hal::{
     gpio::{FunctionSpi, Pins},
     pac,
 };
+use zstrip::color::Rgb565Be;
+use zstrip::frame::{Buffers, Renderer};
 use zstrip::math::Angle;
-use zstrip::output::{Buffers, Renderer, Rgb565Be, StripPixels};
+use zstrip::target::StripPixels;
 
 #[unsafe(link_section = ".boot2")]
 #[used]

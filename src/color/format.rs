@@ -1,0 +1,119 @@
+//! What the fragment stage must know of a pixel format; the formats themselves belong to the output stage.
+
+use super::luma::luma;
+use super::packed::packed_channels;
+use embedded_graphics_core::pixelcolor::PixelColor;
+
+/// How colours are kept in a framebuffer. Implemented by marker types, which for formats that embedded-graphics knows are
+/// its own colour types.
+pub trait PixelFormat {
+    /// What one pixel is in memory, in the very bytes that [`Strip::bytes`](crate::target::StripPixels::bytes) hands out.
+    type Raw: bytemuck::Pod;
+
+    /// The embedded-graphics colour of this format.
+    type Color: PixelColor;
+
+    /// Packs red, green and blue of 8 bits; surplus bits are cut.
+    fn pack(rgb: [u8; 3]) -> Self::Raw;
+
+    /// Red, green and blue of a pixel in 8 bits, black 0 and white 255: channels of fewer bits are repeated in the lower
+    /// ones. [`pack`](Self::pack) leads back to the same pixel.
+    fn unpack(raw: Self::Raw) -> [u8; 3];
+
+    /// The grey of a pixel: its [`luma`](crate::color::luma).
+    #[inline(always)]
+    fn luma(raw: Self::Raw) -> u8 {
+        luma(Self::unpack(raw))
+    }
+
+    /// Whether a pixel is a grey of 8 bits, for which [`from_luma`](Self::from_luma) is a short way.
+    const IS_LUMA: bool = false;
+
+    /// The pixel of a grey.
+    #[inline(always)]
+    fn from_luma(luma: u8) -> Self::Raw {
+        Self::pack([luma; 3])
+    }
+
+    /// From RGB565.
+    #[inline(always)]
+    fn from_rgb565(raw: u16) -> Self::Raw {
+        let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
+        Self::pack([(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8])
+    }
+
+    /// `a` · `weight` + `b` · (256 - `weight`), over 256 and rounded, in 8 bits a channel; for formats of 5 or 6 bits a
+    /// channel by channels of as many, with `weight` rounded to 32nds: within 1.5 of their steps.
+    #[inline(always)]
+    fn mix(a: Self::Raw, b: Self::Raw, weight: u32) -> Self::Raw {
+        Self::pack(mix(Self::unpack(a), Self::unpack(b), weight))
+    }
+
+    /// The sum of two colours, each channel at most full.
+    #[inline(always)]
+    fn add(a: Self::Raw, b: Self::Raw) -> Self::Raw {
+        let ([ar, ag, ab], [br, bg, bb]) = (Self::unpack(a), Self::unpack(b));
+        Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
+    }
+
+    /// Whether there is an alpha channel: only in [`Rgba8888`](crate::color::Rgba8888), for colours that are about to be blended.
+    const ALPHA: bool = false;
+
+    /// [`pack_at`](Self::pack_at) of red, green, blue and alpha, which is kept if there is a channel for it.
+    #[inline(always)]
+    fn pack_rgba([r, g, b, _]: [u8; 4], position: (i32, i32)) -> Self::Raw {
+        Self::pack_at([r, g, b], position)
+    }
+
+    /// Packs a colour for a pixel of the screen: dithered, if the format dithers.
+    #[inline(always)]
+    fn pack_at(rgb: [u8; 3], position: (i32, i32)) -> Self::Raw {
+        match Self::DITHER {
+            None => Self::pack(rgb),
+            Some(_) => {
+                let word = packed_channels(Self::DITHER, rgb).wrapping_add(Self::dither(position)[0]);
+                Self::from_packed(word, Self::packed_mask())
+            }
+        }
+    }
+
+    /// Bits of red, green and blue that a dithered format keeps, up to 6.
+    const DITHER: Option<[u32; 3]> = None;
+
+    /// What is added to packed channels, in the layout of [`from_packed`](Self::from_packed), at eight pixels from
+    /// `position` on, which is [repeated](crate::color::dither_word) every eight rows and columns of the screen.
+    #[inline(always)]
+    fn dither(position: (i32, i32)) -> &'static [u32; 8] {
+        let _ = position;
+        &[0; 8]
+    }
+
+    /// Whether [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
+    const PACKED: bool = false;
+
+    /// What [`from_packed`](Self::from_packed) wants at hand in a register.
+    #[inline(always)]
+    fn packed_mask() -> u32 {
+        0
+    }
+
+    /// From channels in one word, eight bits each: red in the bits 24 to 31, blue in 13 to 20, green in 2 to 9.
+    #[inline(always)]
+    fn from_packed(word: u32, mask: u32) -> Self::Raw {
+        let _ = mask;
+        Self::pack([(word >> 24) as u8, (word >> 2) as u8, (word >> 13) as u8])
+    }
+
+    /// From embedded-graphics' colour.
+    fn from_color(color: Self::Color) -> Self::Raw;
+
+    /// To embedded-graphics' colour.
+    fn to_color(raw: Self::Raw) -> Self::Color;
+}
+
+/// A mixture of two colours, `weight` 256ths of the first.
+#[inline(always)]
+pub(crate) fn mix([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], weight: u32) -> [u8; 3] {
+    let channel = |a: u8, b: u8| ((u32::from(a) * weight + u32::from(b) * (256 - weight) + 128) >> 8) as u8;
+    [channel(r, s), channel(g, t), channel(b, u)]
+}

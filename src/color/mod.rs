@@ -1,0 +1,23 @@
+//! What a pixel is: formats of colours, packed channels, ordered dither, fills.
+
+mod channels;
+mod dither;
+mod dithered;
+mod fill;
+mod format;
+mod formats;
+mod luma;
+mod packed;
+mod rgba;
+
+pub(crate) use channels::{channels, packed, round, unpacked};
+pub use dither::{Dither, Levels, Tones};
+pub use dithered::{DitherWords, Ditherable, Dithered};
+pub use fill::fill;
+pub(crate) use fill::{clear, clear_words};
+pub use format::PixelFormat;
+pub use formats::{Bgr565Be, Rgb332, Rgb565Be};
+pub use luma::luma;
+pub use packed::dither_word;
+pub(crate) use packed::{load, pack, spread, spread_step, squeeze, store, unsqueeze, word};
+pub use rgba::Rgba8888;

@@ -1,0 +1,60 @@
+//! How much RAM a frame needs, as constants.
+
+use crate::color::PixelFormat;
+use crate::target::records_len;
+
+/// Bytes of the buffers a frame is drawn with; `const`, so that a program can assert that they fit.
+///
+/// ```
+/// use embedded_graphics_core::pixelcolor::Rgb565;
+/// use zstrip::frame::RamBudget;
+/// const RAM: RamBudget = RamBudget::new::<Rgb565>(320, 16).with_records(1, 240, 512, 1, 480);
+/// const _: () = assert!(RAM.total() <= 40 * 1024);
+/// assert_eq!(RAM.color + RAM.depth, 20_480);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RamBudget {
+    /// Colours of a strip.
+    pub color: usize,
+    /// Depths of a strip.
+    pub depth: usize,
+    /// Records.
+    pub records: usize,
+    rows: u16,
+}
+
+impl RamBudget {
+    /// A strip of `rows` rows of a screen `width` px wide, without records.
+    pub const fn new<P: PixelFormat>(width: u16, rows: u16) -> Self {
+        let pixels = width as usize * rows as usize;
+        Self { color: pixels * size_of::<P::Raw>(), depth: pixels * 2, records: 0, rows }
+    }
+
+    /// Without a depth buffer: for what is drawn in the painter's order, and for 2-D drawing.
+    pub const fn without_depth(self) -> Self {
+        Self { depth: 0, ..self }
+    }
+
+    /// With room for the records of a scene; see [`records_len`](crate::target::records_len).
+    pub const fn with_records(
+        self,
+        draws: usize,
+        height: u16,
+        vertices: usize,
+        varying_words: usize,
+        triangles: usize,
+    ) -> Self {
+        let strips = (height as usize).div_ceil(if self.rows == 0 { 1 } else { self.rows as usize });
+        Self { records: 4 * records_len(strips, draws, vertices, varying_words, triangles), ..self }
+    }
+
+    /// With a number of words of records.
+    pub const fn with_record_words(self, words: usize) -> Self {
+        Self { records: 4 * words, ..self }
+    }
+
+    /// All of them.
+    pub const fn total(&self) -> usize {
+        self.color + self.depth + self.records
+    }
+}

@@ -1,0 +1,467 @@
+//! Meshes: borrowed slices, checked once.
+//!
+//! After [`Mesh::new`] every index is in range and every attribute is as long as the positions, so that the frame path
+//! needs no error for a mesh.
+
+use super::bounds::{Bounds, BoundsNode, bounding_box, sphere};
+use crate::math::{Scalar, Vec3};
+use core::fmt;
+
+/// Where the vertices of a mesh are.
+#[derive(Clone, Copy, Debug)]
+pub enum Positions<'a> {
+    /// Fractions of a cube, 6 bytes a vertex: position = `offset` + `scale` · q / 32,768. The fastest and smallest.
+    Quantized {
+        /// Fractions, 1.15.
+        points: &'a [[i16; 3]],
+        /// The distance from `offset` that the fraction 32,768 would stand for.
+        scale: Scalar,
+        /// The middle of the cube.
+        offset: Vec3,
+    },
+    /// 16.16 coordinates, 12 bytes a vertex.
+    Exact(&'a [Vec3]),
+    /// Homogeneous 16.16 coordinates x, y, z, w, for points at infinity or vertices that are in clip space already.
+    Homogeneous(&'a [[Scalar; 4]]),
+}
+
+impl Positions<'_> {
+    /// The numbers of a position as they are, 0 past the end; 0 for the w of those without.
+    #[inline(never)]
+    pub(crate) fn numbers(&self, index: usize) -> [i32; 4] {
+        match self {
+            Self::Quantized { points, .. } => {
+                let [x, y, z] = points.get(index).copied().unwrap_or_default();
+                [x.into(), y.into(), z.into(), 0]
+            }
+            Self::Exact(points) => {
+                let [x, y, z] = points.get(index).copied().unwrap_or_default().to_bits();
+                [x, y, z, 0]
+            }
+            Self::Homogeneous(points) => points.get(index).copied().unwrap_or_default().map(Scalar::to_bits),
+        }
+    }
+}
+
+/// How vertices, or indices, form triangles. A counter-clockwise triangle (y up) is a front face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Topology {
+    /// Three a triangle.
+    #[default]
+    Triangles,
+    /// Each vertex after the second makes a triangle with the two before it; every other one is turned round.
+    Strip,
+    /// Each vertex after the second makes a triangle with the one before it and the first.
+    Fan,
+    /// Four a quad, corners in order; drawn as (0, 1, 2) and (0, 2, 3).
+    Quads,
+}
+
+/// The slices of a mesh, before they are checked. Fill in what there is:
+///
+/// ```
+/// use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+/// use zstrip::math::{Scalar, Vec3};
+/// static CORNERS: [[i16; 3]; 4] = [[-16384, -16384, 0], [16384, -16384, 0], [16384, 16384, 0], [-16384, 16384, 0]];
+/// static SQUARE: Mesh<'static> = Mesh::constant(MeshData {
+///     topology: Topology::Quads,
+///     ..MeshData::new(Positions::Quantized { points: &CORNERS, scale: Scalar::ONE, offset: Vec3::ZERO })
+/// });
+/// assert_eq!(SQUARE.triangle_count(), 2);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct MeshData<'a> {
+    /// Vertex positions, at most 65,535.
+    pub positions: Positions<'a>,
+    /// How they form triangles.
+    pub topology: Topology,
+    /// Vertex numbers in drawing order; without them the vertices are drawn as they stand.
+    pub indices: Option<&'a [u16]>,
+    /// Unit normals a vertex, 2.14 ([`NORMAL_ONE`](crate::light::NORMAL_ONE) is 1).
+    pub normals: Option<&'a [[i16; 3]]>,
+    /// Unit normals a triangle, 2.14, for flat shading; computed from the positions where absent.
+    pub face_normals: Option<&'a [[i16; 3]]>,
+    /// Colours a vertex: red, green, blue.
+    pub colors: Option<&'a [[u8; 3]]>,
+    /// Texture coordinates a vertex, u to the right and v down, 1 = the whole texture.
+    pub uvs: Option<&'a [[Scalar; 2]]>,
+    /// Bounds, where they are known better than a pass over the positions would find.
+    pub bounds: Option<Bounds>,
+    /// A hierarchy of bounds over the triangles; see [`BoundsNode`]. Each triangle belongs into one leaf, whose bounds and
+    /// those of the nodes above have to hold it: what is in no leaf is not drawn.
+    pub hierarchy: Option<&'a [BoundsNode]>,
+}
+
+impl<'a> MeshData<'a> {
+    /// Just positions: a list of triangles.
+    pub const fn new(positions: Positions<'a>) -> Self {
+        Self {
+            positions,
+            topology: Topology::Triangles,
+            indices: None,
+            normals: None,
+            face_normals: None,
+            colors: None,
+            uvs: None,
+            bounds: None,
+            hierarchy: None,
+        }
+    }
+}
+
+/// A checked mesh. Copying it copies references only.
+#[derive(Clone, Copy, Debug)]
+pub struct Mesh<'a> {
+    data: MeshData<'a>,
+    bounds: Bounds,
+    triangles: u16,
+}
+
+/// What is wrong with a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum MeshError {
+    /// More than 65,535 vertices: how many.
+    TooManyVertices(usize),
+    /// More than 65,535 triangles: how many.
+    TooManyTriangles(usize),
+    /// The number of indices (or vertices, without indices) does not divide into whole triangles or quads.
+    Incomplete(usize),
+    /// An index points past the last vertex.
+    Index {
+        /// Where in the index list.
+        at: usize,
+        /// What it says.
+        index: u16,
+        /// How many vertices there are.
+        vertices: usize,
+    },
+    /// The normals are not as many as the vertices: how many there are.
+    Normals(usize),
+    /// The face normals are not as many as the triangles: how many there are.
+    FaceNormals(usize),
+    /// The colours are not as many as the vertices: how many there are.
+    Colors(usize),
+    /// The texture coordinates are not as many as the vertices: how many there are.
+    Uvs(usize),
+    /// The scale of quantized positions, raw 16.16, is not positive.
+    Scale(i32),
+    /// A node of the hierarchy does not skip forward within it, or its triangles are out of range: which node.
+    Hierarchy(usize),
+    /// The given bounds do not hold a vertex: which one.
+    Bounds(usize),
+}
+
+impl fmt::Display for MeshError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::TooManyVertices(n) => write!(f, "{n} vertices, at most 65535 are possible"),
+            Self::TooManyTriangles(n) => write!(f, "{n} triangles, at most 65535 are possible"),
+            Self::Incomplete(n) => write!(f, "{n} indices leave the last primitive incomplete"),
+            Self::Index { at, index, vertices } => {
+                write!(f, "index {index} at position {at} is out of range: there are {vertices} vertices")
+            }
+            Self::Normals(n) => write!(f, "{n} normals do not match the number of vertices"),
+            Self::FaceNormals(n) => write!(f, "{n} face normals do not match the number of triangles"),
+            Self::Colors(n) => write!(f, "{n} colours do not match the number of vertices"),
+            Self::Uvs(n) => write!(f, "{n} texture coordinates do not match the number of vertices"),
+            Self::Scale(s) => write!(f, "scale {} of the positions is not positive", Scalar::from_bits(s)),
+            Self::Bounds(n) => write!(f, "the given bounds do not hold vertex {n}"),
+            Self::Hierarchy(n) => write!(f, "node {n} of the hierarchy points out of range"),
+        }
+    }
+}
+
+impl core::error::Error for MeshError {}
+
+/// `Some` slice of another length than `expected`: its length.
+macro_rules! check_length {
+    ($slice:expr, $expected:expr, $error:ident) => {
+        if let Some(slice) = $slice {
+            if slice.len() != $expected {
+                return Err(MeshError::$error(slice.len()));
+            }
+        }
+    };
+}
+
+impl<'a> Mesh<'a> {
+    /// Checks the slices against each other and finds the bounds, unless they are given.
+    ///
+    /// # Errors
+    /// The first thing found wrong, with the offending index or count.
+    pub const fn new(data: MeshData<'a>) -> Result<Self, MeshError> {
+        let vertices = match data.positions {
+            Positions::Quantized { points, scale, .. } => {
+                if scale.to_bits() <= 0 {
+                    return Err(MeshError::Scale(scale.to_bits()));
+                }
+                points.len()
+            }
+            Positions::Exact(points) => points.len(),
+            Positions::Homogeneous(points) => points.len(),
+        };
+        if vertices > u16::MAX as usize {
+            return Err(MeshError::TooManyVertices(vertices));
+        }
+        let corners = match data.indices {
+            Some(indices) => {
+                let mut at = 0;
+                while at < indices.len() {
+                    if indices[at] as usize >= vertices {
+                        return Err(MeshError::Index { at, index: indices[at], vertices });
+                    }
+                    at += 1;
+                }
+                indices.len()
+            }
+            None => vertices,
+        };
+        let (triangles, whole) = match data.topology {
+            Topology::Triangles => (corners / 3, corners % 3 == 0),
+            Topology::Quads => (corners / 4 * 2, corners % 4 == 0),
+            Topology::Strip | Topology::Fan => (corners.saturating_sub(2), corners != 1 && corners != 2),
+        };
+        if !whole {
+            return Err(MeshError::Incomplete(corners));
+        }
+        if triangles > u16::MAX as usize {
+            return Err(MeshError::TooManyTriangles(triangles));
+        }
+        check_length!(data.normals, vertices, Normals);
+        check_length!(data.colors, vertices, Colors);
+        check_length!(data.uvs, vertices, Uvs);
+        check_length!(data.face_normals, triangles, FaceNormals);
+        if let Some(nodes) = data.hierarchy {
+            let mut k = 0;
+            while k < nodes.len() {
+                let node = &nodes[k];
+                let past = node.first_triangle as usize + node.triangles as usize;
+                if node.skip as usize <= k || node.skip as usize > nodes.len() || past > triangles {
+                    return Err(MeshError::Hierarchy(k));
+                }
+                k += 1;
+            }
+        }
+        let bounds = match data.bounds {
+            Some(bounds) => match outside(&data.positions, vertices, &bounds) {
+                Some(vertex) => return Err(MeshError::Bounds(vertex)),
+                None => bounds,
+            },
+            None => find_bounds(&data.positions, vertices),
+        };
+        Ok(Self { data, bounds, triangles: triangles as u16 })
+    }
+
+    /// [`new`](Self::new) for `const` and `static` meshes: one that is wrong does not compile.
+    ///
+    /// # Panics
+    /// When the mesh is wrong. Called at run time instead of in a constant, prefer [`new`](Self::new).
+    pub const fn constant(data: MeshData<'a>) -> Self {
+        match Self::new(data) {
+            Ok(mesh) => mesh,
+            Err(MeshError::Index { .. }) => panic!("a mesh index is out of range"),
+            Err(MeshError::Incomplete(_)) => panic!("the last primitive of a mesh is incomplete"),
+            Err(_) => panic!("mesh attributes do not match; Mesh::new tells which"),
+        }
+    }
+
+    /// Number of vertices.
+    pub const fn vertex_count(&self) -> usize {
+        match self.data.positions {
+            Positions::Quantized { points, .. } => points.len(),
+            Positions::Exact(points) => points.len(),
+            Positions::Homogeneous(points) => points.len(),
+        }
+    }
+
+    /// Number of triangles, after strips, fans and quads are taken apart.
+    pub const fn triangle_count(&self) -> usize {
+        self.triangles as usize
+    }
+
+    /// The slices.
+    pub const fn data(&self) -> &MeshData<'a> {
+        &self.data
+    }
+
+    /// Box and sphere around all vertices, in object space; of homogeneous positions, without regard to w.
+    pub const fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// Vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
+    #[inline]
+    pub const fn triangle(&self, n: usize) -> Option<[u16; 3]> {
+        // The usual mesh, by the shortest way.
+        if let (Topology::Triangles, Some(indices)) = (self.data.topology, self.data.indices) {
+            return match indices.split_at_checked(3 * n) {
+                Some((_, [a, b, c, ..])) => Some([*a, *b, *c]),
+                _ => None,
+            };
+        }
+        self.any_triangle(n)
+    }
+
+    /// [`triangle`](Self::triangle), of any mesh in the same way.
+    #[inline(never)]
+    pub(crate) const fn any_triangle(&self, n: usize) -> Option<[u16; 3]> {
+        if n >= self.triangles as usize {
+            return None;
+        }
+        let at = match self.data.topology {
+            Topology::Triangles => [3 * n, 3 * n + 1, 3 * n + 2],
+            // Odd triangles of a strip swap the first two corners, so that all face the same way.
+            Topology::Strip => [n + (n & 1), n + 1 - (n & 1), n + 2],
+            Topology::Fan => [0, n + 1, n + 2],
+            Topology::Quads => {
+                let first = n / 2 * 4;
+                [first, first + 1 + (n & 1), first + 2 + (n & 1)]
+            }
+        };
+        match self.data.indices {
+            Some(indices) if at[0] < indices.len() && at[1] < indices.len() && at[2] < indices.len() => {
+                Some([indices[at[0]], indices[at[1]], indices[at[2]]])
+            }
+            Some(_) => None,
+            None => Some([at[0] as u16, at[1] as u16, at[2] as u16]),
+        }
+    }
+
+    /// Position of a vertex, rounded to 16.16 and saturated; `Homogeneous` positions without their w.
+    pub fn position(&self, vertex: usize) -> Vec3 {
+        match self.data.positions {
+            Positions::Quantized { points, scale, offset } => {
+                let q = points.get(vertex).copied().unwrap_or_default();
+                let along =
+                    |q: i16| Scalar::from_bits(((i64::from(q) * i64::from(scale.to_bits()) + (1 << 14)) >> 15) as i32);
+                Vec3::new(along(q[0]), along(q[1]), along(q[2])) + offset
+            }
+            Positions::Exact(points) => points.get(vertex).copied().unwrap_or_default(),
+            Positions::Homogeneous(points) => {
+                let p = points.get(vertex).copied().unwrap_or_default();
+                Vec3::new(p[0], p[1], p[2])
+            }
+        }
+    }
+}
+
+/// Coordinates of a vertex as they are stored.
+const fn stored(positions: &Positions<'_>, vertex: usize) -> [i64; 3] {
+    match positions {
+        Positions::Quantized { points, .. } => {
+            let [x, y, z] = points[vertex];
+            [x as i64, y as i64, z as i64]
+        }
+        Positions::Exact(points) => {
+            let [x, y, z] = points[vertex].to_bits();
+            [x as i64, y as i64, z as i64]
+        }
+        Positions::Homogeneous(points) => {
+            let [x, y, z, _] = points[vertex];
+            [x.to_bits() as i64, y.to_bits() as i64, z.to_bits() as i64]
+        }
+    }
+}
+
+/// Stored coordinates times the unit, 2⁻³¹, and the origin, raw 16.16, are the exact position.
+const fn unit_and_origin(positions: &Positions<'_>) -> (i64, [i64; 3]) {
+    match positions {
+        Positions::Quantized { scale, offset, .. } => {
+            let [x, y, z] = offset.to_bits();
+            (scale.to_bits() as i64, [x as i64, y as i64, z as i64])
+        }
+        Positions::Exact(_) | Positions::Homogeneous(_) => (1 << 15, [0; 3]),
+    }
+}
+
+/// The first vertex that is not in the box, or not in the sphere, give or take the rounding of quantized positions.
+const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) -> Option<usize> {
+    let (unit, origin) = unit_and_origin(positions);
+    let (center, half) = (bounds.aabb.center.to_bits(), bounds.aabb.half.to_bits());
+    let (middle, radius) = (bounds.sphere.center.to_bits(), bounds.sphere.radius.to_bits());
+    let reach = if radius < 0 { 0 } else { radius as u128 + 2 };
+    let mut k = 0;
+    while k < vertices {
+        let p = stored(positions, k);
+        let mut squared = 0;
+        let mut axis = 0;
+        while axis < 3 {
+            let at = ((p[axis] * unit) >> 15) + origin[axis];
+            if (at - center[axis] as i64).abs() > half[axis] as i64 + 1 {
+                return Some(k);
+            }
+            let away = (at - middle[axis] as i64).unsigned_abs() as u128;
+            squared += away * away;
+            axis += 1;
+        }
+        if radius != i32::MAX && squared > reach * reach {
+            return Some(k);
+        }
+        k += 1;
+    }
+    None
+}
+
+/// Box and sphere of all positions, both about the middle of the box.
+///
+/// The compiler runs it for `static` meshes of many vertices, step by step: loops over them do little.
+const fn find_bounds(positions: &Positions<'_>, vertices: usize) -> Bounds {
+    if vertices == 0 {
+        return Bounds { aabb: bounding_box([0; 3], [0; 3]), sphere: sphere(Vec3::ZERO, 0) };
+    }
+    let (unit, origin) = unit_and_origin(positions);
+    let (mut min, mut max) = (stored(positions, 0), stored(positions, 0));
+    let mut k = 1;
+    while k < vertices {
+        let [x, y, z] = stored(positions, k);
+        if x < min[0] {
+            min[0] = x;
+        }
+        if x > max[0] {
+            max[0] = x;
+        }
+        if y < min[1] {
+            min[1] = y;
+        }
+        if y > max[1] {
+            max[1] = y;
+        }
+        if z < min[2] {
+            min[2] = z;
+        }
+        if z > max[2] {
+            max[2] = z;
+        }
+        k += 1;
+    }
+    // Rounded outwards: quantized positions are rounded wherever they are used.
+    let mut axis = 0;
+    while axis < 3 {
+        min[axis] = ((min[axis] * unit) >> 15) + origin[axis];
+        max[axis] = ((max[axis] * unit + 0x7FFF) >> 15) + origin[axis];
+        axis += 1;
+    }
+    let aabb = bounding_box(min, max);
+    // From the middle, in 2⁻³¹: below 2⁴⁸.
+    let c = aabb.center.to_bits();
+    let unit = unit as i128;
+    let [a, b, c] = [
+        ((origin[0] - c[0] as i64) << 15) as i128,
+        ((origin[1] - c[1] as i64) << 15) as i128,
+        ((origin[2] - c[2] as i64) << 15) as i128,
+    ];
+    let mut farthest = 0;
+    let mut k = 0;
+    while k < vertices {
+        let [x, y, z] = stored(positions, k);
+        let (x, y, z) = (x as i128 * unit + a, y as i128 * unit + b, z as i128 * unit + c);
+        let squared = x * x + y * y + z * z;
+        if squared > farthest {
+            farthest = squared;
+        }
+        k += 1;
+    }
+    Bounds { aabb, sphere: sphere(aabb.center, farthest as u128) }
+}

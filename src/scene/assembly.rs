@@ -1,0 +1,555 @@
+//! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
+
+use super::painter::RasterHooks;
+use super::scan::{Mark, Scan, Seen, Stop};
+use super::scene::Scene;
+use super::state::{Culling, State};
+use crate::math::Projective;
+use crate::mesh::{BoundsNode, Mesh};
+use crate::raster::PixelRect;
+use crate::span::Shader;
+use crate::target::{Framebuffer, Slot};
+use crate::vertex::{
+    CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, DepthRange, DepthScale, Face, MAX_DISTANCES, Outcode, Part,
+    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, inverse_w, weighted,
+};
+use core::ops::Range;
+
+/// Corners of a clipped polygon that are kept at once: the first, and the next three. Triangles and quadrilaterals have no more.
+const FAN: usize = 4;
+
+/// A corner of a clipped polygon on the screen. What is interpolated is made of it when it is drawn, or recorded.
+#[derive(Clone, Copy, Default)]
+struct FanCorner {
+    /// Words of a [`Slot`].
+    slot: [u32; 2],
+    /// Parts of the triangle's corners in it, see [`ClipCorner`](crate::vertex::ClipCorner).
+    weights: [i32; 3],
+    /// See [`inverse_w`]; 0 where nothing is perspective-correct.
+    inverse_w: u32,
+}
+
+/// A part of a polygon that is drawn as a fan of triangles.
+#[derive(Default)]
+// Cleared by the same routine as 64-bit numbers are.
+#[repr(align(8))]
+struct Fan {
+    corners: [FanCorner; FAN],
+    /// Those of a triangle, in the records.
+    indices: [u16; 3],
+}
+
+type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode);
+
+/// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
+pub struct AssemblyHooks<F: Framebuffer, S: Shader<F::Format>> {
+    /// Those of stages 8 and 9.
+    pub(super) raster: RasterHooks<F, S>,
+    pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
+    /// 4. What is drawn of a clipped triangle before the near and beyond the far plane.
+    beyond: Option<Beyond<F, S>>,
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>> AssemblyHooks<F, S> {
+    /// For [`State::DEFAULT`].
+    pub(super) const DEFAULT: Self = Self { raster: RasterHooks::DEFAULT, depth_scale: None, beyond: None };
+
+    /// For any state.
+    pub(super) const ANY: Self = Self {
+        raster: RasterHooks::ANY,
+        depth_scale: Some(Transform::set_depth_scale),
+        beyond: Some(|assembly, seen, codes| assembly.beyond(seen, codes)),
+    };
+
+    /// For a state.
+    #[inline(always)]
+    pub(super) fn of(state: &State) -> Self {
+        Self {
+            raster: RasterHooks::of(state),
+            depth_scale: match state.depth_scale {
+                DepthScale::Perspective => None,
+                DepthScale::Uniform { .. } => Self::ANY.depth_scale,
+            },
+            beyond: match state.range {
+                DepthRange::Clip => None,
+                DepthRange::ClampFar | DepthRange::Clamp => Self::ANY.beyond,
+            },
+        }
+    }
+}
+
+/// One draw.
+pub(super) struct Assembly<'s, 'a, F: Framebuffer, S: Shader<F::Format>> {
+    pub(super) scene: &'s mut Scene<'a, F>,
+    pub(super) state: &'s State,
+    pub(super) hooks: &'s AssemblyHooks<F, S>,
+    pub(super) mesh: &'s Mesh<'s>,
+    pub(super) shader: &'s S,
+    pub(super) transform: &'s Transform,
+    /// Which faces are left out.
+    pub(super) culling: Culling,
+    /// Pixels that can be drawn in this phase.
+    pub(super) clip: PixelRect,
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
+    /// Takes the parts of a mesh that can be seen.
+    pub(super) fn parts(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
+        let mut next = 0;
+        while next < nodes.len() {
+            let some = nodes.iter().skip(next);
+            let mut visible = self.scene.visible_nodes(self.state, nodes, mvp, &mut next);
+            for node in some.take(32) {
+                if visible & 1 != 0 {
+                    let first = usize::from(node.first_triangle);
+                    self.triangles(first..first + usize::from(node.triangles));
+                }
+                visible >>= 1;
+            }
+        }
+    }
+
+    /// Takes triangles one by one.
+    #[inline(never)]
+    pub(super) fn triangles(&mut self, numbers: Range<usize>) {
+        if S::CULL_DISTANCES > 0 || !self.scene.has_vertices() {
+            self.each_triangle(numbers);
+        } else {
+            self.scan(numbers);
+        }
+    }
+
+    /// Where places are kept: those that may be seen.
+    #[inline(never)]
+    fn scan(&mut self, numbers: Range<usize>) {
+        let mut scan = Scan::new(self.mesh, numbers, self.culling, self.scene.is_recording());
+        while !self.scene.overflowed() {
+            let first = self.scene.records.triangle_count();
+            let Scene { records, strips, band, stats, .. } = &mut *self.scene;
+            let stop = scan.next(records, strips, band.start, &self.clip, stats);
+            if self.scene.records.triangle_count() != first {
+                self.shade_faces(first);
+            }
+            if stop == Stop::End {
+                break;
+            }
+            self.shade_stop(stop, &mut scan.seen);
+        }
+    }
+
+    /// Takes the place of marks in the records.
+    #[inline(never)]
+    fn shade_faces(&mut self, first: u16) {
+        let Self { scene, state, mesh, shader, .. } = self;
+        let mut records = scene.records.triangles_from(first);
+        while let Some(([corners, last, word], rest)) = records.split_first_chunk_mut() {
+            let (number, area) = Mark(*word).parts();
+            let [k, _] = bytemuck::cast(*last);
+            let corners = [*corners as u16, (*corners >> 16) as u16, k];
+            *word = shader.face(&Face::new(mesh, number, corners, state.side(area)));
+            records = rest;
+        }
+    }
+
+    /// Where there is nothing to scan: places are not kept, or cull distances come before them.
+    #[inline(never)]
+    fn each_triangle(&mut self, numbers: Range<usize>) {
+        let mut seen = Seen::NONE;
+        for number in numbers {
+            let Some([i, j, k]) = self.mesh.any_triangle(number) else { return };
+            if self.scene.overflowed() {
+                return;
+            }
+            self.scene.stats.triangles = self.scene.stats.triangles.wrapping_add(1);
+            if S::CULL_DISTANCES > 0 && self.is_culled_by_distance([i, j, k]) {
+                self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            } else {
+                (seen.number, seen.corners) = (number as u16, [i, j, k]);
+                self.shade_stop(Stop::Unplaced, &mut seen);
+            }
+        }
+    }
+
+    /// A triangle that may be seen, or that has to be looked at.
+    #[inline(always)]
+    fn shade_stop(&mut self, stop: Stop, seen: &mut Seen) {
+        match if stop == Stop::Unplaced { self.look_at(seen) } else { stop } {
+            Stop::Seen => self.shade_face(seen),
+            // 4. Clipping.
+            Stop::Clipped(codes) => {
+                self.part(seen, codes, Part::Between);
+                if let Some(beyond) = self.hooks.beyond {
+                    beyond(self, seen, codes);
+                }
+            }
+            Stop::Unplaced | Stop::End => {}
+        }
+    }
+
+    /// A triangle that has a vertex which is not shaded yet, or not on the screen: what else it is; the end, if it cannot be seen.
+    #[inline(never)]
+    fn look_at(&mut self, seen: &mut Seen) -> Stop {
+        // 3. Vertex stage, once a vertex where there are records to keep the result.
+        let mut visible = true;
+        let (mut common, mut all) = (!self.state.range.clamped().0, 0);
+        for (v, index) in seen.v.iter_mut().zip(&seen.corners) {
+            let slot = self.slot(*index);
+            *v = slot.screen();
+            visible &= slot.is_on_screen();
+            common &= slot.outcode();
+            all |= slot.outcode();
+        }
+        if visible {
+            if seen.find(self.culling, &self.clip, self.scene.stats) { Stop::Seen } else { Stop::End }
+        } else if common != 0 {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            Stop::End
+        } else {
+            self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
+            Stop::Clipped(Outcode(all))
+        }
+    }
+
+    /// A triangle on the screen.
+    #[inline(never)]
+    fn shade_face(&mut self, seen: &Seen) {
+        let word = self.face(seen);
+        if self.scene.is_recording() {
+            self.record(seen.row, seen.corners, word);
+        } else {
+            let [i, j, k] = seen.corners;
+            self.draw(seen, &mut [self.varyings(i), self.varyings(j), self.varyings(k)], word);
+        }
+    }
+
+    #[inline(never)]
+    fn face(&self, seen: &Seen) -> u32 {
+        self.shader.face(&Face::new(self.mesh, seen.number.into(), seen.corners, self.state.side(seen.area)))
+    }
+
+    /// The vertex stage's result for a vertex, from the records if it is there.
+    #[inline]
+    fn slot(&mut self, index: u16) -> Slot {
+        if !self.scene.has_vertices() {
+            return self.shade(index.into());
+        }
+        let slot = self.scene.records.slot(index.into());
+        if slot.is_unshaded() { self.shade(index.into()) } else { slot }
+    }
+
+    /// 3. Vertex stage, of all vertices, where there are records to keep the result.
+    #[inline(never)]
+    pub(super) fn shade_all(&mut self) {
+        let Self { scene, mesh, shader, transform, .. } = self;
+        let stage = VertexStage { mesh, shader: *shader, transform };
+        let (places, varyings) = scene.records.vertices_mut();
+        scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
+        match transform.short_points(&mesh.data().positions) {
+            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => place_all(transform, points, places),
+            _ => stage.place_each(places),
+        }
+        if S::WORDS > 0 {
+            stage.store_each(varyings);
+        }
+    }
+
+    /// The vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
+    #[inline(never)]
+    pub(super) fn shade(&mut self, index: usize) -> Slot {
+        self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
+        let slot = self.stage().place(index);
+        if self.scene.has_vertices() {
+            let varyings = self.vertex(index);
+            self.scene.records.keep::<S>(index, slot, &varyings);
+        }
+        slot
+    }
+
+    #[inline]
+    fn stage(&self) -> VertexStage<'_, S> {
+        VertexStage { mesh: self.mesh, shader: self.shader, transform: self.transform }
+    }
+
+    #[inline]
+    pub(super) fn transformed(&self, index: usize) -> ClipVertex {
+        self.stage().transformed(index)
+    }
+
+    /// The parts of a triangle that have their depth clamped.
+    pub(super) fn beyond(&mut self, seen: &mut Seen, codes: Outcode) {
+        for part in self.state.range.parts_beyond(codes) {
+            self.part(seen, codes, part);
+        }
+    }
+
+    #[inline]
+    fn part(&mut self, seen: &mut Seen, codes: Outcode, part: Part) {
+        if S::CLIP_DISTANCES > 0 {
+            self.cut_part::<DISTANCE_CORNERS>(seen, codes, part);
+        } else {
+            self.cut_part::<CLIPPED_CORNERS>(seen, codes, part);
+        }
+    }
+
+    /// A part of a triangle, which has up to `N` corners when it has been clipped: a fan of triangles.
+    ///
+    /// Where it has more corners than are kept, it is cut again for the next ones: that is rare, and the stack is short.
+    #[inline(never)]
+    fn cut_part<const N: usize>(&mut self, seen: &mut Seen, codes: Outcode, part: Part) {
+        let mut fan = Fan::default();
+        let mut before = 0;
+        loop {
+            let count = self.cut::<N>(seen.corners, codes, part, before, &mut fan.corners);
+            // The first one, and the last one before, are there already.
+            for place in before.min(2)..FAN.min(count - before) {
+                self.fan_corner(seen, &mut fan, place);
+            }
+            before += FAN - 2;
+            if count <= before + 2 {
+                return;
+            }
+        }
+    }
+
+    /// A corner of a fan, and the triangle that it is the last of.
+    #[inline(never)]
+    fn fan_corner(&mut self, seen: &mut Seen, fan: &mut Fan, place: usize) {
+        let Some(corner) = fan.corners.get(place) else { return };
+        seen.v[2] = Slot::from_words(corner.slot).screen();
+        if self.scene.is_recording() {
+            fan.indices[2] = self.keep(seen.corners, corner);
+        }
+        if place >= 2 && seen.find(self.culling, &self.clip, self.scene.stats) {
+            if self.scene.is_recording() {
+                self.record(seen.row, fan.indices, self.face(seen));
+            } else {
+                self.draw_corners(seen, &fan.corners, place);
+            }
+        }
+        let place = usize::from(place > 0);
+        (seen.v[place], fan.indices[place]) = (seen.v[2], fan.indices[2]);
+    }
+
+    /// Puts a corner of a clipped triangle into the records.
+    #[inline(never)]
+    fn keep(&mut self, corners: [u16; 3], corner: &FanCorner) -> u16 {
+        let index = self.scene.records.push_vertex();
+        let varyings = self.corner_varyings(corners, corner);
+        self.scene.records.keep::<S>(usize::from(index), Slot::from_words(corner.slot), &varyings);
+        index
+    }
+
+    /// A triangle of a fan.
+    #[inline(never)]
+    fn draw_corners(&mut self, seen: &Seen, corners: &[FanCorner; FAN], last: usize) {
+        let varyings = |k: usize| corners.get(k).map_or(S::Varyings::ZERO, |k| self.corner_varyings(seen.corners, k));
+        let mut varyings = [varyings(0), varyings(last - 1), varyings(last)];
+        self.draw(seen, &mut varyings, self.face(seen));
+    }
+
+    /// The varyings at a corner of a clipped triangle.
+    #[inline(never)]
+    fn corner_varyings(&self, corners: [u16; 3], corner: &FanCorner) -> S::Varyings {
+        let vertex = |index: u16| self.shader.vertex(&Corner::new(self.mesh, usize::from(index)));
+        let [i, j, k] = corners;
+        let mut varyings: S::Varyings = weighted(&corner.weights, &[vertex(i), vertex(j), vertex(k)]);
+        if S::Varyings::PERSPECTIVE > 0 {
+            varyings.set_inverse_w(corner.inverse_w);
+        }
+        if self.scene.is_recording() {
+            return varyings;
+        }
+        // What the records would keep of them, so that the picture is the same without.
+        rounded::<S>(&varyings)
+    }
+
+    /// Whether one of the cull distances is negative at all corners.
+    #[inline]
+    fn is_culled_by_distance(&self, corners: [u16; 3]) -> bool {
+        let [a, b, c] = corners.map(|k| self.shader.distances(&Corner::new(self.mesh, usize::from(k))));
+        let all = a.iter().zip(b).zip(c).map(|((a, b), c)| a & b & c);
+        all.skip(S::CLIP_DISTANCES).take(S::CULL_DISTANCES).any(|sign| sign < 0)
+    }
+
+    /// What is left of a part of a triangle, on the screen: its first corner, and those behind place `before`, as many as there
+    /// is room for; how many there are in all. In a function of its own, so that the polygon in clip space has left the
+    /// stack when it is drawn.
+    #[inline(never)]
+    fn cut<const N: usize>(
+        &self,
+        corners: [u16; 3],
+        codes: Outcode,
+        part: Part,
+        before: usize,
+        fan: &mut [FanCorner; FAN],
+    ) -> usize {
+        let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; N]>::new();
+        for (k, index) in corners.iter().enumerate() {
+            self.set_corner(polygon, k, *index);
+        }
+        polygon.clip(codes, part);
+        if S::CLIP_DISTANCES > 0 {
+            let [i, j, k] = corners;
+            let distances = |index: u16| self.stage().distances(usize::from(index));
+            for ((i, j), k) in distances(i).into_iter().zip(distances(j)).zip(distances(k)).take(S::CLIP_DISTANCES) {
+                polygon.cut_by_distance([i, j, k]);
+            }
+        }
+        place(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, before, fan)
+    }
+
+    /// Sets a corner of a triangle that is to be clipped. In a function of its own for the stack.
+    #[inline(never)]
+    fn set_corner(&self, polygon: &mut Polygon, k: usize, index: u16) {
+        polygon.set(k, &self.transformed(usize::from(index)));
+    }
+
+    /// The varyings of a vertex, with 1 / w if they take it.
+    #[inline]
+    pub(super) fn vertex(&self, index: usize) -> S::Varyings {
+        self.stage().varyings(index)
+    }
+
+    fn varyings(&self, index: u16) -> S::Varyings {
+        if self.scene.has_vertices() {
+            return self.scene.records.varyings::<S>(index);
+        }
+        rounded::<S>(&self.vertex(usize::from(index)))
+    }
+
+    /// 6, 7. Into the records, to the strip it begins in.
+    fn record(&mut self, row: i32, corners: [u16; 3], face: u32) {
+        let row = row - self.scene.band.start;
+        let strip = self.scene.strips.of(row as u32);
+        self.scene.records.push_triangle(corners, face, strip);
+    }
+
+    #[inline]
+    fn draw(&mut self, seen: &Seen, varyings: &mut [S::Varyings; 3], face: u32) {
+        self.scene
+            .painter(&self.clip, self.state, &self.hooks.raster, self.shader)
+            .triangle_of_area(&seen.v, seen.area, varyings, face);
+    }
+}
+
+/// Corners of a polygon on the screen, see [`Assembly::cut`].
+#[inline(never)]
+fn place(
+    polygon: &Polygon,
+    transform: &Transform,
+    perspective: bool,
+    before: usize,
+    fan: &mut [FanCorner; FAN],
+) -> usize {
+    let (mut count, mut fan) = (0, fan.iter_mut());
+    for corner in polygon.corners() {
+        if count == 0 || count > before {
+            if let Some(to) = fan.next() {
+                let vertex = corner.vertex();
+                // All of them can be projected, as what is behind the eye has been cut away.
+                if let Some(placed) = transform.project(&vertex) {
+                    to.slot = Slot::new(&Placed::Screen(placed)).words();
+                }
+                to.weights = corner.weights();
+                if perspective {
+                    to.inverse_w = inverse_w(&vertex);
+                }
+            }
+        }
+        count += 1;
+    }
+    count
+}
+
+/// The varyings as the records would give them back.
+#[inline(never)]
+pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
+    let mut words = S::Varyings::ZERO;
+    let words: &mut [u32] = bytemuck::cast_slice_mut(words.as_mut());
+    let words = words.get_mut(..S::WORDS).unwrap_or_default();
+    S::store(varyings, words);
+    S::load(words)
+}
+
+/// Where all vertices of a mesh are, by the short path.
+#[inline(never)]
+fn place_all(transform: &Transform, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
+    for (place, point) in places.iter_mut().zip(points) {
+        // Read again each time: to keep all of it at hand there are too few registers.
+        *place = Slot::new(&core::hint::black_box(transform).place_short(*point).0).words();
+    }
+}
+
+/// What the vertex stage works with.
+struct VertexStage<'s, S> {
+    mesh: &'s Mesh<'s>,
+    shader: &'s S,
+    transform: &'s Transform,
+}
+
+impl<S: VertexShader> VertexStage<'_, S> {
+    /// Where a vertex is: transformed, projected and snapped, or its outcode.
+    #[inline(always)]
+    fn place(&self, index: usize) -> Slot {
+        let placed = if S::DISPLACES {
+            self.transform.place_clip(&self.transformed(index))
+        } else {
+            self.transform.place(&self.mesh.data().positions, index)
+        };
+        let slot = Slot::new(&placed);
+        if S::CLIP_DISTANCES > 0 && self.distances(index).iter().any(|distance| *distance < 0) {
+            // Off the screen, but not by the planes that outcodes know.
+            return Slot::new(&Placed::Outside(Outcode(slot.outcode())));
+        }
+        slot
+    }
+
+    #[inline(never)]
+    fn place_each(&self, places: &mut [[u32; 2]]) {
+        for (index, place) in places.iter_mut().enumerate() {
+            *place = self.place(index).words();
+        }
+    }
+
+    /// Packs the varyings of all vertices.
+    #[inline(never)]
+    fn store_each(&self, mut words: &mut [u32]) {
+        let mut index = 0;
+        while let Some((some, rest)) = words.split_at_mut_checked(S::WORDS) {
+            S::store(&self.varyings(index), some);
+            (index, words) = (index + 1, rest);
+        }
+    }
+
+    #[inline]
+    fn transformed(&self, index: usize) -> ClipVertex {
+        if S::DISPLACES {
+            self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
+        } else {
+            self.transform.vertex(&self.mesh.data().positions, index)
+        }
+    }
+
+    /// The clip distances of a vertex; those that the shader does not have are 0.
+    #[inline]
+    fn distances(&self, index: usize) -> [i32; MAX_DISTANCES] {
+        let mut distances = self.shader.distances(&Corner::new(self.mesh, index));
+        distances.iter_mut().skip(S::CLIP_DISTANCES).for_each(|distance| *distance = 0);
+        distances
+    }
+
+    /// The varyings of a vertex, with 1 / w if they take it.
+    #[inline]
+    fn varyings(&self, index: usize) -> S::Varyings {
+        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+        if S::Varyings::PERSPECTIVE > 0 {
+            let w = if S::DISPLACES {
+                self.transformed(index).w
+            } else {
+                self.transform.w(&self.mesh.data().positions, index)
+            };
+            varyings.set_inverse_w(inverse_w(&ClipVertex { w, ..ClipVertex::default() }));
+        }
+        varyings
+    }
+}

@@ -1,0 +1,255 @@
+//! Drawing on the screen's plane: the primitives of the pipeline, from where they are on the screen.
+
+use super::painter::RasterHooks;
+use super::scene::Scene;
+use super::state::{Cull, State};
+use super::stroke::{Stroke, Thin, block};
+use crate::raster::{PixelRect, pixel_rect, square};
+use crate::shader::{Flat, Gouraud};
+use crate::span::{DepthState, Shader};
+use crate::target::Framebuffer;
+use crate::vertex::ScreenVertex;
+use embedded_graphics_core::geometry::Point;
+use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+use embedded_graphics_core::primitives::Rectangle;
+
+/// A point on the screen: x to the right and y down from the top left corner, in 24.8 px. The centre of a pixel is at .5.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct ScreenPoint {
+    x: i32,
+    y: i32,
+}
+
+impl ScreenPoint {
+    /// From coordinates in 24.8 px; those beyond ±32,767 px stop there.
+    pub const fn new(x: i32, y: i32) -> Self {
+        const fn stop(c: i32) -> i32 {
+            const LIMIT: i32 = (1 << 23) - 1;
+            if c > LIMIT {
+                LIMIT
+            } else if c < -LIMIT {
+                -LIMIT
+            } else {
+                c
+            }
+        }
+        Self { x: stop(x), y: stop(y) }
+    }
+
+    /// The top left corner of pixel (x, y): where a shape of whole pixels begins or ends.
+    pub const fn corner(x: i16, y: i16) -> Self {
+        Self::new(256 * x as i32, 256 * y as i32)
+    }
+
+    /// The centre of pixel (x, y): where a line begins or ends.
+    pub const fn center(x: i16, y: i16) -> Self {
+        Self::new(256 * x as i32 + 128, 256 * y as i32 + 128)
+    }
+
+    /// To the right, 24.8 px.
+    pub const fn x(self) -> i32 {
+        self.x
+    }
+
+    /// Down, 24.8 px.
+    pub const fn y(self) -> i32 {
+        self.y
+    }
+}
+
+/// Draws shapes on the screen's plane, see [`Scene::canvas`].
+///
+/// Coverage follows the same rules as in space: shapes that share an edge leave no gap and draw no pixel twice. Nothing is
+/// kept in the records; shapes are drawn when they are called, in each strip, and rejected by their rows.
+#[derive(Debug)]
+pub struct Canvas<'c, 'a, F> {
+    scene: &'c mut Scene<'a, F>,
+    /// Pixels that may be drawn, in the strip; none while a band is recorded.
+    clip: PixelRect,
+    /// All that may be drawn without a scissor.
+    all: PixelRect,
+    state: State,
+    z: u16,
+}
+
+/// Neither depth nor winding matter.
+const PAINTED: State = State { cull: Cull::None, depth: DepthState::OFF, ..State::DEFAULT };
+
+impl<'a, F: Framebuffer> Scene<'a, F> {
+    /// The screen's plane, to draw shapes on, over what was drawn before them.
+    ///
+    /// ```
+    /// # use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+    /// # use zstrip::frame::{Buffers, Renderer};
+    /// # use zstrip::target::StripPixels;
+    /// use zstrip::{ScreenPoint, Smooth};
+    /// # let (mut color, mut depth) = ([0; 64 * 8], [0; 64 * 8]);
+    /// # let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
+    /// # let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers)?;
+    /// # let sink = |_: &StripPixels<Rgb565>| Ok::<(), core::convert::Infallible>(());
+    /// renderer.frame_to(sink, Rgb565::BLACK, |scene| {
+    ///     let mut canvas = scene.canvas();
+    ///     canvas.polygon(&[(4, 4), (60, 10), (30, 60)].map(|(x, y)| ScreenPoint::corner(x, y)), Rgb888::BLUE);
+    ///     canvas.line_with(ScreenPoint::center(0, 0), ScreenPoint::center(50, 63), Rgb888::WHITE, &Smooth::px(3));
+    /// }).unwrap();
+    /// # Ok::<(), zstrip::frame::RendererError>(())
+    /// ```
+    pub fn canvas(&mut self) -> Canvas<'_, 'a, F> {
+        let rows = if self.is_recording() { 0..0 } else { self.target.rows.clone() };
+        let clip = self.clip_rect(&rows);
+        Canvas { clip: clip.clone(), all: clip, scene: self, state: PAINTED, z: 0 }
+    }
+}
+
+/// A colour as flat shading hands it to its spans.
+fn word(color: Rgb888) -> u32 {
+    u32::from_be_bytes([0, color.r(), color.g(), color.b()])
+}
+
+impl<F: Framebuffer> Canvas<'_, '_, F> {
+    /// Draws at a depth from here on, and by a depth test: what is nearer in the scene stays in front.
+    pub const fn set_depth(&mut self, z: u16, depth: DepthState) {
+        self.z = z;
+        self.state.depth = depth;
+    }
+
+    /// Draws inside of this rectangle only from here on, or anywhere.
+    pub fn set_scissor(&mut self, area: Option<&Rectangle>) {
+        self.clip = area.map_or(self.all.clone(), |area| self.all.intersection(&pixels(area)));
+    }
+
+    /// Fills a rectangle of pixels.
+    pub fn rectangle(&mut self, area: &Rectangle, color: impl Into<Rgb888>) {
+        self.block(&pixels(area), color.into());
+    }
+
+    /// Draws a square with sides of `size` px, in 24.8: a marker.
+    pub fn point(&mut self, center: ScreenPoint, size: u32, color: impl Into<Rgb888>) {
+        self.block(&square((center.x, center.y), size), color.into());
+    }
+
+    fn block(&mut self, rect: &PixelRect, color: Rgb888) {
+        if rect.intersection(&self.clip).is_empty() {
+            return;
+        }
+        let Self { scene, clip, state, z, .. } = self;
+        let shader = Flat::unlit(color);
+        block(&mut scene.painter(clip, state, &const { RasterHooks::ANY }, &shader), rect, *z, &[], word(color));
+    }
+
+    /// Fills a convex polygon; its corners may go round either way.
+    pub fn polygon(&mut self, corners: &[ScreenPoint], color: impl Into<Rgb888>) {
+        let color = color.into();
+        self.fan(corners, |corner| (*corner, []), &Flat::unlit(color), word(color));
+    }
+
+    /// Fills a convex polygon with the colours of its corners: with more than three, as a fan of triangles about the first.
+    pub fn gradient(&mut self, corners: &[(ScreenPoint, Rgb888)]) {
+        self.fan(corners, |(corner, color)| (*corner, Gouraud::varyings(*color)), &Gouraud::colors_unlit(), 0);
+    }
+
+    /// Fills a convex polygon with a shader, whose varyings are given at the corners, and which gets `face` as its face's
+    /// word. Its vertex stage is not called.
+    pub fn polygon_with<S: Shader<F::Format>>(
+        &mut self,
+        corners: &[(ScreenPoint, S::Varyings)],
+        shader: &S,
+        face: u32,
+    ) {
+        self.fan(corners, |corner| *corner, shader, face);
+    }
+
+    #[inline(never)]
+    fn fan<S: Shader<F::Format>, C>(
+        &mut self,
+        corners: &[C],
+        corner: impl Fn(&C) -> (ScreenPoint, S::Varyings),
+        shader: &S,
+        face: u32,
+    ) {
+        let Self { scene, clip, state, z, .. } = self;
+        let mut corners = corners.iter().map(|c| {
+            let (at, varyings) = corner(c);
+            (ScreenVertex::new(at.x, at.y, *z), varyings)
+        });
+        let (Some(first), Some(mut last)) = (corners.next(), corners.next()) else { return };
+        for next in corners {
+            let v = [first.0, last.0, next.0];
+            if !pixel_rect(&v).intersection(clip).is_empty() {
+                scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(
+                    &v,
+                    &mut [first.1, last.1, next.1],
+                    face,
+                );
+            }
+            last = next;
+        }
+    }
+
+    /// Draws a line of one pixel's width, by the diamond-exit rule.
+    pub fn line(&mut self, a: ScreenPoint, b: ScreenPoint, color: impl Into<Rgb888>) {
+        self.line_with(a, b, color, &Thin);
+    }
+
+    /// Draws a line with a stroke of one's choice.
+    pub fn line_with(&mut self, a: ScreenPoint, b: ScreenPoint, color: impl Into<Rgb888>, stroke: &impl Stroke) {
+        let color = color.into();
+        self.segment(&[(a, []), (b, [])], &Flat::unlit(color), word(color), stroke);
+    }
+
+    /// Draws a line that goes from one colour to another.
+    pub fn gradient_line(&mut self, a: (ScreenPoint, Rgb888), b: (ScreenPoint, Rgb888), stroke: &impl Stroke) {
+        let ends = [(a.0, Gouraud::varyings(a.1)), (b.0, Gouraud::varyings(b.1))];
+        self.segment(&ends, &Gouraud::colors_unlit(), 0, stroke);
+    }
+
+    /// Draws lines from point to point; thin ones draw each pixel of a joint once.
+    pub fn polyline(&mut self, points: &[ScreenPoint], color: impl Into<Rgb888>, stroke: &impl Stroke) {
+        let color = color.into();
+        for (a, b) in points.iter().zip(points.get(1..).unwrap_or_default()) {
+            self.line_with(*a, *b, color, stroke);
+        }
+    }
+
+    /// Draws lines from point to point, and from the last to the first.
+    pub fn outline(&mut self, points: &[ScreenPoint], color: impl Into<Rgb888>, stroke: &impl Stroke) {
+        let color = color.into();
+        self.polyline(points, color, stroke);
+        if let (Some(first), Some(last)) = (points.first(), points.last()) {
+            self.line_with(*last, *first, color, stroke);
+        }
+    }
+
+    #[inline(never)]
+    fn segment<S: Shader<F::Format>, K: Stroke>(
+        &mut self,
+        ends: &[(ScreenPoint, S::Varyings); 2],
+        shader: &S,
+        face: u32,
+        stroke: &K,
+    ) {
+        let Self { scene, clip, state, z, .. } = self;
+        let [(a, from), (b, to)] = ends;
+        let reach = stroke.reach();
+        let near = PixelRect {
+            x: (a.x.min(b.x) >> 8) - reach..(a.x.max(b.x) >> 8) + reach + 1,
+            y: (a.y.min(b.y) >> 8) - reach..(a.y.max(b.y) >> 8) + reach + 1,
+        };
+        if near.intersection(clip).is_empty() {
+            return;
+        }
+        let ends = [(ScreenVertex::new(a.x, a.y, *z), *from), (ScreenVertex::new(b.x, b.y, *z), *to)];
+        stroke.draw(&mut scene.painter(clip, state, &const { RasterHooks::ANY }, shader), &ends, face);
+    }
+}
+
+/// A rectangle of embedded-graphics; what lies beyond the largest screen does not matter.
+fn pixels(area: &Rectangle) -> PixelRect {
+    let side = |start: i32, size: u32| {
+        let start = start.clamp(-65_536, 65_536);
+        start..start + size.min(131_072) as i32
+    };
+    let Point { x, y } = area.top_left;
+    PixelRect { x: side(x, area.size.width), y: side(y, area.size.height) }
+}

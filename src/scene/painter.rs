@@ -1,0 +1,296 @@
+//! Stages 8 to 11: a triangle on the screen → pixels.
+
+use super::scene::{Scene, Target};
+use super::state::State;
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
+use crate::span::{
+    AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps, TriangleSpan,
+};
+use crate::target::Framebuffer;
+use crate::vertex::{Correction, FEW, ScreenVertex, Varyings, signed_area};
+
+/// What the triangles of a draw are drawn with. Public for [`Draw`](crate::scene::Draw), but nobody can name it.
+pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
+    pub(super) target: &'p mut Target<'t, F>,
+    pub(super) screen: (u16, u16),
+    /// Pixels that may be drawn: on the screen, and in the strip.
+    pub(super) clip: &'p PixelRect,
+    pub(super) state: &'p State,
+    pub(super) shader: &'p S,
+    pub(super) hooks: &'p RasterHooks<F, S>,
+}
+
+/// What a draw's rasterization does only by some states, as functions chosen where the state is known: a program links what its
+/// states ask for.
+pub struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
+    /// 9. The spans of a triangle, by a depth test.
+    spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings>),
+    /// 8. What is added to depths.
+    bias: Option<Bias>,
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
+    /// For [`State::DEFAULT`].
+    pub(super) const DEFAULT: Self = Self { spans: if F::DEPTH { spans_nearer } else { spans_over }, bias: None };
+
+    /// For any state.
+    pub(super) const ANY: Self = Self { spans: if F::DEPTH { spans_by_state } else { spans_over }, bias: Some(biased) };
+
+    /// For a state.
+    #[inline(always)]
+    pub(super) fn of(state: &State) -> Self {
+        Self {
+            spans: match state.depth {
+                DepthState::LESS => Self::DEFAULT.spans,
+                DepthState::OFF => spans_over,
+                _ => Self::ANY.spans,
+            },
+            bias: if state.bias.is_none() { None } else { Self::ANY.bias },
+        }
+    }
+}
+
+type Bias = fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32;
+
+/// The steps of depth that a bias is on a triangle.
+fn biased(bias: &DepthBias, [a, b, c]: &[ScreenVertex; 3], depth: &PlaneEquation) -> i32 {
+    bias.steps(a.z.min(b.z).min(c.z)..a.z.max(b.z).max(c.z), depth.dx, depth.dy)
+}
+
+fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    set_up: &SetUp<'_, S::Varyings>,
+) {
+    painter.spans(set_up, LessWrite);
+}
+
+fn spans_over<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    set_up: &SetUp<'_, S::Varyings>,
+) {
+    painter.spans(set_up, NoDepth);
+}
+
+fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    set_up: &SetUp<'_, S::Varyings>,
+) {
+    match painter.test() {
+        DepthState::LESS => painter.spans(set_up, LessWrite),
+        DepthState::OFF => painter.spans(set_up, NoDepth),
+        other => painter.spans(set_up, AnyDepth::new(other)),
+    }
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
+    /// The depth test: without a depth buffer, every fragment passes.
+    pub(super) fn test(&self) -> DepthState {
+        if F::DEPTH { self.state.depth } else { DepthState::OFF }
+    }
+
+    /// Draws a triangle.
+    #[inline]
+    pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &mut [S::Varyings; 3], face: u32) {
+        let area = signed_area(&v[0], &v[1], &v[2]);
+        if area != 0 {
+            self.triangle_of_area(v, area, varyings, face);
+        }
+    }
+
+    /// Draws a triangle, whose signed area is given and not 0.
+    #[inline(never)]
+    pub(super) fn triangle_of_area(
+        &mut self,
+        v: &[ScreenVertex; 3],
+        area: i64,
+        varyings: &mut [S::Varyings; 3],
+        face: u32,
+    ) {
+        let side = self.state.side(area);
+        let mut set_up = SetUp {
+            v,
+            area,
+            face,
+            depth: PlaneEquation::default(),
+            // Not what varyings are going to be; but zeros, all in a row, would be a call.
+            steps: Steps {
+                dz_dx: 0,
+                corner: varyings[0],
+                d_dy: varyings[0],
+                d_dx: varyings[0],
+                words: [0; 3],
+                side,
+                level: 0,
+                correction: <S::Varyings as Varyings>::Correction::NONE,
+            },
+        };
+        self.set_up(&mut set_up, varyings);
+        // 9. Spans, in a loop of its own for each kind of depth test.
+        (self.hooks.spans)(self, &set_up);
+    }
+
+    /// Stage 8, plane equations of depth and varyings; from here on, values are those at the screen's corner. In a function of
+    /// its own, and in place, for the stack that it takes.
+    #[inline(never)]
+    fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings>, varyings: &mut [S::Varyings; 3]) {
+        let SetUp { v, area, depth, steps, .. } = set_up;
+        steps.level = self.shader.level(varyings, area.unsigned_abs());
+        if S::Varyings::LEN == 0 && v[0].z == v[1].z && v[0].z == v[2].z {
+            // A plane that is known, and no other.
+            depth.base = u32::from(v[0].z) << 16;
+        } else {
+            let gradients = Gradients::new(v, *area, self.screen);
+            *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
+            if S::Varyings::PERSPECTIVE > 0 {
+                homogenize(varyings, v, self.screen, &mut steps.correction);
+            }
+            let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
+            widen(&gradients, &values, &mut steps.correction);
+            let Steps { corner, d_dx, d_dy, .. } = &mut *steps;
+            let planes = corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut());
+            for (k, ((corner, dx), dy)) in planes.enumerate() {
+                let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
+                let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
+                (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
+            }
+        }
+        steps.dz_dx = depth.dx;
+        if let Some(bias) = self.hooks.bias {
+            let steps = bias(&self.state.bias, v, depth);
+            depth.base = depth.base.wrapping_add((steps as u32) << 16);
+        }
+        steps.words = self.shader.prepare(&mut steps.corner, &steps.d_dx);
+    }
+
+    /// 9. Spans, between two edges from row to row.
+    #[inline(never)]
+    fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+        if S::Varyings::LEN > FEW {
+            return self.spans_apart(set_up, test);
+        }
+        let SetUp { v, area, face, depth, steps } = set_up;
+        let columns = self.clip.x.clone();
+        let width = usize::from(self.screen.0);
+        let first = self.target.rows.start;
+        let framebuffer = &mut *self.target.framebuffer;
+        let mut nothing = [(); usize::MAX];
+        let outline = Outline::new(v, *area, &self.clip.y);
+        if outline.top >= outline.end {
+            return;
+        }
+        let (mut left, mut right) = (outline.side(false, outline.top), outline.side(true, outline.top));
+        // What is at column 0 of the row; depth with the half that rounds.
+        let mut y = outline.top;
+        let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
+        let (bend, last, bend_right) = (outline.bend, outline.end, outline.bend_right);
+        while y < last {
+            if y == bend {
+                let edge = outline.side(bend_right, y);
+                if bend_right {
+                    right = edge;
+                } else {
+                    left = edge;
+                }
+            }
+            // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
+            let mut row = width.wrapping_mul((y - first) as usize);
+            let mut end = if y < bend { bend.min(last) } else { last };
+            let mut depths = D::whole(self.target.depth, &mut nothing);
+            let mut colors = framebuffer.rows(first as u32, width).unwrap_or_default();
+            let mut right_end = columns.end;
+            if width.wrapping_mul((end - first) as usize) > colors.len() {
+                // Or they are fewer than the screen's, or shorter.
+                depths = depths.get_mut(row..).unwrap_or_default();
+                colors = framebuffer.row(y as u32);
+                (row, end) = (0, y + 1);
+                right_end = right_end.min(colors.len() as i32);
+            }
+            // Of one length, so that a span in one of them is known to be in the other.
+            let length = colors.len().min(depths.len());
+            let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else { return };
+            // Where each statement stands is a matter of registers: others take a few percent more, see docs/speed.md.
+            while y < end {
+                let start = left.pixel().max(columns.start);
+                let past = right.pixel().min(right_end);
+                left.step();
+                if start < past {
+                    let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
+                    let Some(depth) = part(depths, at, length) else { return };
+                    let Some(color) = part(colors, at, length) else { return };
+                    let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
+                    // 10, 11. Depth test and fragments.
+                    let span = TriangleSpan { color, depth, z, steps, position: (start, y) };
+                    self.shader.triangle_span(*face, span, test);
+                }
+                y += 1;
+                row = row.wrapping_add(width);
+                z = z.wrapping_add_signed(depth.dy);
+                right.step();
+            }
+        }
+    }
+
+    /// Stage 9 for many varyings, whose fragments take longer than all of this: nothing is kept from span to span but the edges, for
+    /// the stack that it takes.
+    #[inline(always)]
+    fn spans_apart<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+        let mut nothing = [(); MAX_SPAN];
+        let mut spans = Spans::new(set_up.v, set_up.area, &self.clip.y);
+        let shader = self.shader;
+        while spans.next_in(&self.clip.x) {
+            // 10, 11. Depth test and fragments.
+            shader.span(set_up.face, self.span_at::<D>(set_up, &spans, &mut nothing), test);
+        }
+    }
+
+    /// What there is to draw of a span.
+    #[inline(never)]
+    fn span_at<'a, D: DepthTest>(
+        &'a mut self,
+        set_up: &'a SetUp<'_, S::Varyings>,
+        spans: &Spans<'_>,
+        nothing: &'a mut [(); MAX_SPAN],
+    ) -> Fragments<'a, F::Format, S::Varyings, D::Stored> {
+        let (y, x) = (spans.y, &spans.x);
+        let SetUp { depth: plane, steps, .. } = set_up;
+        let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);
+        let color = self.target.framebuffer.span(y as u32, x.start as usize, x.len());
+        let depth = D::stored(self.target.depth, nothing, row.wrapping_add(x.start as usize), color.len());
+        // The half rounds.
+        let z = plane.base.wrapping_add(1 << 15).wrapping_add_signed(plane.dy.wrapping_mul(y));
+        let z = z.wrapping_add_signed(plane.dx.wrapping_mul(x.start));
+        let mut span = Fragments { color, depth, z, varyings: steps.corner, steps, position: (x.start, y) };
+        span.varyings.advance(&steps.d_dy, y);
+        span.varyings.advance(&steps.d_dx, x.start);
+        span
+    }
+}
+
+/// A triangle, set up.
+pub(super) struct SetUp<'a, V: Varyings> {
+    v: &'a [ScreenVertex; 3],
+    area: i64,
+    face: u32,
+    depth: PlaneEquation,
+    steps: Steps<V>,
+}
+
+/// `length` elements from `start` on, if there are: in two steps, each a comparison; a range is checked at both ends at once,
+/// which costs twice that.
+#[inline(always)]
+fn part<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]> {
+    slice.get_mut(start..)?.get_mut(..length)
+}
+
+impl<'a, F: Framebuffer> Scene<'a, F> {
+    /// What to draw triangles with, in the phases that draw.
+    pub(super) fn painter<'p, S: Shader<F::Format>>(
+        &'p mut self,
+        clip: &'p PixelRect,
+        state: &'p State,
+        hooks: &'p RasterHooks<F, S>,
+        shader: &'p S,
+    ) -> Painter<'p, 'a, F, S> {
+        Painter { target: &mut self.target, screen: self.screen, clip, state, hooks, shader }
+    }
+}

@@ -1,0 +1,353 @@
+//! Stages 2 and 5 to 7: a mesh's triangles one after the other, without those that cannot be seen, into the records. The same
+//! code for all shaders.
+
+use super::state::Culling;
+use crate::mesh::{Mesh, Topology};
+use crate::raster::{PixelRect, pixel_rect};
+use crate::target::{Records, Slot, Stats, StripRows};
+use crate::vertex::{Outcode, ScreenVertex, signed_area, small};
+use core::ops::Range;
+
+/// Where a walk over triangles is, and the last one it found.
+pub(super) struct Scan<'m> {
+    mesh: &'m Mesh<'m>,
+    /// Those to come, if the mesh is an indexed list.
+    list: &'m [u16],
+    next: usize,
+    end: usize,
+    culling: Culling,
+    recording: bool,
+    pub(super) seen: Seen,
+}
+
+/// What a triangle in the records has that has no word of its face yet: the number of the next triangle of the mesh, and below that
+/// the sign of its area.
+#[derive(Clone, Copy)]
+pub(super) struct Mark(pub(super) u32);
+
+impl Mark {
+    #[inline]
+    const fn new(next: usize, area: i32) -> Self {
+        Self((next as u32) << 1 | area as u32 >> 31)
+    }
+
+    /// The triangle's number, and an area of the same sign as its.
+    #[inline]
+    pub(super) const fn parts(self) -> (usize, i64) {
+        ((self.0 as usize >> 1).wrapping_sub(1), if self.0 & 1 == 0 { 1 } else { -1 })
+    }
+}
+
+/// A triangle that was found: one on the screen that may have pixels, or one that has to be looked at.
+pub(super) struct Seen {
+    /// Its number in the mesh, and its vertices.
+    pub(super) number: u16,
+    pub(super) corners: [u16; 3],
+    /// Where it is; a part of it, if it has to be clipped.
+    pub(super) v: [ScreenVertex; 3],
+    /// Twice the signed area; not 0.
+    pub(super) area: i64,
+    /// The first row it can have a pixel in.
+    pub(super) row: i32,
+}
+
+/// What a walk stopped at.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// A triangle that may be seen.
+    Seen,
+    /// One that has to be looked at, with vertices that may not be shaded yet.
+    Unplaced,
+    /// One to be clipped, by these planes and by clip distances.
+    Clipped(Outcode),
+    /// There are no more.
+    End,
+}
+
+impl Seen {
+    /// Nothing yet.
+    pub(super) const NONE: Self =
+        Self { number: 0, corners: [0; 3], v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
+
+    /// Whether what is at `v` may be seen: stage 5, culling by winding, and of what covers no pixel of `clip`.
+    #[inline(never)]
+    pub(super) fn find(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
+        let [a, b, c] = &self.v;
+        self.area = signed_area(a, b, c);
+        let rect = pixel_rect(&self.v);
+        let within = rect.intersection(clip);
+        self.row = within.y.start;
+        let found = !within.is_empty();
+        let count = if self.area == 0 {
+            &mut stats.degenerate
+        } else if culling.leaves_out((self.area >> 32) as i32) {
+            &mut stats.back_facing
+        } else if rect.is_empty() {
+            &mut stats.empty
+        } else if !found {
+            &mut stats.outside
+        } else {
+            stats.drawn = stats.drawn.wrapping_add(1);
+            return true;
+        };
+        *count = count.wrapping_add(1);
+        false
+    }
+}
+
+/// How far the second and the third vertex are from the first, in x and y, by words of their [`Slot`](crate::target::Slot)s: if that is
+/// not far, and all are on the screen, or at most 16,511 px away from it.
+///
+/// # Format
+/// A vertex off the screen has x = -2²³, and no y: that is no small difference from any other below 2²².
+#[inline(always)]
+fn near(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
+    let (ax, ay) = (a[0] >> 8, a[1] >> 8);
+    let [bx, by, cx, cy] = [(b[0] >> 8) - ax, (b[1] >> 8) - ay, (c[0] >> 8) - ax, (c[1] >> 8) - ay];
+    let far = a[0].wrapping_add(1 << 30) | a[1].wrapping_add(1 << 30);
+    if far >= 0 && small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
+}
+
+/// A rectangle that is to the right of all triangles.
+const NOWHERE: PixelRect = PixelRect { x: i32::MAX..i32::MAX, y: 0..0 };
+
+impl<'m> Scan<'m> {
+    /// Of some triangles of a mesh.
+    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling, recording: bool) -> Self {
+        let indices = match mesh.data() {
+            data if data.topology == Topology::Triangles => data.indices,
+            _ => None,
+        };
+        let list = indices.and_then(|indices| indices.get(3 * numbers.start..3 * numbers.end));
+        Self {
+            mesh,
+            list: list.unwrap_or_default(),
+            next: numbers.start,
+            end: numbers.end.min(mesh.triangle_count()),
+            culling,
+            recording,
+            seen: Seen::NONE,
+        }
+    }
+
+    /// Goes on to the next triangle that may be seen, or that has to be looked at. Those before that are recorded, with [`Mark`]s for
+    /// words of their faces, and when triangles are recorded, the next is one that has to be looked at.
+    pub(super) fn next(
+        &mut self,
+        records: &mut Records<'_>,
+        strips: &StripRows,
+        band: i32,
+        clip: &PixelRect,
+        stats: &mut Stats,
+    ) -> Stop {
+        loop {
+            let stop = self.near(records, strips, band, clip, stats);
+            if stop != Stop::Seen {
+                return stop;
+            }
+            // A large one, or one far away.
+            if self.seen.v.iter().any(|v| v.x == Slot::OFF_SCREEN_X) {
+                return Stop::Unplaced;
+            }
+            if self.seen.find(self.culling, clip, stats) {
+                if !self.recording {
+                    return Stop::Seen;
+                }
+                let mark = Mark::new(self.next, (self.seen.area >> 32) as i32);
+                records.push_triangle(self.seen.corners, mark.0, strips.of((self.seen.row - band) as u32));
+            }
+        }
+    }
+
+    /// Records triangles that are small, not far away, and on the screen, up to another one: to all intents and purposes all.
+    #[inline(never)]
+    fn near(
+        &mut self,
+        records: &mut Records<'_>,
+        strips: &StripRows,
+        band: i32,
+        clip: &PixelRect,
+        stats: &mut Stats,
+    ) -> Stop {
+        let mut triangles = records.triangles();
+        let first = triangles.count();
+        if !self.recording {
+            triangles.close();
+        }
+        // In an empty rectangle is nothing: nor in one that is far away, which takes no test of its own.
+        let clip = if clip.is_empty() { &NOWHERE } else { clip };
+        let strips = *strips;
+        let culling = self.culling;
+        let in_a_row = self.mesh.data().topology == Topology::Triangles && self.mesh.data().indices.is_none();
+        let mut list = self.list;
+        let mut number = self.next;
+        let found = loop {
+            // 2. Primitive assembly. The usual meshes by the shortest way.
+            let (corners, places) = match list.split_first_chunk() {
+                Some((corners, rest)) => {
+                    list = rest;
+                    (*corners, triangles.places(*corners))
+                }
+                _ if number >= self.end => break None,
+                _ if in_a_row => triangles.in_a_row(number),
+                _ => match self.mesh.any_triangle(number) {
+                    Some(corners) => (corners, triangles.places(corners)),
+                    None => break None,
+                },
+            };
+            number += 1;
+            // 5. Culling by winding, as early as can be, and of what covers no pixel.
+            let [i, j, k] = corners;
+            let [a, b, c] = places;
+            let Some([bx, by, cx, cy]) = near(a, b, c) else {
+                break Some((corners, places));
+            };
+            let area = bx * cy - cx * by;
+            if area == 0 || culling.leaves_out(area) {
+                let count = if area == 0 { &mut stats.degenerate } else { &mut stats.back_facing };
+                *count = count.wrapping_add(1);
+                continue;
+            }
+            // As `pixel_rect` has it, of words, which are in the same order as coordinates.
+            let centre = |word: i32| (word + (127 << 8)) >> 16;
+            let y = centre(a[1].min(b[1]).min(c[1]))..centre(a[1].max(b[1]).max(c[1]));
+            let x = centre(a[0].min(b[0]).min(c[0]))..centre(a[0].max(b[0]).max(c[0]));
+            if x.start >= x.end || y.start >= y.end {
+                stats.empty = stats.empty.wrapping_add(1);
+                continue;
+            }
+            if x.start >= clip.x.end || clip.x.start >= x.end || y.start >= clip.y.end || clip.y.start >= y.end {
+                stats.outside = stats.outside.wrapping_add(1);
+                continue;
+            }
+            // 6, 7. Into the records, to the strip it begins in.
+            let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
+            if !triangles.push(u32::from(i) | u32::from(j) << 16, k, Mark::new(number, area).0, strip) {
+                // There is no room, or none of it is to be used.
+                if !self.recording {
+                    break Some((corners, places));
+                }
+                triangles.overflow();
+                break None;
+            }
+        };
+        stats.drawn = stats.drawn.wrapping_add((triangles.count() - first).into());
+        triangles.finish();
+        stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
+        self.list = list;
+        self.next = number;
+        self.seen.number = number.wrapping_sub(1) as u16;
+        let Some((corners, [a, b, c])) = found else { return Stop::End };
+        self.seen.corners = corners;
+        self.seen.v = [Slot::signed(a).screen(), Slot::signed(b).screen(), Slot::signed(c).screen()];
+        Stop::Seen
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::state::{Cull, State, Winding};
+    use super::*;
+    use crate::math::{Scalar, Vec3};
+    use crate::mesh::{MeshData, Positions};
+    use crate::target::{Layout, TriangleRecord};
+    use crate::vertex::Placed;
+    use std::vec;
+    use std::vec::Vec;
+
+    const STRIPS: usize = 15;
+    const COUNT: usize = 600;
+
+    struct Random(u32);
+
+    impl Random {
+        fn below(&mut self, end: i32) -> i32 {
+            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            ((u64::from(self.0 >> 4) * end as u64) >> 28) as i32
+        }
+
+        /// Three vertices: tiny, small, large or huge, some of them not there.
+        fn places(&mut self) -> [[u32; 2]; 3] {
+            let size = [300, 3000, 1 << 15, 1 << 17, 1 << 22][self.below(5) as usize];
+            let at = [[self.below(1 << 17), self.below(1 << 16)], [(1 << 23) - 1 - size, -(1 << 23) + 1]];
+            let [x, y] = at[usize::from(self.below(20) == 0)];
+            [(); 3].map(|()| {
+                let v = ScreenVertex::new(x + self.below(size), y + self.below(size), self.below(1 << 16) as u16);
+                match self.below(100) {
+                    0 => Slot::NONE,
+                    1 => Slot::new(&Placed::Outside(Outcode(Outcode::NEAR))),
+                    _ => Slot::new(&Placed::Screen(v)),
+                }
+                .words()
+            })
+        }
+    }
+
+    /// What a walk records, and what it counts, is what [`Seen::find`] says of each triangle.
+    #[test]
+    fn walks_find_what_is_found_one_by_one() {
+        let mut random = Random(1);
+        let points = [[0; 3]; 3 * COUNT];
+        let positions = Positions::Quantized { points: &points, scale: Scalar::ONE, offset: Vec3::ZERO };
+        let indices: Vec<u16> = (0..3 * COUNT as u16).map(|k| k ^ 1).collect();
+        let (mut words, mut found) = (vec![0; 20_000], 0);
+        for case in 0..60 {
+            let cull = [Cull::Back, Cull::Front, Cull::None][case % 3];
+            let front = [Winding::CounterClockwise, Winding::Clockwise][case / 3 % 2];
+            let state = State { cull, front, ..State::DEFAULT };
+            let data = MeshData { indices: (case % 4 > 1).then_some(&indices[..]), ..MeshData::new(positions) };
+            let mesh = Mesh::new(data).expect("a mesh");
+            let rows = 32..32 + 16 * STRIPS as i32;
+            let clip = [PixelRect { x: 0..320, y: rows.clone() }, PixelRect { x: 50..60, y: 600..rows.start }]
+                [usize::from(case % 7 == 6)]
+            .clone();
+            let places: Vec<_> = (0..COUNT).flat_map(|_| random.places()).collect();
+
+            let mut layout = Layout::default();
+            let mut records = Records::new(&mut words, &mut layout);
+            records.begin_band(STRIPS);
+            records.begin_draw(7, places.len(), 2);
+            records.vertices_mut().0.copy_from_slice(&places);
+            let strips = StripRows::new(16, true);
+            let mut scan = Scan::new(&mesh, 0..COUNT, state.culling(), true);
+            let (mut stats, mut unplaced) = (Stats::default(), Vec::new());
+            while scan.next(&mut records, &strips, rows.start, &clip, &mut stats) == Stop::Unplaced {
+                unplaced.push((scan.seen.number, scan.seen.corners));
+            }
+            records.end_draw();
+
+            let mut expected = Stats { triangles: COUNT as u32, ..Stats::default() };
+            let mut seen = Seen::NONE;
+            let (mut left, mut drawn) = (Vec::new(), vec![Vec::new(); STRIPS]);
+            for number in 0..COUNT {
+                let corners = mesh.triangle(number).expect("a triangle");
+                let slots = corners.map(|k| Slot::from_words(places[usize::from(k)]));
+                seen.v = slots.map(Slot::screen);
+                if !slots.iter().all(|slot| slot.is_on_screen()) {
+                    left.push((number as u16, corners));
+                } else if seen.find(state.culling(), &clip, &mut expected) {
+                    drawn[strips.of((seen.row - rows.start) as u32)].push((corners, number, seen.area > 0));
+                }
+            }
+            assert_eq!(unplaced, left, "case {case}");
+            assert_eq!(stats, expected, "case {case}");
+            for (strip, drawn) in drawn.iter().enumerate() {
+                records.begin_replay(strip);
+                assert!(records.replay_draw(7, places.len(), 2));
+                let last = records.last_triangle();
+                let mut triangle = TriangleRecord::default();
+                for expected in drawn {
+                    assert!(
+                        records.triangles().replay(last, i32::MAX >> 2, &mut triangle),
+                        "case {case}, strip {strip}"
+                    );
+                    let (number, area) = Mark(triangle.face).parts();
+                    assert_eq!((triangle.corners(), number, area > 0), *expected, "case {case}, strip {strip}");
+                    found += 1;
+                }
+                assert!(!records.triangles().replay(last, i32::MAX >> 2, &mut triangle), "case {case}, strip {strip}");
+            }
+        }
+        assert!(found > 3000, "{found} triangles");
+    }
+}

@@ -1,0 +1,544 @@
+//! Strokes: a line on the screen → pixels. What is not used is not linked, as each is a type.
+
+use super::painter::{Painter, RasterHooks};
+use crate::color::PixelFormat;
+use crate::raster::{Along, Line, LinePixels, PixelRect, unit};
+use crate::span::{
+    AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader,
+    Steps,
+};
+use crate::target::Framebuffer;
+use crate::vertex::{Corner, Face, ScreenVertex, Side, Varyings, VertexShader};
+
+/// How a line is drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
+pub trait Stroke: Draw {}
+
+/// What a stroke does; not to be implemented outside of the crate.
+pub trait Draw {
+    /// How far pixels may be away from the line, in whole px.
+    fn reach(&self) -> i32;
+
+    /// Draws a line.
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    );
+}
+
+/// One pixel wide, by the diamond-exit rule: one pixel for each step along the longer axis, exactly those that OpenGL and
+/// Vulkan draw. Lines in a chain draw each pixel of a joint once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Thin;
+
+/// One pixel wide, with a pattern that begins anew with each line: bit k says whether the pixels k, k + 32, k + 64 ... of
+/// the line are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dashed(pub u32);
+
+impl Dashed {
+    /// Four pixels drawn, four left out.
+    pub const EVEN: Self = Self(0x0F0F_0F0F);
+    /// Every other pixel.
+    pub const DOTTED: Self = Self(0x5555_5555);
+}
+
+/// A rectangle along the line, its ends cut straight, its corners rounded to 1/256 px: drawn as exactly as any two triangles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Thick(u32);
+
+/// Smooth: as [`Thick`], of any width down to parts of a pixel, but each pixel is covered as much as the line covers a
+/// pixel-sized box around its centre, and blended accordingly over what is there.
+///
+/// Draw it after what lies behind it, and think of not writing depths: a pixel at the rim hides what comes after as
+/// one inside does. Colours and depths are stretched to reach half a pixel beyond either end.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Smooth(u32);
+
+/// The widest line, 2048 px.
+const WIDEST: u32 = 1 << 19;
+
+impl Thick {
+    /// A width in 24.8 px, up to 2048 px.
+    pub const fn new(width: u32) -> Self {
+        Self(if width > WIDEST { WIDEST } else { width })
+    }
+
+    /// A width in whole pixels.
+    pub const fn px(width: u8) -> Self {
+        Self((width as u32) << 8)
+    }
+}
+
+impl Smooth {
+    /// A width in 24.8 px, up to 2048 px.
+    pub const fn new(width: u32) -> Self {
+        Self(if width > WIDEST { WIDEST } else { width })
+    }
+
+    /// A width in whole pixels.
+    pub const fn px(width: u8) -> Self {
+        Self((width as u32) << 8)
+    }
+}
+
+impl Stroke for Thin {}
+impl Stroke for Dashed {}
+impl Stroke for Thick {}
+impl Stroke for Smooth {}
+
+impl Draw for Thin {
+    fn reach(&self) -> i32 {
+        1
+    }
+
+    #[inline]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        thin::<F, S, false>(painter, ends, face, 0);
+    }
+}
+
+impl Draw for Dashed {
+    fn reach(&self) -> i32 {
+        1
+    }
+
+    #[inline]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        thin::<F, S, true>(painter, ends, face, self.0);
+    }
+}
+
+/// A line one pixel wide: set-up.
+#[inline(never)]
+fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
+    painter: &mut Painter<'_, '_, F, S>,
+    ends: &[(ScreenVertex, S::Varyings); 2],
+    face: u32,
+    pattern: u32,
+) {
+    let [(a, from), (b, to)] = ends;
+    let line = Line::new((a.x, a.y), (b.x, b.y));
+    let (skipped, pixels) = line.pixels(painter.clip);
+    if pixels.len() == 0 {
+        return;
+    }
+    let along = Along::new(&line);
+    let (z, dz) = along.value(i32::from(a.z), i32::from(b.z), 16);
+    let (mut values, mut d_dx) = (*from, S::Varyings::ZERO);
+    for ((value, step), to) in values.as_mut().iter_mut().zip(d_dx.as_mut()).zip(to.as_ref()) {
+        let (start, change) = along.value(*value, *to, 0);
+        (*value, *step) = (start as i32, change);
+    }
+    let mut moved = values;
+    let words = painter.shader.prepare(&mut moved, &d_dx);
+    let steps = Steps::linear(dz, d_dx, words, Side::Front);
+    // With the half that rounds, and the bias.
+    let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
+    let mut run = Run { pixels, z: z.wrapping_add(bias), values: moved, pattern, face, steps: &steps };
+    if DASHED {
+        run.pattern = pattern.rotate_right(skipped & 31);
+    }
+    // A first pixel that lies before the one that values are given for has those of the end; moved as the others.
+    if skipped < along.origin() {
+        let mut first =
+            Run { pixels: LinePixels { left: 1, ..pixels }, z: (u32::from(a.z) << 16).wrapping_add(bias), ..run };
+        for (((value, from), moved), start) in
+            first.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
+        {
+            *value = from.wrapping_add(moved.wrapping_sub(*start));
+        }
+        draw_run::<F, S, DASHED>(painter, &first);
+        run.pattern = run.pattern.rotate_right(1);
+        // The pixel is drawn.
+        let _ = run.pixels.next();
+    } else {
+        let on = skipped.wrapping_sub(along.origin()) as i32;
+        run.z = run.z.wrapping_add_signed(dz.wrapping_mul(on));
+        for (value, step) in run.values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+            *value = value.wrapping_add(step.wrapping_mul(on));
+        }
+    }
+    draw_run::<F, S, DASHED>(painter, &run);
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
+    /// What is to be added to depths between two, in 16.16, that change by so much from pixel to pixel: the bias, and the half
+    /// that rounds.
+    #[inline]
+    fn bias(&self, [nearest, farthest]: [u16; 2], dz: i32) -> u32 {
+        let bias = self.state.bias;
+        let steps = if bias.is_none() { 0 } else { bias.steps(nearest..farthest, dz, 0) };
+        (steps as u32) << 16 | 1 << 15
+    }
+}
+
+/// Pixels of a line, and what is interpolated over them.
+#[derive(Clone, Copy)]
+struct Run<'r, V: Varyings> {
+    pixels: LinePixels,
+    z: u32,
+    values: V,
+    pattern: u32,
+    face: u32,
+    steps: &'r Steps<V>,
+}
+
+/// Draws pixels, with a loop for each kind of test.
+#[inline(never)]
+fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
+    painter: &mut Painter<'_, '_, F, S>,
+    run: &Run<'_, S::Varyings>,
+) {
+    let test = painter.test();
+    let Painter { target, screen, shader, .. } = painter;
+    let (width, first_row) = (usize::from(screen.0), target.rows.start);
+    let Some(colors) = target.framebuffer.rows(first_row as u32, width) else {
+        return run.draw_spans::<F, S, DASHED>(painter);
+    };
+    let depths = &mut *target.depth;
+    match test {
+        DepthState { compare: Compare::Less, write: true } => {
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, LessWrite);
+        }
+        DepthState::OFF => {
+            run.draw::<F::Format, S, _, DASHED>(colors, &mut [(); usize::MAX], width, first_row, shader, NoDepth);
+        }
+        other => {
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, AnyDepth::new(other));
+        }
+    }
+}
+
+impl<V: Varyings> Run<'_, V> {
+    /// Draws all of its pixels, each as a span of its own, into rows that lie one after the other.
+    #[inline(always)]
+    fn draw<P: PixelFormat, S: Shader<P, Varyings = V>, D: DepthTest, const DASHED: bool>(
+        &self,
+        colors: &mut [P::Raw],
+        depths: &mut [D::Stored],
+        width: usize,
+        first_row: i32,
+        shader: &S,
+        test: D,
+    ) {
+        let index = |(x, y): (i32, i32)| (y.wrapping_mul(width as i32)).wrapping_add(x) as usize;
+        let LinePixels { mut position, straight, diagonal, mut error, height, length, left } = self.pixels;
+        // The same place in colours and depths; in range, as the pixels are in the strip.
+        let mut at = index((position.0, position.1 - first_row));
+        let (straight_at, diagonal_at) = (index(straight), index(diagonal));
+        let Self { mut z, mut values, mut pattern, face, steps, .. } = *self;
+        for _ in 0..left {
+            if !DASHED || pattern & 1 != 0 {
+                if let (Some(color), Some(depth)) = (colors.get_mut(at), depths.get_mut(at)) {
+                    let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
+                    shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
+                }
+            }
+            let (mut step, mut step_at) = (straight, straight_at);
+            error = error.wrapping_add(height);
+            if error >= 0 {
+                error = error.wrapping_sub(length);
+                (step, step_at) = (diagonal, diagonal_at);
+            }
+            at = at.wrapping_add(step_at);
+            position = (position.0.wrapping_add(step.0), position.1.wrapping_add(step.1));
+            if DASHED {
+                pattern = pattern.rotate_right(1);
+            }
+            z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+
+    /// The same into any framebuffer.
+    fn draw_spans<F: Framebuffer, S: Shader<F::Format, Varyings = V>, const DASHED: bool>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+    ) {
+        let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
+        let Self { pixels, mut z, mut values, mut pattern, face, steps } = *self;
+        let test = AnyDepth::new(painter.test());
+        for (x, y) in pixels {
+            if !DASHED || pattern & 1 != 0 {
+                let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
+                let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
+                // Without a depth buffer, the test is one that passes.
+                let mut nowhere = 0;
+                let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
+                if let [color] = color {
+                    let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
+                    let position = (x, y);
+                    painter.shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
+                }
+            }
+            pattern = pattern.rotate_right(1);
+            z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+}
+
+/// The corners of a rectangle along a line: `half` to either side, and `more` beyond the ends, in 24.8 px.
+///
+/// # Format
+/// Corners within 1/256 px of the exact ones for widths up to 2048 px, beside rounding; not farther out than the rasterizer
+/// can take.
+#[inline(never)]
+fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, more: u32) -> [ScreenVertex; 4] {
+    // 2.30 times 24.8, rounded.
+    let times = |c: i32, length: u32| (crate::math::mul_high_signed(c, length << 3) + 1) >> 1;
+    let (along, aside) = ((times(u, more), times(v, more)), (times(-v, half), times(u, half)));
+    // An end so far out that its corners would be out of range is moved in by four times as much: a line that comes from
+    // there to the screen does so at an angle for which that is enough, and it is far longer.
+    const LIMIT: i32 = (1 << 23) - 1;
+    let room = LIMIT - (half + more) as i32;
+    let inward = (times(u, 4 * (half + more)), times(v, 4 * (half + more)));
+    let moved = |p: &ScreenVertex, sign: i32| {
+        let sign = if p.x.abs().max(p.y.abs()) > room { sign } else { 0 };
+        (p.x + sign * inward.0, p.y + sign * inward.1)
+    };
+    let (from, to) = (moved(a, 1), moved(b, -1));
+    let corner = |p: (i32, i32), z: u16, x: i32, y: i32| {
+        ScreenVertex::new((p.0 + x).clamp(-LIMIT, LIMIT), (p.1 + y).clamp(-LIMIT, LIMIT), z)
+    };
+    [
+        corner(from, a.z, -along.0 + aside.0, -along.1 + aside.1),
+        corner(to, b.z, along.0 + aside.0, along.1 + aside.1),
+        corner(to, b.z, along.0 - aside.0, along.1 - aside.1),
+        corner(from, a.z, -along.0 - aside.0, -along.1 - aside.1),
+    ]
+}
+
+/// A rectangle as two triangles.
+fn fill<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    [a, b, c, d]: &[ScreenVertex; 4],
+    [from, to]: [&S::Varyings; 2],
+    face: u32,
+) {
+    painter.triangle(&[*a, *b, *c], &mut [*from, *to, *to], face);
+    painter.triangle(&[*a, *c, *d], &mut [*from, *to, *from], face);
+}
+
+impl Draw for Thick {
+    fn reach(&self) -> i32 {
+        (self.0 >> 9) as i32 + 2
+    }
+
+    #[inline(never)]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        let [(a, from), (b, to)] = ends;
+        let corners = rectangle(a, b, unit(b.x - a.x, b.y - a.y), self.0 / 2, 0);
+        fill(painter, &corners, [from, to], face);
+    }
+}
+
+impl Draw for Smooth {
+    fn reach(&self) -> i32 {
+        (self.0 >> 9) as i32 + 3
+    }
+
+    #[inline(never)]
+    fn draw<F: Framebuffer, S: Shader<F::Format>>(
+        &self,
+        painter: &mut Painter<'_, '_, F, S>,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        face: u32,
+    ) {
+        let [(a, from), (b, to)] = ends;
+        let unit = unit(b.x - a.x, b.y - a.y);
+        // Half a pixel more, and two units for the rounding of the corners.
+        let corners = rectangle(a, b, unit, self.0 / 2 + 130, 130);
+        let coverage = Coverage::new(a, b, unit, self.0, painter.screen);
+        let shader = Covered { shader: painter.shader, coverage };
+        let Painter { target, screen, clip, state, .. } = painter;
+        fill(
+            &mut Painter { target, screen: *screen, clip, state, shader: &shader, hooks: &const { RasterHooks::ANY } },
+            &corners,
+            [from, to],
+            face,
+        );
+    }
+}
+
+/// How much of a pixel a line covers: a box of 1 px, turned to the line, moved over it.
+///
+/// Along and across the line the overlap of two intervals is a trapezoid; the product of both is what is covered.
+struct Coverage {
+    /// Distance from the line, 12.20 px, and from its start along it, 16.16 px: at the pixel `origin`, and their changes.
+    distance: i32,
+    way: i32,
+    origin: (i32, i32),
+    step: [(i32, i32); 2],
+    /// Half the width and half a pixel, and the most that can be covered, 12.20.
+    outer: i32,
+    most: i32,
+    /// Where along it the line ends, and half a pixel, and the most that can be covered, 16.16.
+    end: i32,
+    longest: i32,
+}
+
+impl Coverage {
+    /// # Format
+    /// Unit vector 2.30. Steps are off by 2⁻²¹ and 2⁻¹⁷ px: over 320 pixels in x and in y, distances by 2⁻¹¹ px, and what is
+    /// behind the ends by 2⁻⁷.
+    #[inline(never)]
+    fn new(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), width: u32, (w, h): (u16, u16)) -> Self {
+        let origin = ((a.x >> 8).max(0).min(i32::from(w) - 1), (a.y >> 8).max(0).min(i32::from(h) - 1));
+        let (x, y) = (i64::from(256 * origin.0 + 128 - a.x), i64::from(256 * origin.1 + 128 - a.y));
+        let (u, v) = (i64::from(u), i64::from(v));
+        let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
+        // 24.8 times 2.30: 38 fractional bits. Distances grow to the right of the line, as y points down.
+        let (length, way) = ((u * dx + v * dy) >> 22, (u * x + v * y) >> 22);
+        // Over the screen both change by less than 6000 px: an end that is farther away than that does not matter.
+        let stop = |way: i64| way.clamp(-16_000 << 16, 16_000 << 16) as i32;
+        let step = |c: i64, down: u32| ((c >> (down - 1)) + 1) as i32 >> 1;
+        Self {
+            distance: ((u * y - v * x) >> 18) as i32,
+            way: stop(way),
+            origin,
+            step: [(step(-v, 10), step(u, 10)), (step(u, 14), step(v, 14))],
+            outer: (width << 11) as i32 + (1 << 19),
+            most: (width << 12).min(1 << 20) as i32,
+            end: stop(length - way) + stop(way) + (1 << 15),
+            longest: length.min(1 << 16) as i32,
+        }
+    }
+}
+
+/// A shader whose fragments cover their pixels in part.
+struct Covered<'s, S> {
+    shader: &'s S,
+    coverage: Coverage,
+}
+
+impl<S: VertexShader> VertexShader for Covered<'_, S> {
+    type Varyings = S::Varyings;
+    const WORDS: usize = S::WORDS;
+    const ZERO_BITS: u32 = S::ZERO_BITS;
+
+    fn vertex(&self, vertex: &Corner<'_>) -> S::Varyings {
+        self.shader.vertex(vertex)
+    }
+
+    fn face(&self, face: &Face<'_>) -> u32 {
+        self.shader.face(face)
+    }
+}
+
+impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
+    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+        self.shader.level(corners, area)
+    }
+
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+        self.shader.fragment(fragment)
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings, D::Stored>, test: D) {
+        let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
+        let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
+        let (x, y) = (position.0 - origin.0, position.1 - origin.1);
+        let at = |base: i32, step: (i32, i32)| {
+            base.wrapping_add(step.0.wrapping_mul(x)).wrapping_add(step.1.wrapping_mul(y))
+        };
+        let (mut distance, mut way) = (at(self.coverage.distance, distance_step), at(self.coverage.way, way_step));
+        let (side, level) = (steps.side, steps.level);
+        let mut corrected = (S::Varyings::PERSPECTIVE > 0).then(|| Corrected::new(varyings, steps, position));
+        for (color, stored) in color.iter_mut().zip(depth) {
+            if let Some(corrected) = &mut corrected {
+                varyings = corrected.varyings();
+                corrected.advance(1);
+            }
+            // Overlaps as 1.8.
+            let across = outer.wrapping_sub(distance.wrapping_abs()).min(most) >> 12;
+            let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
+            let depth = (z >> 16) as u16;
+            if across > 0 && along > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
+                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+                if let Some(value) = self.shader.fragment(&fragment) {
+                    test.write(depth, stored);
+                    *color = mix::<P>(*color, value, (across * along) >> 8);
+                }
+            }
+            position.0 = position.0.wrapping_add(1);
+            distance = distance.wrapping_add(distance_step.0);
+            way = way.wrapping_add(way_step.0);
+            z = z.wrapping_add_signed(steps.dz_dx);
+            for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
+                *value = value.wrapping_add(*step);
+            }
+        }
+    }
+}
+
+/// `under`, covered by `part` / 256 with `over`; each channel to nearest.
+#[inline]
+fn mix<P: PixelFormat>(under: P::Raw, over: P::Raw, part: i32) -> P::Raw {
+    let ([r, g, b], [r1, g1, b1]) = (P::unpack(under), P::unpack(over));
+    let channel = |c: u8, over: u8| {
+        let c = i32::from(c);
+        (c + (((i32::from(over) - c) * part + 128) >> 8)) as u8
+    };
+    P::pack([channel(r, r1), channel(g, g1), channel(b, b1)])
+}
+
+/// Draws the pixels of a rectangle, all with the same depth and varyings.
+#[inline(never)]
+pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    rect: &PixelRect,
+    z: u16,
+    varyings: &S::Varyings,
+    face: u32,
+) {
+    let rect = rect.intersection(painter.clip);
+    if rect.is_empty() {
+        return;
+    }
+    let (mut values, d_dx) = (*varyings, S::Varyings::ZERO);
+    let words = painter.shader.prepare(&mut values, &d_dx);
+    let steps = Steps::linear(0, d_dx, words, Side::Front);
+    let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
+    let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
+    let (test, mut nothing) = (painter.test(), [(); MAX_SPAN]);
+    for y in rect.y {
+        let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
+        let color = painter.target.framebuffer.span(y as u32, column, length);
+        let (varyings, steps, position) = (values, &steps, (rect.x.start, y));
+        if test == DepthState::OFF {
+            let depth = nothing.get_mut(..color.len()).unwrap_or_default();
+            painter.shader.span(face, Fragments { color, depth, z, varyings, steps, position }, NoDepth);
+            continue;
+        }
+        let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
+        let Some(depth) = depth.get_mut(..color.len()) else { return };
+        let span = Fragments { color, depth, z, varyings, steps, position };
+        match test {
+            DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, LessWrite),
+            other => painter.shader.span(face, span, AnyDepth::new(other)),
+        }
+    }
+}

@@ -1,0 +1,234 @@
+//! Blending: what becomes of a shader's colour and the one that is there.
+
+use crate::color::{PixelFormat, Rgba8888};
+use crate::math::Vec3;
+use crate::span::{Fragment, Shader};
+use crate::vertex::{Corner, Face, VertexShader};
+
+/// A way to blend pixels of format `P`.
+///
+/// | mode | colour of a pixel | source |
+/// |---|---|---|
+/// | [`Replace`] | source | `P` |
+/// | [`Opacity`] | source · opacity + there · (1 - opacity) | `P` |
+/// | [`Alpha`] | source · alpha + there · (1 - alpha) | [`Rgba8888`] |
+/// | [`Add`] | source + there, at most 1 | `P` |
+/// | [`AddAlpha`] | source · alpha + there, at most 1 | [`Rgba8888`] |
+/// | [`Multiply`] | source · there | [`Rgba8888`] |
+///
+/// Modes whose source is `P` work in the format itself, in one word for RGB565; the others in 8 bits a channel, exactly
+/// rounded, before surplus bits are cut (and not dithered again: a pixel that nothing is added to stays as it is).
+pub trait BlendMode<P: PixelFormat> {
+    /// In which format the shader is asked for colours.
+    type Source: PixelFormat;
+
+    /// The new pixel.
+    fn blend(&self, source: <Self::Source as PixelFormat>::Raw, there: P::Raw) -> P::Raw;
+}
+
+/// The shader's colour; what an opaque draw does without [`Blend`].
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Replace;
+
+impl<P: PixelFormat> BlendMode<P> for Replace {
+    type Source = P;
+
+    #[inline(always)]
+    fn blend(&self, source: P::Raw, _: P::Raw) -> P::Raw {
+        source
+    }
+}
+
+/// The same opacity for all of a draw, 255 = opaque; see [`PixelFormat::mix`] for its steps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Opacity(pub u8);
+
+impl<P: PixelFormat> BlendMode<P> for Opacity {
+    type Source = P;
+
+    #[inline(always)]
+    fn blend(&self, source: P::Raw, there: P::Raw) -> P::Raw {
+        P::mix(source, there, u32::from(self.0) + u32::from(self.0 >> 7))
+    }
+}
+
+/// The shader's own opacity, fragment by fragment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Alpha;
+
+/// `x` / 255, to nearest, for `x` up to 255².
+#[inline(always)]
+const fn by_255(x: u32) -> u32 {
+    let x = x + 128;
+    (x + (x >> 8)) >> 8
+}
+
+/// Three channels from those of two colours.
+#[inline(always)]
+fn channels([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], f: impl Fn(u32, u32) -> u32) -> [u8; 3] {
+    let channel = |a: u8, b: u8| f(u32::from(a), u32::from(b)) as u8;
+    [channel(r, s), channel(g, t), channel(b, u)]
+}
+
+impl<P: PixelFormat> BlendMode<P> for Alpha {
+    type Source = Rgba8888;
+
+    #[inline(always)]
+    fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
+        let [.., alpha] = source;
+        let alpha = u32::from(alpha);
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * alpha + t * (255 - alpha))))
+    }
+}
+
+/// Light is added: sparks, flames, beams. The order of such draws does not matter, but for what has reached 1.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Add;
+
+impl<P: PixelFormat> BlendMode<P> for Add {
+    type Source = P;
+
+    #[inline(always)]
+    fn blend(&self, source: P::Raw, there: P::Raw) -> P::Raw {
+        P::add(source, there)
+    }
+}
+
+/// [`Add`] of what the shader's opacity leaves of its colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct AddAlpha;
+
+impl<P: PixelFormat> BlendMode<P> for AddAlpha {
+    type Source = Rgba8888;
+
+    #[inline(always)]
+    fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
+        let [.., alpha] = source;
+        let alpha = u32::from(alpha);
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| (by_255(s * alpha) + t).min(255)))
+    }
+}
+
+/// Coloured glass, shadows: what is there is seen through the shader's colour.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Multiply;
+
+impl<P: PixelFormat> BlendMode<P> for Multiply {
+    type Source = Rgba8888;
+
+    #[inline(always)]
+    fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
+        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * t)))
+    }
+}
+
+/// A shader whose colours are blended with what is there.
+///
+/// It has to be the outermost of nested shaders, `Blend<Fogged<..>>`: inner ones do not see the pixel that is there.
+/// What is transparent is drawn after all else, from back to front: see
+/// [`sort_back_to_front`](crate::mesh::sort_back_to_front); and without leaving its depth:
+/// [`DepthState::TEST`](crate::span::DepthState::TEST).
+///
+/// ```
+/// use zstrip::State;
+/// use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, WebColors};
+/// use zstrip::shader::{Blend, Flat, Opacity};
+/// use zstrip::span::DepthState;
+/// let glass = Blend::new(Flat::unlit(Rgb888::CSS_LIGHT_BLUE), Opacity(96));
+/// let state = State { depth: DepthState::TEST, ..State::default() };
+/// // scene.draw_with(state, &PANE, &mvp, &glass);
+/// # let _ = (glass, state);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Blend<S, M> {
+    shader: S,
+    mode: M,
+}
+
+impl<S, M> Blend<S, M> {
+    /// A shader and how its colours are blended.
+    pub const fn new(shader: S, mode: M) -> Self {
+        Self { shader, mode }
+    }
+}
+
+/// Hands the vertex stage of a wrapper to its `shader`.
+macro_rules! inner_vertex_stage {
+    () => {
+        type Varyings = S::Varyings;
+        const WORDS: usize = S::WORDS;
+        const ZERO_BITS: u32 = S::ZERO_BITS;
+        const DISPLACES: bool = S::DISPLACES;
+        const CLIP_DISTANCES: usize = S::CLIP_DISTANCES;
+        const CULL_DISTANCES: usize = S::CULL_DISTANCES;
+
+        #[inline]
+        fn distances(&self, vertex: &Corner<'_>) -> [i32; crate::vertex::MAX_DISTANCES] {
+            self.shader.distances(vertex)
+        }
+
+        #[inline]
+        fn vertex(&self, vertex: &Corner<'_>) -> S::Varyings {
+            self.shader.vertex(vertex)
+        }
+
+        #[inline]
+        fn displace(&self, vertex: &Corner<'_>) -> Vec3 {
+            self.shader.displace(vertex)
+        }
+
+        #[inline]
+        fn face(&self, face: &Face<'_>) -> u32 {
+            self.shader.face(face)
+        }
+
+        #[inline]
+        fn store(varyings: &S::Varyings, words: &mut [u32]) {
+            S::store(varyings, words);
+        }
+
+        #[inline]
+        fn load(words: &[u32]) -> S::Varyings {
+            S::load(words)
+        }
+    };
+}
+pub(super) use inner_vertex_stage;
+
+/// Hands on how the `shader` in a wrapper wants its varyings.
+macro_rules! inner_steps {
+    () => {
+        const STEP: usize = S::STEP;
+
+        #[inline(always)]
+        fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
+            self.shader.level(corners, area)
+        }
+    };
+}
+pub(super) use inner_steps;
+
+impl<S: VertexShader, M> VertexShader for Blend<S, M> {
+    inner_vertex_stage!();
+}
+
+impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<S, M> {
+    inner_steps!();
+
+    /// Blended with black.
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+        Some(self.mode.blend(self.shader.fragment(fragment)?, P::pack([0; 3])))
+    }
+
+    #[inline(always)]
+    fn paint(&self, fragment: &Fragment<'_, S::Varyings>, pixel: &mut P::Raw) -> bool {
+        match self.shader.fragment(fragment) {
+            Some(source) => {
+                *pixel = self.mode.blend(source, *pixel);
+                true
+            }
+            None => false,
+        }
+    }
+}

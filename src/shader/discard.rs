@@ -1,0 +1,92 @@
+//! Shaders that leave fragments out: the alpha test, and the screen door.
+
+use super::blend::{inner_steps, inner_vertex_stage};
+use crate::color::{PixelFormat, Rgba8888};
+use crate::math::Vec3;
+use crate::span::{Fragment, Shader};
+use crate::vertex::{Corner, Face, VertexShader};
+
+/// Draws the fragments whose alpha is at least a threshold, opaque: leaves, fences, letters. No order of drawing is needed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AlphaTest<S> {
+    shader: S,
+    threshold: u8,
+}
+
+impl<S> AlphaTest<S> {
+    /// A shader, and the least alpha that is drawn.
+    pub const fn new(shader: S, threshold: u8) -> Self {
+        Self { shader, threshold }
+    }
+}
+
+impl<S: VertexShader> VertexShader for AlphaTest<S> {
+    inner_vertex_stage!();
+}
+
+impl<P: PixelFormat, S: Shader<Rgba8888>> Shader<P> for AlphaTest<S> {
+    inner_steps!();
+
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+        let [r, g, b, alpha] = self.shader.fragment(fragment)?;
+        if alpha >= self.threshold { Some(P::pack_at([r, g, b], fragment.position)) } else { None }
+    }
+}
+
+/// Row y of the pattern, column x in the bits 4x to 4x + 3: Bayer's matrix of order 4.
+const PATTERN: [u16; 4] = [0xA280, 0x6E4C, 0x91B3, 0x5D7F];
+
+/// Draws a part of the fragments, in a regular pattern of 4 by 4 pixels that is fixed to the screen: transparency that reads
+/// no pixel, writes depth, and needs no order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ScreenDoor<S> {
+    shader: S,
+    opacity: u8,
+}
+
+impl<S> ScreenDoor<S> {
+    /// A shader, and how many of 16 pixels it draws.
+    pub const fn new(shader: S, opacity: u8) -> Self {
+        Self { shader, opacity }
+    }
+}
+
+impl<S: VertexShader> VertexShader for ScreenDoor<S> {
+    inner_vertex_stage!();
+}
+
+impl<P: PixelFormat, S: Shader<P>> Shader<P> for ScreenDoor<S> {
+    inner_steps!();
+
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+        let (x, y) = fragment.position;
+        let row = PATTERN[(y & 3) as usize];
+        let place = row >> (4 * (x & 3)) & 15;
+        if place < u16::from(self.opacity) { self.shader.fragment(fragment) } else { None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::PATTERN;
+
+    #[test]
+    fn the_pattern_has_each_place_once_and_spreads_them() {
+        let at = |x: usize, y: usize| PATTERN[y % 4] >> (4 * (x % 4)) & 15;
+        for opacity in 0..=16_u16 {
+            let drawn = (0..16).filter(|k| at(k % 4, k / 4) < opacity).count();
+            assert_eq!(drawn, usize::from(opacity));
+        }
+        for k in 0..16 {
+            // Half of them are a chequerboard; a quarter has no neighbours, not even across corners.
+            let (x, y) = (k % 4, k / 4);
+            assert_eq!(at(x, y) < 8, (x + y) % 2 == 0, "{x}, {y}");
+            if at(x, y) < 4 {
+                let around = [(1, 0), (0, 1), (1, 1), (3, 1)];
+                assert!(around.iter().all(|(dx, dy)| at(x + dx, y + dy) >= 4), "{x}, {y}");
+            }
+        }
+    }
+}

@@ -1,0 +1,71 @@
+//! One colour a face.
+
+use crate::color::{PixelFormat, channels, packed, unpacked};
+use crate::light::Light;
+use crate::span::{DepthTest, Fragment, Fragments, Shader, flat_span};
+use crate::vertex::{Corner, Face, VertexShader};
+
+/// Flat shading: each triangle in one colour, lit by its face normal.
+///
+/// The colour is the shader's, or that of the provoking vertex.
+#[derive(Clone, Copy, Debug)]
+pub struct Flat {
+    /// Red, green and blue in a word, blue lowest; otherwise the provoking vertices'.
+    color: Option<u32>,
+    light: Option<Light>,
+}
+
+impl Flat {
+    /// A colour under a light (given in object space, see [`Light::to_object`]).
+    pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
+        Self { color: Some(packed(channels(color.into()))), light: Some(light) }
+    }
+
+    /// A colour without light.
+    pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
+        Self { color: Some(packed(channels(color.into()))), light: None }
+    }
+
+    /// The colours of the mesh's vertices as they are, the provoking one's a triangle.
+    pub const fn colors_unlit() -> Self {
+        Self { color: None, light: None }
+    }
+
+    /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
+    pub const fn colors(light: Light) -> Self {
+        Self { color: None, light: Some(light) }
+    }
+}
+
+impl VertexShader for Flat {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+        []
+    }
+
+    /// The colour, 8 bits a channel, blue lowest.
+    #[inline]
+    fn face(&self, face: &Face<'_>) -> u32 {
+        let color = match self.color {
+            Some(color) => color,
+            None => packed(face.provoking().color()),
+        };
+        match &self.light {
+            Some(light) => light.shade(color, face.normal()),
+            None => color,
+        }
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for Flat {
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
+        Some(P::pack_at(unpacked(fragment.face), fragment.position))
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
+        flat_span(face, span, test);
+    }
+}

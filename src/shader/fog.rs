@@ -1,0 +1,200 @@
+//! Fog: colours fade with distance into one colour.
+//!
+//! Fog is worked out from a fragment's depth, and not from a varying of its own: so it wraps any shader, adds nothing to the
+//! records and nothing to set-up, and is right at each pixel of a large triangle. Depth is a hyperbola of distance, so
+//! a small table takes it to the amount of fog, fine where depth is coarse: beyond 15/16 of the depth range, and again
+//! beyond 255/256.
+
+use super::blend::{inner_steps, inner_vertex_stage};
+use crate::color::PixelFormat;
+use crate::math::{ProjectionError, Scalar, Vec3, exp_negative};
+use crate::span::{Fragment, Shader};
+use crate::vertex::{Corner, Face, VertexShader};
+use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+
+/// How fog thickens with the distance from the camera's plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FogCurve {
+    /// None up to `start`, only fog from `end` on, evenly in between.
+    Linear {
+        /// Where it begins.
+        start: Scalar,
+        /// Where nothing else is seen.
+        end: Scalar,
+    },
+    /// e^-(density · distance) of a colour is left: even fog.
+    Exponential {
+        /// Per unit of distance.
+        density: Scalar,
+    },
+    /// e^-(density · distance)² of a colour is left: clearer close by, with a denser end.
+    ExponentialSquared {
+        /// Per unit of distance.
+        density: Scalar,
+    },
+}
+
+/// Entries: one for each of the last 256 steps of depth, then 256 of 16 steps, then 256 of 256 steps, and the end. An entry
+/// stands at the near end of its steps: counted from the far plane, `k`, 16 `k` and 256 `k`. Of the second and third kind
+/// the first 16 are not used, but for the very first of the third, which ends the second.
+const ENTRIES: usize = 769;
+
+/// How much of a colour fog leaves at each depth. Make it a constant, or once for a camera.
+///
+/// ```
+/// use zstrip::shader::{FogCurve, FogTable};
+/// use zstrip::math::Scalar;
+/// static MIST: FogTable = match FogTable::perspective(
+///     Scalar::ONE,
+///     Scalar::from_bits(100 << 16),
+///     FogCurve::Linear { start: Scalar::from_bits(20 << 16), end: Scalar::from_bits(90 << 16) },
+/// ) {
+///     Ok(table) => table,
+///     Err(_) => panic!("near and far"),
+/// };
+/// assert_eq!(MIST.left(0), 255);
+/// assert_eq!(MIST.left(65_535), 0);
+/// ```
+///
+/// # Format
+/// 255 = all of it. Within 1.5 of the exact amount at any depth (tested for fog that thickens over a quarter of the distance
+/// or more, up to far = 4,000 near).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct FogTable {
+    left: [u8; ENTRIES],
+}
+
+impl FogCurve {
+    /// What is left at a distance in 16.16, 255 = all.
+    const fn left(&self, distance: i64) -> u8 {
+        match *self {
+            Self::Linear { start, end } => {
+                let (start, end) = (start.to_bits() as i64, end.to_bits() as i64);
+                if distance <= start {
+                    255
+                } else if distance >= end {
+                    0
+                } else {
+                    // start < end here.
+                    (((end - distance) * 510 + (end - start)) / (2 * (end - start))) as u8
+                }
+            }
+            Self::Exponential { density } => fading(density, distance, false),
+            Self::ExponentialSquared { density } => fading(density, distance, true),
+        }
+    }
+}
+
+/// e^-x of 255, or e^-x², for x = density · distance.
+const fn fading(density: Scalar, distance: i64, squared: bool) -> u8 {
+    // From 32 on nothing is left.
+    let limit = 32 << 16;
+    let product = (density.to_bits() as i64 * distance) >> 16;
+    let x = if product > limit { limit } else { product };
+    let exponent = if squared { (x * x) >> 16 } else { x };
+    let exponent = if exponent > limit { limit } else { exponent };
+    ((exp_negative(exponent as i32) * 255 + (1 << 15)) >> 16) as u8
+}
+
+impl FogTable {
+    /// For a [perspective camera](crate::math::Projective::perspective) with these planes.
+    ///
+    /// # Errors
+    /// When `near ≤ 0` or `near ≥ far`.
+    pub const fn perspective(near: Scalar, far: Scalar, curve: FogCurve) -> Result<Self, ProjectionError> {
+        if near.to_bits() <= 0 {
+            return Err(ProjectionError::NearNotPositive(near.to_bits()));
+        }
+        Self::new(near, far, curve, true)
+    }
+
+    /// For an [orthographic camera](crate::math::Projective::orthographic) with these planes.
+    ///
+    /// # Errors
+    /// When `near ≥ far`.
+    pub const fn orthographic(near: Scalar, far: Scalar, curve: FogCurve) -> Result<Self, ProjectionError> {
+        Self::new(near, far, curve, false)
+    }
+
+    const fn new(near: Scalar, far: Scalar, curve: FogCurve, perspective: bool) -> Result<Self, ProjectionError> {
+        let (n, f) = (near.to_bits() as i64, far.to_bits() as i64);
+        if n >= f {
+            return Err(ProjectionError::NearNotBeforeFar(n as i32, f as i32));
+        }
+        let mut left = [0; ENTRIES];
+        let mut k = 0;
+        while k < ENTRIES {
+            // Steps before the far plane; the near plane is 65,535 before it.
+            let steps = match k {
+                0..256 => k,
+                256..512 => (k - 256) << 4,
+                512 => 4096,
+                _ => (k - 512) << 8,
+            };
+            let steps = if steps > 65_535 { 65_535 } else { steps as i64 };
+            let distance = if perspective { hyperbola(n, f, steps) } else { f - steps * (f - n) / 65_535 };
+            left[k] = curve.left(distance);
+            k += 1;
+        }
+        Ok(Self { left })
+    }
+
+    /// What is left of a colour at a depth, 255 = all.
+    #[inline]
+    pub fn left(&self, depth: u16) -> u8 {
+        let steps = !depth;
+        let (entry, fraction) = match steps {
+            4096.. => (512 + (steps >> 8), steps & 0xFF),
+            256.. => (256 + (steps >> 4), (steps & 0xF) << 4),
+            _ => (steps, 0),
+        };
+        // At most 512 + 255 + 1.
+        let at = |entry: usize| i32::from(self.left.get(entry).copied().unwrap_or(0));
+        let (here, next) = (at(usize::from(entry)), at(usize::from(entry) + 1));
+        (here + (((next - here) * i32::from(fraction) + 128) >> 8)) as u8
+    }
+}
+
+/// The distance at a depth of a perspective camera: n f / (n + (f - n) steps / 65,535). All 16.16; 0 < n < f.
+const fn hyperbola(n: i64, f: i64, steps: i64) -> i64 {
+    // Below 2⁶²; as many bits more as fit, up to 16.
+    let product = n * f;
+    let zeros = product.leading_zeros() - 1;
+    let more = if zeros > 16 { 16 } else { zeros };
+    let divisor = (n << more) + ((steps * (f - n)) << more) / 65_535;
+    match (product << more).checked_div(divisor) {
+        Some(distance) => distance,
+        None => f,
+    }
+}
+
+/// A shader in fog.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Fogged<'t, S> {
+    shader: S,
+    table: &'t FogTable,
+    color: [u8; 3],
+}
+
+impl<'t, S> Fogged<'t, S> {
+    /// A shader whose colours fade into `color`: usually that of the background; black for what is
+    /// [added](crate::shader::Add).
+    pub fn new(shader: S, table: &'t FogTable, color: impl Into<Rgb888>) -> Self {
+        let color: Rgb888 = color.into();
+        Self { shader, table, color: [color.r(), color.g(), color.b()] }
+    }
+}
+
+impl<S: VertexShader> VertexShader for Fogged<'_, S> {
+    inner_vertex_stage!();
+}
+
+impl<P: PixelFormat, S: Shader<P>> Shader<P> for Fogged<'_, S> {
+    inner_steps!();
+
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+        let left = u32::from(self.table.left(fragment.depth));
+        Some(P::mix(self.shader.fragment(fragment)?, P::pack(self.color), left + (left >> 7)))
+    }
+}

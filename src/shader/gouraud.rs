@@ -1,0 +1,133 @@
+//! Colours a vertex, interpolated over the triangle.
+
+use crate::color::{PixelFormat, channels, load, squeeze, store, unsqueeze};
+use crate::light::{Light, Lit};
+use crate::span::{
+    DepthTest, Fragment, Fragments, Shader, TriangleSpan, fragments, luma_span, packed_fragments, packed_span, prepare,
+    weighted,
+};
+use crate::vertex::{Corner, VertexShader};
+use embedded_graphics_core::pixelcolor::Rgb888;
+
+/// Gouraud shading: lit at the vertices, by the mesh's normals, and interpolated linearly on the screen. A mesh without
+/// normals shows the ambient light only.
+#[derive(Clone, Copy, Debug)]
+pub struct Gouraud {
+    colors: Colors,
+}
+
+/// Where the colours of vertices come from.
+#[derive(Clone, Copy, Debug)]
+enum Colors {
+    /// One for the whole mesh, lit.
+    One(Lit),
+    /// The mesh's, lit.
+    Lit(Light),
+    /// The mesh's, as they are.
+    Unlit,
+}
+
+impl Gouraud {
+    /// One colour under a light (given in object space, see [`Light::to_object`]).
+    pub fn new(light: Light, color: impl Into<Rgb888>) -> Self {
+        Self { colors: Colors::One(light.on(channels(color.into()))) }
+    }
+
+    /// The colours of the mesh's vertices under a light.
+    pub const fn colors(light: Light) -> Self {
+        Self { colors: Colors::Lit(light) }
+    }
+
+    /// The varyings of a vertex that has this colour.
+    #[inline]
+    pub fn varyings(color: Rgb888) -> [i32; 3] {
+        let [r, g, b] = channels(color);
+        [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)]
+    }
+
+    /// The colours of the mesh's vertices as they are.
+    pub const fn colors_unlit() -> Self {
+        Self { colors: Colors::Unlit }
+    }
+}
+
+impl VertexShader for Gouraud {
+    /// Red, green, blue in 8.16, squeezed to 0.5..=254.5.
+    type Varyings = [i32; 3];
+
+    /// All three in one word: red 8.2, green and blue 8.3; off by at most 1/8 of 255.
+    const WORDS: usize = 1;
+
+    const ZERO_BITS: u32 = 13;
+
+    #[inline]
+    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 3] {
+        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
+        let [r, g, b] = match &self.colors {
+            Colors::One(lit) => lit.shade(vertex.normal()),
+            Colors::Lit(light) => light.on(vertex.color()).shade(vertex.normal()),
+            Colors::Unlit => {
+                let [r, g, b] = vertex.color();
+                [i32::from(r) << 8, i32::from(g) << 8, i32::from(b) << 8]
+            }
+        };
+        [squeeze(r), squeeze(g), squeeze(b)]
+    }
+
+    #[inline]
+    fn store(rgb: &[i32; 3], words: &mut [u32]) {
+        store(rgb, words);
+    }
+
+    #[inline]
+    fn load(words: &[u32]) -> [i32; 3] {
+        load(words)
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for Gouraud {
+    #[inline]
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
+        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
+        let [r, g, b] = *fragment.varyings;
+        Some(P::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
+    }
+
+    /// What colours packed in a word want at hand in a register.
+    #[inline]
+    fn level(&self, _: &[[i32; 3]; 3], _: u64) -> u32 {
+        P::packed_mask()
+    }
+
+    #[inline]
+    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
+        if P::PACKED {
+            prepare::<P>(rgb, d_dx)
+        } else if P::IS_LUMA {
+            [weighted(*d_dx), 0, 0]
+        } else {
+            [0; 3]
+        }
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
+        if P::PACKED {
+            packed_fragments(span, test);
+        } else if P::IS_LUMA {
+            let [step, ..] = span.steps.words;
+            luma_span(span, step, test);
+        } else {
+            fragments(self, face, span, test);
+        }
+    }
+
+    #[inline(always)]
+    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+        if P::PACKED {
+            packed_span(span, test);
+        } else {
+            Shader::<P>::span(self, face, span.fragments(), test);
+        }
+    }
+}

@@ -1,0 +1,210 @@
+//! Textures as shaders: as they are, and under a light.
+
+use crate::color::PixelFormat;
+use crate::light::{Light, Lit};
+use crate::span::{DepthTest, Fragment, Fragments, STEP, Shader, fragments, texture_span};
+use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
+use crate::vertex::{Corner, Correction, Perspective, PerspectiveClass, VertexShader};
+use core::marker::PhantomData;
+
+/// The colours of a texture, perspective-correct: divided every 16 pixels and at both ends of a span.
+///
+/// The mesh's coordinates go from 0 to 1 over the texture; it repeats, and its nearest texels are shown, unless another
+/// [`Wrap`] and [`Filter`] are chosen. Texels whose alpha is below one half are not drawn.
+///
+/// ```
+/// use zstrip::shader::Textured;
+/// use zstrip::texture::{Bilinear, Clamp, Tile};
+/// static TILE: Tile<'static, 2, 2> = Tile::new(&[[0xFFFF, 0], [0, 0xFFFF]]);
+/// let pixelated = Textured::new(&TILE);
+/// let smooth = Textured::new(&TILE).wrap(Clamp).filter(Bilinear);
+/// # let _ = (pixelated, smooth);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Textured<'a, T, W = Repeat, F = Nearest> {
+    /// The texture, and smaller ones of half its size each.
+    levels: &'a [T],
+    how: PhantomData<(W, F)>,
+}
+
+impl<'a, T: Texture> Textured<'a, T> {
+    /// One texture for all sizes on the screen.
+    pub const fn new(texture: &'a T) -> Self {
+        Self { levels: core::slice::from_ref(texture), how: PhantomData }
+    }
+
+    /// A mip chain: each level half the size of the one before, rounded down, at least 1. Each triangle takes the level
+    /// whose texels are nearest in size to its pixels, and not smaller than 1/2 of one.
+    ///
+    /// # Errors
+    /// If a level's size is not that.
+    pub fn mipmapped(levels: &'a [T]) -> Result<Self, TextureError> {
+        let mut sizes = levels.iter().map(Texture::size);
+        let mut size = sizes.next().ok_or(TextureError::Empty)?;
+        for found in sizes {
+            let expected = ((size.0 / 2).max(1), (size.1 / 2).max(1));
+            if found != expected {
+                return Err(TextureError::Size { found, expected });
+            }
+            size = found;
+        }
+        Ok(Self { levels, how: PhantomData })
+    }
+}
+
+impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
+    /// The same, with something else outside of the texture.
+    pub const fn wrap<V: Wrap>(self, _: V) -> Textured<'a, T, V, F> {
+        Textured { levels: self.levels, how: PhantomData }
+    }
+
+    /// The same, filtered in another way.
+    pub const fn filter<G: Filter>(self, _: G) -> Textured<'a, T, W, G> {
+        Textured { levels: self.levels, how: PhantomData }
+    }
+
+    /// The same under a light (given in object space, see [`Light::to_object`]), lit at the vertices by the mesh's normals.
+    pub fn lit(self, light: Light) -> LitTexture<'a, T, W, F> {
+        LitTexture { texture: self, light: light.on([255; 3]) }
+    }
+
+    /// The level for a triangle; there is always one.
+    #[inline]
+    fn level(&self, level: u32) -> Option<&'a T> {
+        self.levels.get(level as usize)
+    }
+
+    /// The level whose texels have the size of pixels, or are up to half as large: from the areas of a triangle in texels
+    /// and in pixels, by their numbers of bits.
+    ///
+    /// # Format
+    /// `area` in 2⁻¹⁶ px², differences of coordinates are cut to 16.8 bits: products below 2⁴⁸, 2⁻¹⁶ of the texture.
+    #[inline(never)]
+    fn level_for(&self, uv: [[i32; 2]; 3], area: u64) -> u32 {
+        let [a, b, c] = uv;
+        let difference = |a: i32, b: i32| i64::from(b.wrapping_sub(a) >> 8);
+        let texture = difference(a[0], b[0]) * difference(a[1], c[1]) - difference(a[0], c[0]) * difference(a[1], b[1]);
+        let Some((width, height)) = self.levels.first().map(Texture::size) else { return 0 };
+        let bits = |n: u64| 64 - n.leading_zeros();
+        // Half the bits of width and height are those of a square with the same area.
+        let texels = bits(texture.unsigned_abs()) + bits(width.into()) + bits(height.into()) - 2;
+        (texels.saturating_sub(bits(area)) / 2).min(self.levels.len().saturating_sub(1) as u32)
+    }
+}
+
+impl<T, W, F> VertexShader for Textured<'_, T, W, F> {
+    type Varyings = Perspective<2, 3>;
+
+    #[inline]
+    fn vertex(&self, corner: &Corner<'_>) -> Perspective<2, 3> {
+        Perspective::new(corner.uv().map(|c| c.to_bits()), [])
+    }
+}
+
+impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, T, W, F> {
+    const STEP: usize = STEP;
+
+    #[inline]
+    fn level(&self, corners: &[Perspective<2, 3>; 3], area: u64) -> u32 {
+        if self.levels.len() < 2 {
+            return 0;
+        }
+        let [a, b, c] = corners;
+        self.level_for([a.corrected(), b.corrected(), c.corrected()], area)
+    }
+
+    #[inline(always)]
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<P::Raw> {
+        let (texture, uv) = (self.level(fragment.level)?, fragment.varyings.corrected());
+        if P::ALPHA || P::DITHER.is_some() {
+            return visible::<P>(F::rgba::<T, W>(texture, uv), fragment.position);
+        }
+        F::pixel::<P, T, W>(texture, uv)
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>, D::Stored>, test: D) {
+        match self.level(span.steps.level) {
+            _ if P::ALPHA || P::DITHER.is_some() => fragments(self, face, span, test),
+            Some(texture) if W::REPEATS && F::NEAREST && span.steps.correction.class() != PerspectiveClass::Wide => {
+                texture_span(texture, span, test);
+            }
+            _ => fragments(self, face, span, test),
+        }
+    }
+}
+
+/// [`Textured`] under a light: see [`Textured::lit`].
+#[derive(Clone, Copy, Debug)]
+pub struct LitTexture<'a, T, W = Repeat, F = Nearest> {
+    texture: Textured<'a, T, W, F>,
+    /// The light on white.
+    light: Lit,
+}
+
+/// Texture coordinates 16.16; red, green and blue of the light, 8.16, linear on the screen.
+type LitVaryings = Perspective<2, 6>;
+
+impl<T, W, F> VertexShader for LitTexture<'_, T, W, F> {
+    type Varyings = LitVaryings;
+
+    /// u, v, the light in 10 bits a channel, 1 / w.
+    const WORDS: usize = 4;
+
+    #[inline]
+    fn vertex(&self, corner: &Corner<'_>) -> LitVaryings {
+        let [r, g, b] = self.light.shade(corner.normal());
+        Perspective::new(corner.uv().map(|c| c.to_bits()), [r << 8, g << 8, b << 8])
+    }
+
+    #[inline]
+    fn store(varyings: &LitVaryings, words: &mut [u32]) {
+        if let ([u, v, r, g, b, w], [a, b_, c, d]) = (varyings.as_ref(), words) {
+            let ten = |c: i32| (c >> 14) as u32 & 0x3FF;
+            [*a, *b_, *c, *d] = [*u as u32, *v as u32, ten(*r) << 20 | ten(*g) << 10 | ten(*b), *w as u32];
+        }
+    }
+
+    #[inline]
+    fn load(words: &[u32]) -> LitVaryings {
+        let [u, v, rgb, w] = words else { return Perspective::new([0; 2], [0; 3]) };
+        let eight = |c: u32| ((c & 0x3FF) << 14) as i32;
+        let mut varyings = Perspective::new([*u as i32, *v as i32], [eight(rgb >> 20), eight(rgb >> 10), eight(*rgb)]);
+        crate::vertex::Varyings::set_inverse_w(&mut varyings, *w);
+        varyings
+    }
+}
+
+/// The pixel of a texel, unless that is transparent and the format cannot say so.
+#[inline(always)]
+fn visible<P: PixelFormat>(rgba: [u8; 4], position: (i32, i32)) -> Option<P::Raw> {
+    if P::ALPHA || rgba[3] >= OPAQUE { Some(P::pack_rgba(rgba, position)) } else { None }
+}
+
+/// A channel under light of 8.16, 255.0 leaving it as it is.
+#[inline(always)]
+fn under(channel: u8, light: i32) -> u8 {
+    // 0..=256; a plane may leave the range of its vertices by 1/8.
+    let light = (light.wrapping_add(light >> 8).clamp(0, 0xFF_FFFF) + (1 << 15)) >> 16;
+    ((i32::from(channel) * light) >> 8) as u8
+}
+
+impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for LitTexture<'_, T, W, F> {
+    const STEP: usize = STEP;
+
+    #[inline]
+    fn level(&self, corners: &[LitVaryings; 3], area: u64) -> u32 {
+        if self.texture.levels.len() < 2 {
+            return 0;
+        }
+        let [a, b, c] = corners;
+        self.texture.level_for([a.corrected(), b.corrected(), c.corrected()], area)
+    }
+
+    #[inline(always)]
+    fn fragment(&self, fragment: &Fragment<'_, LitVaryings>) -> Option<P::Raw> {
+        let [r, g, b, a] = F::rgba::<T, W>(self.texture.level(fragment.level)?, fragment.varyings.corrected());
+        let [lr, lg, lb] = fragment.varyings.linear() else { return None };
+        visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
+    }
+}

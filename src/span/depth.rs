@@ -1,0 +1,365 @@
+//! The depth test.
+
+use crate::math::SMALL_CORE;
+
+/// How a fragment's depth must compare with the stored one to be drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum Compare {
+    /// Nothing passes.
+    Never,
+    /// Nearer passes.
+    #[default]
+    Less,
+    /// The same depth passes.
+    Equal,
+    /// Nearer or the same passes.
+    LessEqual,
+    /// Farther passes.
+    Greater,
+    /// Any other depth passes.
+    NotEqual,
+    /// Farther or the same passes.
+    GreaterEqual,
+    /// Everything passes.
+    Always,
+}
+
+/// What to do with depth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct DepthState {
+    /// The test.
+    pub compare: Compare,
+    /// Whether a fragment that passes leaves its depth.
+    pub write: bool,
+}
+
+impl DepthState {
+    /// Nearer fragments pass and leave their depth.
+    pub const LESS: Self = Self { compare: Compare::Less, write: true };
+    /// Nearer fragments pass and leave depth as it is: for transparent things.
+    pub const TEST: Self = Self { compare: Compare::Less, write: false };
+    /// Depth is neither tested nor written: the painter's way.
+    pub const OFF: Self = Self { compare: Compare::Always, write: false };
+}
+
+impl Default for DepthState {
+    fn default() -> Self {
+        Self::LESS
+    }
+}
+
+/// Pixels that a span has at most: the widest screen.
+pub const MAX_SPAN: usize = crate::vertex::Viewport::MAX_SIZE as usize;
+
+/// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
+pub trait DepthTest: Copy {
+    /// Whether depth plays a part at all; otherwise neither `passes` nor `write` has to be called.
+    const ENABLED: bool;
+
+    /// What there is of a pixel's depth: `u16`, or nothing where depth plays no part, so that the same loops do without a
+    /// depth buffer.
+    type Stored: Copy;
+
+    /// What is stored of as many pixels from `start` on, or of fewer at the end of `depths`. `nothing` is for tests that
+    /// need none.
+    fn stored<'d>(
+        depths: &'d mut [u16],
+        nothing: &'d mut [(); MAX_SPAN],
+        start: usize,
+        length: usize,
+    ) -> &'d mut [Self::Stored];
+
+    /// What is stored of all pixels. `nothing` is for tests that need none.
+    fn whole<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [Self::Stored];
+
+    /// Compares `z` with the stored depth.
+    fn passes(self, z: u16, stored: Self::Stored) -> bool;
+
+    /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
+    fn write(self, z: u16, stored: &mut Self::Stored);
+
+    /// The same test as a value, and depths as numbers, where depth plays a part: for long loops, of which three copies cost
+    /// more than the test does.
+    fn any(self, stored: &mut [Self::Stored]) -> Option<(AnyDepth, &mut [u16])>;
+}
+
+/// Depths from `start` on, `length` of them or as many as there are.
+#[inline(always)]
+fn part(depths: &mut [u16], start: usize, length: usize) -> &mut [u16] {
+    // In two steps, each a comparison; a range is checked at both ends at once, which small cores pay twice for.
+    let depths = depths.get_mut(start..).unwrap_or_default();
+    depths.get_mut(..length).unwrap_or_default()
+}
+
+/// [`DepthState::LESS`].
+#[derive(Clone, Copy, Debug)]
+pub struct LessWrite;
+
+impl DepthTest for LessWrite {
+    const ENABLED: bool = true;
+
+    type Stored = u16;
+
+    #[inline(always)]
+    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
+        part(depths, start, length)
+    }
+
+    #[inline(always)]
+    fn whole<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+        depths
+    }
+
+    #[inline(always)]
+    fn passes(self, z: u16, stored: u16) -> bool {
+        z < stored
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut u16) {
+        *stored = z;
+    }
+
+    #[inline(always)]
+    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
+        Some((AnyDepth::new(DepthState::LESS), stored))
+    }
+}
+
+/// [`DepthState::OFF`].
+#[derive(Clone, Copy, Debug)]
+pub struct NoDepth;
+
+impl DepthTest for NoDepth {
+    const ENABLED: bool = false;
+
+    type Stored = ();
+
+    #[inline(always)]
+    fn stored<'d>(_: &'d mut [u16], nothing: &'d mut [(); MAX_SPAN], _: usize, length: usize) -> &'d mut [()] {
+        nothing.get_mut(..length).unwrap_or_default()
+    }
+
+    #[inline(always)]
+    fn whole<'d>(_: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [()] {
+        nothing
+    }
+
+    #[inline(always)]
+    fn passes(self, _: u16, (): ()) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn write(self, _: u16, (): &mut ()) {}
+
+    #[inline(always)]
+    fn any(self, _: &mut [()]) -> Option<(AnyDepth, &mut [u16])> {
+        None
+    }
+}
+
+/// Any test: that the difference of a depth and the stored one is in a range.
+///
+/// # Format
+/// Differences are in -65,535..=65,535. Modulo 2³² even all numbers but 0 are a range.
+#[derive(Clone, Copy, Debug)]
+pub struct AnyDepth {
+    lowest: i32,
+    count: u32,
+    write: bool,
+}
+
+impl AnyDepth {
+    /// From its description.
+    pub const fn new(state: DepthState) -> Self {
+        let (lowest, count) = match state.compare {
+            Compare::Never => (0, 0),
+            Compare::Less => (-65_535, 65_535),
+            Compare::Equal => (0, 1),
+            Compare::LessEqual => (-65_535, 65_536),
+            Compare::Greater => (1, 65_535),
+            Compare::NotEqual => (1, u32::MAX),
+            Compare::GreaterEqual => (0, 65_536),
+            Compare::Always => (i32::MIN, u32::MAX),
+        };
+        Self { lowest, count, write: state.write }
+    }
+}
+
+impl DepthTest for AnyDepth {
+    const ENABLED: bool = true;
+
+    type Stored = u16;
+
+    #[inline(always)]
+    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
+        part(depths, start, length)
+    }
+
+    #[inline(always)]
+    fn whole<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+        depths
+    }
+
+    #[inline(always)]
+    fn passes(self, z: u16, stored: u16) -> bool {
+        let difference = i32::from(z) - i32::from(stored);
+        (difference.wrapping_sub(self.lowest) as u32) < self.count
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut u16) {
+        if self.write {
+            *stored = z;
+        }
+    }
+
+    #[inline(always)]
+    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
+        Some((self, stored))
+    }
+}
+
+/// Pixels that [`passing`] tests.
+pub(crate) const RUN: usize = 16;
+
+/// Tests the depths of a run from `z` on, up to the first that does not pass, and writes those that do: how many they are.
+///
+/// Most runs pass, or fail, as a whole. Where all pass, two loops, this one and another for colours, are shorter than one for
+/// both, as each has all of its values in registers.
+#[inline(always)]
+pub(crate) fn passing<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], z: u32, dz_dx: i32) -> usize {
+    if !D::ENABLED {
+        RUN
+    } else if SMALL_CORE {
+        passing_apart(test, depths, z, dz_dx)
+    } else {
+        passing_here(test, depths, z, dz_dx)
+    }
+}
+
+/// Out of line, where its registers are its own.
+#[inline(never)]
+fn passing_apart<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], z: u32, dz_dx: i32) -> usize {
+    passing_here(test, depths, z, dz_dx)
+}
+
+#[inline(always)]
+fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], mut z: u32, dz_dx: i32) -> usize {
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    macro_rules! test {
+        ($($count:literal $depth:ident)*) => {
+            let [$($depth),*] = depths;
+            $(
+                let near = (z >> 16) as u16;
+                if !test.passes(near, *$depth) {
+                    return $count;
+                }
+                test.write(near, $depth);
+                z = z.wrapping_add_signed(dz_dx);
+            )*
+        };
+    }
+    test!(0 a 1 b 2 c 3 d 4 e 5 f 6 g 7 h 8 i 9 j 10 k 11 l 12 m 13 n 14 o 15 p);
+    let _ = z;
+    RUN
+}
+
+/// [`passing`] for up to a run: how many are left.
+#[inline(always)]
+pub(crate) fn left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
+    match <&mut [D::Stored; RUN]>::try_from(&mut *depths) {
+        Ok(run) => RUN - passing(test, run, z, dz_dx),
+        Err(_) => few_left(test, depths, z, dz_dx),
+    }
+}
+
+/// [`left`] of fewer depths than a run has.
+#[inline(always)]
+pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
+    if D::ENABLED { few_left_apart(test, depths, z, dz_dx) } else { 0 }
+}
+
+/// Out of line, where its registers are its own.
+#[inline(never)]
+fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u32, dz_dx: i32) -> usize {
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    macro_rules! test {
+        ($($left:literal $depth:ident)*) => {
+            let Some(([$($depth),*], rest)) = core::mem::take(&mut depths).split_first_chunk_mut() else { return 0 };
+            depths = rest;
+            $(
+                let near = (z >> 16) as u16;
+                if !test.passes(near, *$depth) {
+                    return depths.len() + $left;
+                }
+                test.write(near, $depth);
+                z = z.wrapping_add_signed(dz_dx);
+            )*
+        };
+    }
+    if depths.len() >= 8 {
+        test!(8 a 7 b 6 c 5 d 4 e 3 f 2 g 1 h);
+    }
+    if depths.len() >= 4 {
+        test!(4 a 3 b 2 c 1 d);
+    }
+    if depths.len() >= 2 {
+        test!(2 a 1 b);
+    }
+    if depths.is_empty() {
+        // 0, where it is at hand.
+        return depths.len();
+    }
+    test!(1 a);
+    let _ = (depths, z);
+    0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_depths_are_tested_one_by_one() {
+        let mut state = 1_u32;
+        for case in 0..4000 {
+            let mut random = || {
+                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+                state ^ state >> 15
+            };
+            let (length, z, dz_dx) = (case % (RUN + 1), random() >> 1, random() as i32 >> 12);
+            let mut expected = [(); RUN].map(|()| if random() % 16 < 1 { 0 } else { u16::MAX });
+            let mut found = expected;
+            let mut left = length;
+            for (k, depth) in expected[..length].iter_mut().enumerate() {
+                let near = (z.wrapping_add_signed(dz_dx * k as i32) >> 16) as u16;
+                if near >= *depth {
+                    break;
+                }
+                (*depth, left) = (near, left - 1);
+            }
+            assert_eq!(super::left(LessWrite, &mut found[..length], z, dz_dx), left, "{case}");
+            assert_eq!(found, expected, "{case}");
+        }
+    }
+
+    #[test]
+    fn all_tests_compare_as_they_say() {
+        use Compare::*;
+        let depths = [0, 1, 2, 0x7FFF, 0x8000, 0xFFFE, 0xFFFF_u16];
+        for (z, stored) in depths.iter().flat_map(|z| depths.iter().map(move |stored| (*z, *stored))) {
+            let expected = [false, z < stored, z == stored, z <= stored, z > stored, z != stored, z >= stored, true];
+            let compares = [Never, Less, Equal, LessEqual, Greater, NotEqual, GreaterEqual, Always];
+            for (compare, expected) in compares.into_iter().zip(expected) {
+                let test = AnyDepth::new(DepthState { compare, write: false });
+                assert_eq!(test.passes(z, stored), expected, "{z} {compare:?} {stored}");
+            }
+            let less = LessWrite.any(&mut []).map(|(test, _)| test.passes(z, stored));
+            assert_eq!(less, Some(LessWrite.passes(z, stored)));
+        }
+    }
+}

@@ -1,0 +1,607 @@
+//! Spans of three channels that are interpolated linearly, in formats of 5 or 6 bits a channel: all three in one word, with one
+//! addition a pixel.
+//!
+//! | pixels of a span | small cores | others |
+//! |---|---|---|
+//! | 1 | where it is | where it is |
+//! | 2 to 15 | depths, then colours, each out of line | at once, out of line |
+//! | 16 and more | runs of 16, depths and then colours; what is left as above | |
+//!
+//! Most spans of a mesh are short, so what is once a span counts: of a triangle's span nothing is passed on but where it is, and
+//! channels are worked out where registers are free.
+
+use super::depth::{DepthTest, NoDepth, few_left, passing};
+use super::span::{Fragments, Steps, TriangleSpan};
+use crate::color::{PixelFormat, pack, spread, spread_step, word};
+use crate::math::SMALL_CORE;
+use core::hint::black_box;
+use core::sync::atomic::{Ordering, compiler_fence};
+
+/// Pixels that a word is stepped over until its rounding is made up for, and until it is made anew.
+const GROUP: usize = 4;
+const RUN: usize = super::depth::RUN;
+
+/// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
+/// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next: within eight
+/// pixels, and in the middle of a run.
+#[inline(never)]
+pub(crate) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+    let ([r, g, b], [dr, dg, db]) = (rgb, d_dx);
+    let [r_one, r_four, r_eight] = settle::<P>(0, r, *dr);
+    let [b_one, b_four, b_eight] = settle::<P>(2, b, *db);
+    let [g_one, g_four, g_eight] = settle::<P>(1, g, *dg);
+    let (step, four, eight) =
+        (pack(r_one, g_one, b_one), pack(r_four, g_four, b_four), pack(r_eight, g_eight, b_eight));
+    let correction = four.wrapping_sub(step.wrapping_mul(GROUP as u32));
+    [step, correction, eight.wrapping_sub(four << 1).wrapping_add(correction)]
+}
+
+/// [`prepare`] for a channel: moves it, and yields the changes of one pixel, of four and of eight, rounded to units of the word.
+#[inline(always)]
+fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i32; 3] {
+    let step = spread_step(P::DITHER, channel, step);
+    let (half, bits) = if channel == 1 { (1 << 13, 14) } else { (1 << 12, 13) };
+    let units = |change: i32| change.wrapping_add(half) >> bits;
+    let one = units(step);
+    let four = units(step.wrapping_mul(GROUP as i32));
+    let eight = units(step.wrapping_mul(2 * GROUP as i32));
+    let kept = (one + one + one + four + eight) << bits;
+    let lost = step.wrapping_mul(15).wrapping_sub(kept);
+    *value = value.wrapping_add(half + (lost >> 1));
+    // Channel by channel: all at once would need more registers than there are.
+    compiler_fence(Ordering::SeqCst);
+    [one, four, eight]
+}
+
+/// What a word of channels leaves out, 9 or 10 bits of each, with a bit above for what they carry into the word.
+///
+/// ```text
+/// bits   31      30 .. 21   20      19 .. 11   10      9 .. 0
+///        carry   red        carry   blue       carry   green
+/// ```
+#[inline(always)]
+const fn low([r, g, b]: [i32; 3]) -> u32 {
+    (r as u32 >> 3 & 0x3FF) << 21 | (b as u32 >> 4 & 0x1FF) << 11 | g as u32 >> 4 & 0x3FF
+}
+
+/// Half of the units of [`low`]: what rounds to them.
+const LOW_HALVES: [i32; 3] = [4, 8, 8];
+
+/// How far above the units of the word the carries of [`low`] are, and what they are there.
+const CARRY: u32 = 10;
+const UNITS: u32 = 1 << 21 | 1 << 10 | 1;
+
+/// Pixels until all is made anew: a multiple of a run, and of the columns after which dithering repeats.
+const LONG: usize = 512;
+
+/// Draws a span with one addition a pixel for all three channels, for formats of 5 or 6 bits a channel.
+///
+/// ```text
+/// pixels      0 1 2 3   4 5 6 7   8 9 ..    12 ..     16 ..
+/// word made   step      group     eight     group     run
+/// ```
+/// # Format
+/// Steps of 1, 4 and 8 pixels are rounded to units of the word, 8.3 or 8.2 for green. If the step of a pixel is x units off,
+/// that of 4 is off by the distance of 4 x from an integer, that of 8 by that of 8 x: a pixel of a run by
+/// 3 |x| + d(4 x) + d(8 x) at most, which is 33/16 for x = 7/16 and less for others. Channels are moved so that this cancels
+/// in the run's middle: half of it is 0.26 for green, 0.13 for the others. From run to run words are stepped with 9 bits
+/// more, over [`LONG`] pixels off by less than 2⁻⁷. With the rounding of the word it is below 0.39. Squeezed channels are
+/// off by at most 1/2, and by 1/16 from the records (1/8 for red, whose word is finer): in all, within 1 of 255 before the
+/// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
+#[inline(always)]
+pub(crate) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+    drawn::<P, D, SMALL_CORE>(span, test);
+}
+
+/// [`packed_span`] of anything.
+#[inline(always)]
+pub(crate) fn packed_fragments<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
+    let Fragments { color, depth, z, varyings, steps, position } = span;
+    if let ([color], [depth]) = (&mut *color, &mut *depth) {
+        // A line's pixel.
+        let pen = Pen { z, dz_dx: 0, word: word(spread(P::DITHER, varyings)), step: 0, mask: P::packed_mask() };
+        return pen.dot::<P, D>(test, position, color, depth);
+    }
+    let ([mut r, mut g, mut b], [dr, dg, db], x) = (varyings, steps.d_dx, position.0);
+    r = r.wrapping_sub(dr.wrapping_mul(x));
+    g = g.wrapping_sub(dg.wrapping_mul(x));
+    b = b.wrapping_sub(db.wrapping_mul(x));
+    let steps = &Steps { corner: [r, g, b], d_dy: [0; 3], level: P::packed_mask(), ..*steps };
+    packed_span::<P, D>(TriangleSpan { color, depth, z, steps, position }, test);
+}
+
+/// Draws a span; less than a run of it in one loop, or in two: first depths and then colours, each with all of its values, and its
+/// parameters, in registers, even if they are few.
+#[inline(always)]
+fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+    let TriangleSpan { color, depth, z, steps, position } = span;
+    let (x, y) = position;
+    if let ([color], [depth]) = (&mut *color, &mut *depth) {
+        // A tip of a triangle.
+        let word = word_at::<P>(steps, x, y);
+        // Small cores would keep the triangle's on the stack.
+        let mask = if SMALL_CORE { P::packed_mask() } else { steps.level };
+        return Pen { z, dz_dx: 0, word, step: 0, mask }.dot::<P, D>(test, position, color, depth);
+    }
+    // Of what a short span does not need, nothing is even passed on.
+    if color.len() >= RUN {
+        runs::<P, D, IN_TWO>(test, depth, z, steps, color, x, y);
+    } else if !IN_TWO {
+        few_at::<P, D>(test, depth, z, steps, color, x, y);
+    } else {
+        match few_left(test, depth, z, steps.dz_dx) {
+            0 => few_colors_at::<P>(color, steps, x, y),
+            left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
+        }
+    }
+}
+
+/// The word of a pixel. Out of line: a loop over rows would keep all that it takes on the stack.
+#[inline(never)]
+fn word_at<P: PixelFormat>(steps: &Steps<[i32; 3]>, x: i32, y: i32) -> u32 {
+    word(spread(P::DITHER, steps.at((x, y))))
+}
+
+/// Draws a span of at least a run.
+#[inline(never)]
+fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    mut color: &mut [P::Raw],
+    x: i32,
+    y: i32,
+) {
+    if color.len() > LONG {
+        return long_span::<P, D, IN_TWO>(test, depth, z, steps, color, x, y);
+    }
+    let first = spread(P::DITHER, steps.at((x, y)));
+    let addends = P::dither((x, y));
+    let Some(mut depth) = depth.get_mut(..color.len()) else { return };
+    let [step, correction, middle] = steps.words;
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(first), step, mask: steps.level };
+    let [dr, dg, db] = steps.d_dx;
+    let of_run = |channel, step| {
+        spread_step(P::DITHER, channel, step).wrapping_mul(RUN as i32).wrapping_add(LOW_HALVES[channel])
+    };
+    let run = [of_run(0, dr), of_run(1, dg), of_run(2, db)];
+    let (run, run_low) = (word(run), low(run));
+    let mut lower = low(first);
+    while color.len() >= RUN {
+        let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<RUN>() else { return };
+        color = rest;
+        let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
+        depth = rest;
+        let passed = passing(test, depths, pen.z, pen.dz_dx);
+        if passed == RUN {
+            pen.colors::<P>([correction, middle], addends, colors);
+        } else {
+            some::<P, D>(test, depths, pen.z, steps, colors, pen.word, addends, RUN - passed);
+            // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
+            pen.dz_dx = black_box(pen.dz_dx);
+        }
+        pen.z = pen.z.wrapping_add_signed(pen.dz_dx.wrapping_mul(RUN as i32));
+        lower = lower.wrapping_add(run_low);
+        let carries = lower >> CARRY & UNITS;
+        lower = lower.wrapping_sub(carries << CARRY);
+        pen.word = pen.word.wrapping_add(run).wrapping_add(carries);
+    }
+    if color.is_empty() {
+        return;
+    }
+    if !IN_TWO {
+        return few::<P, D>(test, depth, pen.z, steps, color, pen.word, addends);
+    }
+    match few_left(test, depth, pen.z, pen.dz_dx) {
+        0 => few_colors::<P>(color, pen.word, steps, addends),
+        left => some::<P, D>(test, depth, pen.z, steps, color, pen.word, addends, left),
+    }
+}
+
+/// Draws less than a run, from a pixel on.
+#[inline(never)]
+fn few_at<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    x: i32,
+    y: i32,
+) {
+    let Some(depth) = depth.get_mut(..color.len()) else { return };
+    let word = word(spread(P::DITHER, steps.at((x, y))));
+    // What comes now is loaded now.
+    compiler_fence(Ordering::SeqCst);
+    Pen::new(z, word, steps).few::<P, D>(test, steps, P::dither((x, y)), color, depth);
+}
+
+/// The same, from a word on.
+#[inline(never)]
+fn few<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depth: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    word: u32,
+    addends: &[u32; 8],
+) {
+    let Some(depth) = depth.get_mut(..color.len()) else { return };
+    Pen::new(z, word, steps).few::<P, D>(test, steps, addends, color, depth);
+}
+
+/// Colours less than a run, from a pixel on.
+#[inline(never)]
+fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], steps: &Steps<[i32; 3]>, x: i32, y: i32) {
+    let mut nothing = [(); usize::MAX];
+    let Some(nothing) = nothing.get_mut(..color.len()) else { return };
+    let word = word(spread(P::DITHER, steps.at((x, y))));
+    Pen::new(0, word, steps).few::<P, NoDepth>(NoDepth, steps, P::dither((x, y)), color, nothing);
+}
+
+/// The same, from a word on.
+#[inline(never)]
+fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
+    let mut nothing = [(); usize::MAX];
+    let Some(nothing) = nothing.get_mut(..color.len()) else { return };
+    Pen::new(0, word, steps).few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
+}
+
+/// Draws less than a run, from a pixel on, of which the depths have been tested but for the last ones.
+#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
+#[cold]
+#[inline(never)]
+fn some_at<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depths: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    colors: &mut [P::Raw],
+    x: i32,
+    y: i32,
+    left: usize,
+) {
+    some_here::<P, D>(test, depths, z, steps, colors, || word_at::<P>(steps, x, y), P::dither((x, y)), left);
+}
+
+/// The same for up to a run, from a word on.
+#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
+#[cold]
+#[inline(never)]
+fn some<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depths: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    colors: &mut [P::Raw],
+    word: u32,
+    addends: &[u32; 8],
+    left: usize,
+) {
+    some_here::<P, D>(test, depths, z, steps, colors, || word, addends, left);
+}
+
+#[expect(clippy::too_many_arguments, reason = "as above")]
+#[inline(always)]
+fn some_here<P: PixelFormat, D: DepthTest>(
+    test: D,
+    depths: &mut [D::Stored],
+    z: u32,
+    steps: &Steps<[i32; 3]>,
+    colors: &mut [P::Raw],
+    word: impl FnOnce() -> u32,
+    addends: &[u32; 8],
+    left: usize,
+) {
+    let (dz_dx, passed) = (steps.dz_dx, depths.len().wrapping_sub(left));
+    let mut z = z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32));
+    if passed == 0 && all_hidden(test, depths, z, dz_dx) {
+        return;
+    }
+    let (first, mask, [step, correction, middle]) = (word(), steps.level, steps.words);
+    for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
+        if k >= passed {
+            let near = (z >> 16) as u16;
+            z = z.wrapping_add_signed(dz_dx);
+            if !test.passes(near, *depth) {
+                continue;
+            }
+            test.write(near, depth);
+        }
+        let mut word = first.wrapping_add(step.wrapping_mul(k as u32));
+        if k >= GROUP {
+            word = word.wrapping_add(correction);
+        }
+        if k >= 2 * GROUP {
+            word = word.wrapping_add(middle);
+        }
+        if k >= 3 * GROUP {
+            word = word.wrapping_add(correction);
+        }
+        *color = P::from_packed(word.wrapping_add(addend::<P>(addends, k)), mask);
+    }
+}
+
+/// Whether none of the depths passes: where the first one does not, that is usual.
+#[inline(always)]
+fn all_hidden<D: DepthTest>(test: D, depths: &[D::Stored], mut z: u32, dz_dx: i32) -> bool {
+    for depth in depths {
+        if test.passes((z >> 16) as u16, *depth) {
+            return false;
+        }
+        z = z.wrapping_add_signed(dz_dx);
+    }
+    true
+}
+
+/// A span part by part.
+#[cold]
+#[inline(never)]
+fn long_span<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
+    test: D,
+    depth: &mut [D::Stored],
+    mut z: u32,
+    steps: &Steps<[i32; 3]>,
+    color: &mut [P::Raw],
+    mut x: i32,
+    y: i32,
+) {
+    for (color, depth) in color.chunks_mut(LONG).zip(depth.chunks_mut(LONG)) {
+        drawn::<P, D, IN_TWO>(TriangleSpan { color, depth, z, steps, position: (x, y) }, test);
+        z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(LONG as i32));
+        x = x.wrapping_add(LONG as i32);
+    }
+}
+
+/// What dithering adds to a pixel of a run.
+#[inline(always)]
+fn addend<P: PixelFormat>(addends: &[u32; 8], pixel: usize) -> u32 {
+    if P::DITHER.is_some() { addends.get(pixel % 8).copied().unwrap_or(0) } else { 0 }
+}
+
+/// What changes from pixel to pixel in [`packed_span`].
+struct Pen {
+    z: u32,
+    dz_dx: i32,
+    word: u32,
+    step: u32,
+    mask: u32,
+}
+
+impl Pen {
+    #[inline(always)]
+    fn new(z: u32, word: u32, steps: &Steps<[i32; 3]>) -> Self {
+        let [step, ..] = steps.words;
+        Self { z, dz_dx: steps.dz_dx, word, step, mask: steps.level }
+    }
+
+    /// Draws a single pixel.
+    #[inline(always)]
+    fn dot<P: PixelFormat, D: DepthTest>(
+        mut self,
+        test: D,
+        position: (i32, i32),
+        color: &mut P::Raw,
+        depth: &mut D::Stored,
+    ) {
+        self.draw::<P, D>(test, P::dither(position)[0], color, depth);
+    }
+
+    /// Draws a pixel and steps to the next one.
+    #[inline(always)]
+    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, addend: u32, color: &mut P::Raw, depth: &mut D::Stored) {
+        let z = (self.z >> 16) as u16;
+        if !D::ENABLED || test.passes(z, *depth) {
+            test.write(z, depth);
+            *color = P::from_packed(self.word.wrapping_add(addend), self.mask);
+        }
+        self.z = self.z.wrapping_add_signed(self.dz_dx);
+        self.word = self.word.wrapping_add(self.step);
+    }
+
+    /// Colours a run.
+    #[inline(always)]
+    fn colors<P: PixelFormat>(&self, [correction, middle]: [u32; 2], addends: &[u32; 8], colors: &mut [P::Raw; RUN]) {
+        let mut word = self.word;
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = colors;
+        macro_rules! color {
+            ($($k:literal $color:ident)*) => { $(
+                *$color = P::from_packed(word.wrapping_add(addend::<P>(addends, $k)), self.mask);
+                word = word.wrapping_add(self.step);
+            )* };
+        }
+        color!(0 a 1 b 2 c 3 d);
+        word = word.wrapping_add(correction);
+        color!(4 e 5 f 6 g 7 h);
+        word = word.wrapping_add(middle);
+        color!(8 i 9 j 10 k 11 l);
+        word = word.wrapping_add(correction);
+        color!(12 m 13 n 14 o 15 p);
+        let _ = word;
+    }
+
+    /// Draws less than a run.
+    #[inline(always)]
+    fn few<P: PixelFormat, D: DepthTest>(
+        &mut self,
+        test: D,
+        steps: &Steps<[i32; 3]>,
+        addends: &[u32; 8],
+        mut color: &mut [P::Raw],
+        mut depth: &mut [D::Stored],
+    ) {
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        macro_rules! draw {
+            ($first:ident $($k:literal $color:ident $depth:ident)*) => {
+                let Some(([$($color),*], rest)) = core::mem::take(&mut color).split_first_chunk_mut() else { return };
+                color = rest;
+                let Some(([$($depth),*], rest)) = core::mem::take(&mut depth).split_first_chunk_mut() else { return };
+                depth = rest;
+                $( self.draw::<P, D>(test, addend::<P>(addends, $first + $k), $color, $depth); )*
+            };
+        }
+        let mut first = 0;
+        if color.len() >= 2 * GROUP {
+            draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
+            self.word = self.word.wrapping_add(steps.words[1]);
+            draw!(first 4 a az 5 b bz 6 c cz 7 d dz);
+            if color.is_empty() {
+                return;
+            }
+            self.word = self.word.wrapping_add(steps.words[2]);
+        }
+        if color.len() >= GROUP {
+            draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
+            self.word = self.word.wrapping_add(steps.words[1]);
+            first = GROUP;
+        }
+        if color.len() >= 2 {
+            draw!(first 0 a az 1 b bz);
+            first += 2;
+        }
+        if !color.is_empty() {
+            draw!(first 0 a az);
+        }
+        let _ = (color, depth);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::depth::{AnyDepth, Compare, DepthState, LessWrite};
+    use super::*;
+    use crate::color::{Dithered, Rgb332, squeeze};
+    use crate::vertex::Side;
+    use core::fmt::Debug;
+    use embedded_graphics_core::pixelcolor::Rgb565;
+
+    /// [`packed_span`], pixel by pixel.
+    fn plain<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+        let TriangleSpan { color, depth, mut z, steps, position: (x, y) } = span;
+        let ([step, correction, middle], addends) = (steps.words, P::dither((x, y)));
+        let run = core::array::from_fn(|k| spread_step(P::DITHER, k, steps.d_dx[k]) * RUN as i32 + LOW_HALVES[k]);
+        let (mut of_run, mut lower, mut next) = (0, 0, 0);
+        for (k, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
+            if k % LONG == 0 {
+                let first = spread(P::DITHER, steps.at((x + k as i32, y)));
+                (of_run, lower) = (word(first), low(first));
+            } else if k % RUN == 0 {
+                lower += low(run);
+                let carries = lower >> CARRY & UNITS;
+                lower -= carries << CARRY;
+                of_run = of_run.wrapping_add(word(run)).wrapping_add(carries);
+            }
+            next = match k % RUN {
+                0 => of_run,
+                4 | 12 => correction.wrapping_add(next),
+                8 => middle.wrapping_add(next),
+                _ => next,
+            };
+            let near = (z >> 16) as u16;
+            if test.passes(near, *depth) {
+                test.write(near, depth);
+                *color = P::from_packed(next.wrapping_add(addends[k % 8]), P::packed_mask());
+            }
+            next = next.wrapping_add(step);
+            z = z.wrapping_add_signed(steps.dz_dx);
+        }
+    }
+
+    /// Spans of all lengths over depths of which all, some or none pass, in a format and by a test.
+    fn compare<P: PixelFormat<Raw: PartialEq + Debug>, D: DepthTest<Stored: PartialEq + Debug>>(
+        test: D,
+        stored: impl Fn(u16) -> D::Stored,
+    ) {
+        let mut state = 1_u32;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % below
+        };
+        for case in 0..2000 {
+            let length = if case % 50 == 0 { random(1600) } else { random(70) } as usize;
+            let position = (random(300) as i32, random(300) as i32);
+            let ends = [0; 3].map(|_: i32| [random(256), random(256)].map(|c| squeeze((c << 8) as i32)));
+            let d_dx = ends.map(|[a, b]| (b - a) / (length.max(2) as i32 - 1));
+            let mut varyings = ends.map(|[a, _]| a);
+            let words = prepare::<P>(&mut varyings, &d_dx);
+            let d_dy = [(); 3].map(|()| random(1 << 20) as i32);
+            let mut steps = Steps { d_dy, ..Steps::linear(random(1 << 12) as i32 - 2048, d_dx, words, Side::Front) };
+            let at = steps.at(position);
+            steps.corner = core::array::from_fn(|k| varyings[k].wrapping_sub(at[k]));
+            steps.level = P::packed_mask();
+            let steps = &steps;
+            assert_eq!(steps.at(position), varyings);
+            let (z, far) = (20_000 << 16, random(3));
+            let depth: std::vec::Vec<D::Stored> = (0..length)
+                .map(|k| stored(if far == 0 || far == 1 && random(8) > 0 { 60_000 - k as u16 % 9 } else { 100 }))
+                .collect();
+            let color = std::vec![P::pack([1, 2, 3]); length];
+            macro_rules! drawn_by {
+                ($how:expr) => {{
+                    let (mut color, mut depth) = (color.clone(), depth.clone());
+                    $how(TriangleSpan { color: &mut color, depth: &mut depth, z, steps, position }, test);
+                    (color, depth)
+                }};
+            }
+            let expected = drawn_by!(plain::<P, D>);
+            assert!(drawn_by!(drawn::<P, D, false>) == expected, "{case}: {length} pixels");
+            assert!(drawn_by!(drawn::<P, D, true>) == expected, "{case}: {length} pixels, in two loops");
+            let by_fragments =
+                drawn_by!(|span: TriangleSpan<'_, P, _, _>, test: D| packed_fragments::<P, D>(span.fragments(), test));
+            assert!(by_fragments == expected, "{case}: {length} pixels, their channels given");
+        }
+    }
+
+    #[test]
+    fn spans_are_those_pixel_by_pixel() {
+        compare::<Rgb565, _>(LessWrite, |depth| depth);
+        compare::<Dithered<Rgb565>, _>(LessWrite, |depth| depth);
+        compare::<Rgb332, _>(LessWrite, |depth| depth);
+        compare::<Rgb565, _>(NoDepth, |_| ());
+        compare::<Dithered<Rgb332>, _>(NoDepth, |_| ());
+        compare::<Rgb565, _>(AnyDepth::new(DepthState { compare: Compare::Greater, write: false }), |depth| depth);
+    }
+
+    /// Any lengths, any colours at both ends, some pixels hidden: the others are within 1 of 255 before their bits are cut.
+    #[test]
+    fn packed_channels_are_within_1_of_255() {
+        let mut state = 1_u32;
+        let mut random = |below: u32| {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            (state >> 8) % below
+        };
+        for case in 0..3000 {
+            let length = if case % 50 == 0 { 2 + random(3000) } else { 2 + random(120) } as usize;
+            let ends = [0; 3].map(|_: i32| [random(256), random(256)].map(|c| squeeze((c << 8) as i32)));
+            let d_dx = ends.map(|[a, b]| (b - a) / (length as i32 - 1));
+            let exact = |k: usize, x: usize| ends[k][0] + d_dx[k] * x as i32;
+            let mut varyings = ends.map(|[a, _]| a);
+            let words = prepare::<Rgb565>(&mut varyings, &d_dx);
+            let steps = &Steps::linear(1 << 10, d_dx, words, Side::Front);
+            let hidden = random(40) as usize + 1;
+            let mut depth: std::vec::Vec<u16> =
+                (0..length).map(|x| if x / hidden % 3 == 2 { 100 } else { 50_000 }).collect();
+            let mut color = std::vec![0x1234; length];
+            let span =
+                Fragments { color: &mut color, depth: &mut depth, z: 200 << 16, varyings, steps, position: (0, 0) };
+            packed_fragments::<Rgb565, _>(span, LessWrite);
+            for (x, (&pixel, &depth)) in color.iter().zip(&depth).enumerate() {
+                if x / hidden % 3 == 2 {
+                    assert_eq!((pixel, depth), (0x1234, 100), "{case}: {x}");
+                    continue;
+                }
+                assert_eq!(usize::from(depth), 200 + (x << 10 >> 16), "{case}: {x}");
+                for (k, (shift, bits)) in [(11, 5), (5, 6), (0, 5)].into_iter().enumerate() {
+                    let found = i32::from(pixel) >> shift & ((1 << bits) - 1);
+                    // 8.16, as if it had not been squeezed.
+                    let c = (i64::from(exact(k, x)) * 256 / 255 - (1 << 15)) as i32;
+                    let cut = |c: i32| (c >> 16).clamp(0, 255) >> (8 - bits);
+                    assert!((cut(c - (1 << 16))..=cut(c + (1 << 16))).contains(&found), "{case}: {x}, channel {k}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,162 @@
+//! Spans of one colour.
+
+use super::depth::{DepthTest, RUN, passing};
+use super::packed::packed_fragments;
+use super::span::{Fragments, Steps};
+use crate::color::{PixelFormat, fill, squeeze, unpacked};
+use crate::math::SMALL_CORE;
+use core::hint::black_box;
+
+/// Pixels from which on a call is worth it.
+const LONG: usize = 9;
+
+/// Draws a span in the colour of a face's word.
+#[inline]
+pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
+    if P::DITHER.is_some() {
+        return dithered_span(unpacked(face), span, test);
+    }
+    let Fragments { color, depth, z, steps, .. } = span;
+    let value = P::pack(unpacked(face));
+    if !D::ENABLED {
+        return fill(color, value);
+    }
+    if color.len() >= LONG {
+        return tested_span(color, depth, z, steps.dz_dx, value, test);
+    }
+    let (mut z, dz_dx) = (z, steps.dz_dx);
+    for (color, depth) in color.iter_mut().zip(depth) {
+        let near = (z >> 16) as u16;
+        if test.passes(near, *depth) {
+            test.write(near, depth);
+            *color = value;
+        }
+        z = z.wrapping_add_signed(dz_dx);
+    }
+}
+
+/// A span of one colour, in a dithered format.
+pub(crate) fn dithered_span<P: PixelFormat, D: DepthTest>(
+    rgb: [u8; 3],
+    span: Fragments<'_, P, [i32; 0], D::Stored>,
+    test: D,
+) {
+    let Fragments { color, depth, z, steps, position, .. } = span;
+    let [r, g, b] = rgb;
+    let varyings = [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)];
+    let steps = &Steps::linear(steps.dz_dx, [0; 3], [0; 3], steps.side);
+    packed_fragments::<P, D>(Fragments { color, depth, z, varyings, steps, position }, test);
+}
+
+/// One value where the depth test passes, in a long span. Out of line: amid others, the loops would not get the registers that
+/// they need.
+#[inline(never)]
+fn tested_span<R: Copy, D: DepthTest>(
+    mut color: &mut [R],
+    depth: &mut [D::Stored],
+    mut z: u32,
+    mut dz_dx: i32,
+    value: R,
+    test: D,
+) {
+    let Some(mut depth) = depth.get_mut(..color.len()) else { return };
+    while SMALL_CORE && color.len() >= RUN {
+        let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<RUN>() else { return };
+        color = rest;
+        let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
+        depth = rest;
+        run(test, &mut z, dz_dx, value, colors, depths);
+    }
+    while !SMALL_CORE && color.len() >= 4 {
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        let Some(([a, b, c, d], rest)) = core::mem::take(&mut color).split_first_chunk_mut::<4>() else { return };
+        color = rest;
+        let Some(([az, bz, cz, dz], rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<4>() else { return };
+        depth = rest;
+        if !draw(test, &mut z, dz_dx, value, a, az) {
+            // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
+            dz_dx = black_box(dz_dx);
+        }
+        draw(test, &mut z, dz_dx, value, b, bz);
+        draw(test, &mut z, dz_dx, value, c, cz);
+        draw(test, &mut z, dz_dx, value, d, dz);
+    }
+    for (color, depth) in color.iter_mut().zip(depth) {
+        draw(test, &mut z, dz_dx, value, color, depth);
+    }
+}
+
+/// Draws a run, depths first and colours then.
+#[inline(always)]
+fn run<R: Copy, D: DepthTest>(
+    test: D,
+    z: &mut u32,
+    dz_dx: i32,
+    value: R,
+    colors: &mut [R; RUN],
+    depths: &mut [D::Stored; RUN],
+) {
+    let passed = passing(test, depths, *z, dz_dx);
+    if passed == RUN {
+        let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = colors;
+        (*a, *b, *c, *d, *e, *f, *g, *h) = (value, value, value, value, value, value, value, value);
+        (*i, *j, *k, *l, *m, *n, *o, *p) = (value, value, value, value, value, value, value, value);
+        *z = z.wrapping_add_signed(dz_dx.wrapping_mul(RUN as i32));
+        return;
+    }
+    for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
+        if k < passed {
+            *color = value;
+            *z = z.wrapping_add_signed(dz_dx);
+        } else {
+            draw(test, z, dz_dx, value, color, depth);
+        }
+    }
+}
+
+/// Draws a pixel, if it passes, and steps to the next one.
+#[inline(always)]
+fn draw<R: Copy, D: DepthTest>(
+    test: D,
+    z: &mut u32,
+    dz_dx: i32,
+    value: R,
+    color: &mut R,
+    depth: &mut D::Stored,
+) -> bool {
+    let near = (*z >> 16) as u16;
+    let passes = test.passes(near, *depth);
+    if passes {
+        test.write(near, depth);
+        *color = value;
+    }
+    *z = z.wrapping_add_signed(dz_dx);
+    passes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::span::LessWrite;
+
+    #[test]
+    fn runs_in_two_are_those_pixel_by_pixel() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 15
+        };
+        for case in 0..2000 {
+            let (z, dz_dx) = (random() >> 1, random() as i32 >> 12);
+            // All pass, all but a few, few.
+            let far = [0, 1, 5, 13][case % 4];
+            let depths: [u16; RUN] = core::array::from_fn(|_| if random() % 16 < far { 0 } else { u16::MAX });
+            let (mut expected, mut found) = (([0_u16; RUN], depths, z), ([0_u16; RUN], depths, z));
+            for (color, depth) in expected.0.iter_mut().zip(&mut expected.1) {
+                draw(LessWrite, &mut expected.2, dz_dx, 7, color, depth);
+            }
+            run(LessWrite, &mut found.2, dz_dx, 7, &mut found.0, &mut found.1);
+            assert_eq!(found, expected, "{case}");
+        }
+    }
+}

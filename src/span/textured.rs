@@ -1,0 +1,496 @@
+//! The fastest loop for textures: nearest texels of what repeats, both coordinates in one word.
+//!
+//! ```text
+//! bits   31 .. 16   15 .. 0
+//!           v          u        fractions of the texture; what is carried from u into v is 2⁻¹⁶ of it
+//! ```
+//! Every [`STEP`] pixels, and at the last pixel of a span, both are made anew. In between, steps rounded to 2⁻¹⁶ are off
+//! by at most 2⁻¹³; in the last run of a span they are taken backwards from its end, so that ends are exact.
+
+use super::depth::{DepthTest, RUN, left, passing};
+use super::perspective::nth;
+use super::span::{Fragments, Steps};
+use crate::color::PixelFormat;
+use crate::math::{CoarseDivisor, SMALL_CORE};
+use crate::texture::Texture;
+use crate::vertex::{Correction, Lane, PerspectiveClass, Varyings};
+
+/// Pixels from one division to the next.
+pub(crate) const STEP: usize = RUN;
+
+/// Draws a span of a texture that repeats; the first two varyings are u and v, 16.16. Not for triangles whose perspective
+/// is [`Wide`](PerspectiveClass::Wide).
+#[inline(never)]
+pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings>(
+    texture: &T,
+    span: Fragments<'_, P, V, D::Stored>,
+    test: D,
+) {
+    let Fragments { color, depth, z, varyings, steps, .. } = span;
+    let length = color.len().min(depth.len());
+    let Some(mut color) = color.get_mut(..length) else { return };
+    let Some(mut depth) = depth.get_mut(..length) else { return };
+    let mut walk = Walk::new(&varyings, steps, length as i32 - 1);
+    let mut pen = Pen { z, dz_dx: steps.dz_dx, vu: 0, step: 0 };
+    walk.run();
+    while color.len() > STEP {
+        let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<STEP>() else { return };
+        color = rest;
+        let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<STEP>() else { return };
+        depth = rest;
+        if SMALL_CORE && T::IS_OPAQUE {
+            pen.run_in_two::<P, T, D>(texture, test, &mut walk, colors, depths);
+        } else {
+            (pen.vu, pen.step) = walk.run();
+            // Read anew: what it is multiplied by would be computed before the loop otherwise, and live on the stack.
+            pen.dz_dx = walk.dz_dx;
+            pen.run::<P, T, D>(texture, test, colors, depths);
+        }
+    }
+    let way = color.len().saturating_sub(1);
+    (pen.vu, pen.step) = walk.rest(way);
+    if SMALL_CORE && T::IS_OPAQUE {
+        pen.few_in_two::<P, T, D>(texture, test, color, depth);
+    } else if SMALL_CORE {
+        pen.some::<P, T, D>(texture, test, 0, color, depth);
+    } else {
+        pen.rest::<P, T, D>(texture, test, color, depth);
+    }
+}
+
+/// Colours a run.
+#[inline(never)]
+fn run_colors<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; STEP], mut vu: u32, step: u32) {
+    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    macro_rules! color {
+        ($($color:ident)*) => {
+            let [$($color),*] = colors;
+            $(
+                // The step first: the other one is not needed any more, and need not be copied.
+                let here = vu;
+                vu = vu.wrapping_add(step);
+                if let Some(pixel) = texture.fetch::<P>(here) {
+                    *$color = pixel;
+                }
+            )*
+        };
+    }
+    color!(a b c d e f g h i j k l m n o p);
+    let _ = vu;
+}
+
+/// Colours fewer pixels than a run; yields where the next one is.
+#[inline(never)]
+fn few_colors<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw], mut vu: u32, step: u32) -> u32 {
+    for color in colors {
+        let here = vu;
+        vu = vu.wrapping_add(step);
+        if let Some(pixel) = texture.fetch::<P>(here) {
+            *color = pixel;
+        }
+    }
+    vu
+}
+
+/// u and v in one word; v as if nothing had been carried from u.
+#[inline(always)]
+const fn packed((u, v): (i32, i32)) -> u32 {
+    ((v as u32) << 16).wrapping_add(u as u32 & 0xFFFF)
+}
+
+/// The word that steps both: what is carried from u is carried, up or down.
+#[inline(always)]
+const fn step([du, dv]: [i32; 2]) -> u32 {
+    ((dv as u32) << 16).wrapping_add(du as u32)
+}
+
+/// What changes from pixel to pixel.
+struct Pen {
+    z: u32,
+    dz_dx: i32,
+    vu: u32,
+    step: u32,
+}
+
+impl Pen {
+    /// Draws the next run of a texture that is opaque, depths first and colours then: each loop has all of its values in
+    /// registers.
+    #[inline(always)]
+    fn run_in_two<P: PixelFormat, T: Texture, D: DepthTest>(
+        &mut self,
+        texture: &T,
+        test: D,
+        walk: &mut Walk,
+        colors: &mut [P::Raw; STEP],
+        depths: &mut [D::Stored; STEP],
+    ) {
+        let passed = passing(test, depths, self.z, self.dz_dx);
+        let (vu, step) = walk.run();
+        if passed == STEP {
+            run_colors::<P, T>(texture, colors, vu, step);
+        } else {
+            // A copy, so that the pen itself need not be in memory.
+            Self { vu, step, ..*self }.some::<P, T, D>(texture, test, passed, colors, depths);
+        }
+        self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(STEP as i32));
+    }
+
+    /// Draws a run pixel by pixel.
+    #[inline(always)]
+    fn run<P: PixelFormat, T: Texture, D: DepthTest>(
+        &mut self,
+        texture: &T,
+        test: D,
+        colors: &mut [P::Raw; STEP],
+        depths: &mut [D::Stored; STEP],
+    ) {
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        macro_rules! draw {
+            ($($color:ident $depth:ident)*) => {
+                let [$($color),*] = colors;
+                let [$($depth),*] = depths;
+                $( self.draw::<P, T, D>(texture, test, $color, $depth); )*
+            };
+        }
+        draw!(a az b bz c cz d dz e ez f fz g gz h hz i iz j jz k kz l lz m mz n nz o oz p pz);
+    }
+
+    /// Draws pixels one by one, or in pairs.
+    #[inline(always)]
+    fn rest<P: PixelFormat, T: Texture, D: DepthTest>(
+        mut self,
+        texture: &T,
+        test: D,
+        mut colors: &mut [P::Raw],
+        mut depths: &mut [D::Stored],
+    ) {
+        while !SMALL_CORE && colors.len() >= 2 {
+            let Some(([a, b], rest)) = core::mem::take(&mut colors).split_first_chunk_mut::<2>() else { return };
+            colors = rest;
+            let Some(([az, bz], rest)) = core::mem::take(&mut depths).split_first_chunk_mut::<2>() else { return };
+            depths = rest;
+            self.draw::<P, T, D>(texture, test, a, az);
+            self.draw::<P, T, D>(texture, test, b, bz);
+        }
+        for (color, stored) in colors.iter_mut().zip(depths) {
+            self.draw::<P, T, D>(texture, test, color, stored);
+        }
+    }
+
+    /// Draws up to a run of pixels, in two loops too.
+    #[inline(always)]
+    fn few_in_two<P: PixelFormat, T: Texture, D: DepthTest>(
+        self,
+        texture: &T,
+        test: D,
+        colors: &mut [P::Raw],
+        depths: &mut [D::Stored],
+    ) {
+        let left = left(test, depths, self.z, self.dz_dx);
+        if left == 0 {
+            few_colors::<P, T>(texture, colors, self.vu, self.step);
+        } else {
+            let passed = colors.len().saturating_sub(left);
+            self.some::<P, T, D>(texture, test, passed, colors, depths);
+        }
+    }
+
+    /// Draws pixels, of which the first depths have been tested.
+    #[inline(never)]
+    fn some<P: PixelFormat, T: Texture, D: DepthTest>(
+        mut self,
+        texture: &T,
+        test: D,
+        passed: usize,
+        colors: &mut [P::Raw],
+        depths: &mut [D::Stored],
+    ) {
+        let Some((first, colors)) = colors.split_at_mut_checked(passed) else { return };
+        let Some(depths) = depths.get_mut(passed..) else { return };
+        self.vu = few_colors::<P, T>(texture, first, self.vu, self.step);
+        self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(passed as i32));
+        self.rest::<P, T, D>(texture, test, colors, depths);
+    }
+
+    /// Draws a pixel and steps to the next one.
+    #[inline(always)]
+    fn draw<P: PixelFormat, T: Texture, D: DepthTest>(
+        &mut self,
+        texture: &T,
+        test: D,
+        color: &mut P::Raw,
+        stored: &mut D::Stored,
+    ) {
+        let (depth, vu) = ((self.z >> 16) as u16, self.vu);
+        self.z = self.z.wrapping_add_signed(self.dz_dx);
+        self.vu = vu.wrapping_add(self.step);
+        if !D::ENABLED || test.passes(depth, *stored) {
+            if T::IS_OPAQUE {
+                test.write(depth, stored);
+            }
+            if let Some(pixel) = texture.fetch::<P>(vu) {
+                if !T::IS_OPAQUE {
+                    test.write(depth, stored);
+                }
+                *color = pixel;
+            }
+        }
+    }
+}
+
+/// Both coordinates along a span, from run to run.
+///
+/// q, d q of u and that of v are shifted up, so that the larger q of both ends has its top bit set. Where there is no
+/// perspective, q is 0.
+struct Walk {
+    /// q and the others where the walk is, and what the next run adds.
+    at: [i32; 3],
+    step: [i32; 3],
+    /// u and v there.
+    uv: (i32, i32),
+    u: Scale,
+    v: Scale,
+    /// q and the others at the last pixel.
+    end: [i32; 3],
+    /// Change of depth a pixel; of no meaning here.
+    dz_dx: i32,
+}
+
+impl Walk {
+    /// A run before a span, whose last pixel is `way` pixels from the first.
+    #[inline(never)]
+    fn new<V: Varyings>(varyings: &V, steps: &Steps<V>, way: i32) -> Self {
+        let (at, step) = (varyings.as_ref(), steps.d_dx.as_ref());
+        let value = |values: &[i32], k: usize| values.get(k).copied().unwrap_or(0);
+        let last = |values: &[i32]| values.last().copied().unwrap_or(0);
+        let (mut q, mut dq) = (last(at), last(step));
+        let end = q.wrapping_add(dq.wrapping_mul(way));
+        let mut most = (q as u32).max(end as u32) | 1;
+        let mut shift = 0;
+        if SMALL_CORE {
+            // Few, and fewer than a table takes.
+            while most >> 31 == 0 {
+                (most, shift) = (most << 1, shift + 1);
+            }
+        } else {
+            shift = most.leading_zeros();
+        }
+        if steps.correction.class() == PerspectiveClass::Affine {
+            (q, dq, shift) = (0, 0, 0);
+        }
+        let shift = shift & 31;
+        let at = [q, value(at, 0), value(at, 1)];
+        let step = [dq, value(step, 0), value(step, 1)];
+        let lanes = steps.correction.varyings();
+        let along = |k: usize| {
+            let (at, step) = (value(&at, k) << shift, value(&step, k) << shift);
+            (at.wrapping_sub(step << 4), step << 4, at.wrapping_add(step.wrapping_mul(way)))
+        };
+        let (q, u, v) = (along(0), along(1), along(2));
+        Self {
+            at: [q.0, u.0, v.0],
+            step: [q.1, u.1, v.1],
+            uv: (0, 0),
+            u: Scale::new(lanes.first()),
+            v: Scale::new(lanes.get(1)),
+            end: [q.2, u.2, v.2],
+            dz_dx: steps.dz_dx,
+        }
+    }
+
+    /// Goes a run on: what to draw it with. Out of line: its values are more than the loop around it has registers for.
+    #[inline(never)]
+    fn run(&mut self) -> (u32, u32) {
+        let [q, u, v] = self.at;
+        let [dq, du, dv] = self.step;
+        let (q, mut u, mut v) = (q.wrapping_add(dq), u.wrapping_add(du), v.wrapping_add(dv));
+        self.at = [q, u, v];
+        let (u, v) = 'quotients: {
+            let mut q = q as u32;
+            if q >> 31 == 0 {
+                if q == 0 {
+                    break 'quotients (u, v);
+                }
+                while q >> 31 == 0 {
+                    (q, u, v) = (q << 1, u << 1, v << 1);
+                }
+            }
+            let q = CoarseDivisor::of_normalized(q);
+            (q.divide_normalized(u), q.divide_normalized(v))
+        };
+        let (from, to) = (self.uv, (self.u.scaled(u), self.v.scaled(v)));
+        self.uv = to;
+        let (du, dv) = (to.0.wrapping_sub(from.0), to.1.wrapping_sub(from.1));
+        (packed(from), step([du.wrapping_add(8) >> 4, dv.wrapping_add(8) >> 4]))
+    }
+
+    /// Goes on to the end: what to draw the last pixels with, the last of them `way` pixels ahead.
+    #[inline(never)]
+    fn rest(&mut self, way: usize) -> (u32, u32) {
+        let from = self.uv;
+        let ([q, u, v], [end_q, end_u, end_v]) = (self.at, self.end);
+        self.step = [end_q.wrapping_sub(q), end_u.wrapping_sub(u), end_v.wrapping_sub(v)];
+        self.run();
+        let (du, dv) = (self.uv.0.wrapping_sub(from.0), self.uv.1.wrapping_sub(from.1));
+        let step = step([nth(du, way), nth(dv, way)]);
+        (packed(self.uv).wrapping_sub(step.wrapping_mul(way as u32)), step)
+    }
+}
+
+/// How to scale what is interpolated of a coordinate back.
+struct Scale {
+    /// Half of what is shifted out; 4 times that on cores with a long product.
+    half: i32,
+    /// By how much to shift; on cores with a long product 2³⁰, shifted by that.
+    by: i32,
+    base: i32,
+}
+
+impl Scale {
+    #[inline(always)]
+    fn new(lane: Option<&Lane>) -> Self {
+        let (base, shift) = lane.map_or((0, 0), |lane| (lane.base, lane.shift & 31));
+        if SMALL_CORE {
+            Self { half: (1 << shift) >> 1, by: shift as i32, base }
+        } else {
+            Self { half: 2 << shift & !3, by: 1 << 30 >> shift, base }
+        }
+    }
+
+    /// To nearest.
+    ///
+    /// # Format
+    /// |`h`| ≤ 2²⁸ and a little; shifts are at most 28.
+    #[inline(always)]
+    fn scaled(&self, h: i32) -> i32 {
+        if SMALL_CORE {
+            self.base.wrapping_add(h.wrapping_add(self.half) >> (self.by & 31))
+        } else {
+            // The same in two instructions.
+            let h = (h << 2).wrapping_add(self.half);
+            self.base.wrapping_add(((i64::from(h) * i64::from(self.by)) >> 32) as i32)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::depth::{AnyDepth, Compare, DepthState, LessWrite};
+    use super::super::perspective::Corrected;
+    use super::*;
+    use crate::texture::Tile;
+    use crate::vertex::{Perspective, Side};
+    use embedded_graphics_core::pixelcolor::Rgb565;
+
+    /// A walk without perspective, that has been at `uv`.
+    fn walk([u, v]: [i32; 2], [du, dv]: [i32; 2]) -> Walk {
+        let scale = || Scale::new(None);
+        let at = [0, u, v];
+        Walk { at, step: [0, du, dv], uv: (u, v), u: scale(), v: scale(), end: [0; 3], dz_dx: 0 }
+    }
+
+    #[test]
+    fn a_few_in_two_are_those_pixel_by_pixel() {
+        let texels: [[u16; 8]; 4] = core::array::from_fn(|y| core::array::from_fn(|x| (8 * y + x) as u16));
+        let tile = &Tile::new(&texels);
+        for (length, hidden) in (0..=STEP).flat_map(|length| (0..=length).map(move |hidden| (length, hidden))) {
+            let pen = || Pen { z: 7 << 16, dz_dx: 1 << 15, vu: 0x1234_5678, step: 0x2345_6789 };
+            let mut depths = [u16::MAX; STEP];
+            if let Some(depth) = depths.get_mut(hidden) {
+                *depth = 0;
+            }
+            let (mut expected, mut found) = (([0_u16; STEP], depths), ([0_u16; STEP], depths));
+            let (colors, depths) = (&mut expected.0[..length], &mut expected.1[..length]);
+            pen().rest::<Rgb565, _, _>(tile, LessWrite, colors, depths);
+            let (colors, depths) = (&mut found.0[..length], &mut found.1[..length]);
+            pen().few_in_two::<Rgb565, _, _>(tile, LessWrite, colors, depths);
+            assert_eq!(found, expected, "{length} {hidden}");
+        }
+    }
+
+    #[test]
+    fn walks_are_where_divisors_are() {
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 15
+        };
+        for case in 0..5000 {
+            let way = (random() % 200) as i32;
+            let q = [random(), random()].map(|q| ((q >> 1 >> (random() % 9)) | 1 << 22) as i32);
+            // |d q| up to q / 8, at both ends.
+            let mut corner = Perspective::<2, 3>::ZERO;
+            let mut steps = Steps::linear(0, corner, [0; 3], Side::Front);
+            let ends = [0, 1].map(|_| q.map(|q| ((i64::from(random() as i32) * i64::from(q)) >> 34) as i32));
+            let per_pixel = |a: i32, b: i32| (b - a) / way.max(1);
+            corner.as_mut().copy_from_slice(&[ends[0][0], ends[1][0], q[0]]);
+            let changes = [per_pixel(ends[0][0], ends[0][1]), per_pixel(ends[1][0], ends[1][1]), per_pixel(q[0], q[1])];
+            steps.d_dx.as_mut().copy_from_slice(&changes);
+            let affine = case % 8 == 0;
+            if let Some((class, _, lanes)) = steps.correction.lanes() {
+                *class = if affine { PerspectiveClass::Affine } else { PerspectiveClass::Narrow };
+                for lane in lanes {
+                    (lane.base, lane.shift) = (random() as i32 >> 4, random() % 29);
+                }
+            }
+            let mut exact = Corrected::new(corner, &steps, (0, 0));
+            let mut walk = Walk::new(&corner, &steps, way);
+            walk.run();
+            let check = |walk: &Walk, exact: &Corrected<'_, Perspective<2, 3>>| {
+                let (found, expected) = ([walk.uv.0, walk.uv.1], exact.varyings().corrected());
+                for ((found, expected), lane) in found.iter().zip(expected).zip(steps.correction.varyings()) {
+                    let quotient = i64::from(expected - lane.base).abs();
+                    let bound = if affine { 0 } else { (quotient >> 18) + (200 >> lane.shift) + 1 };
+                    let off = (i64::from(*found) - i64::from(expected)).abs();
+                    assert!(off <= bound, "{case}: {off} units, not {bound}");
+                }
+            };
+            check(&walk, &exact);
+            for _ in 0..way / STEP as i32 {
+                walk.run();
+                exact.advance(STEP as i32);
+                check(&walk, &exact);
+            }
+            walk.rest((way % STEP as i32) as usize);
+            exact.advance(way % STEP as i32);
+            check(&walk, &exact);
+        }
+    }
+
+    #[test]
+    fn runs_in_two_are_those_pixel_by_pixel() {
+        let texels: [[u16; 8]; 4] =
+            core::array::from_fn(|y| core::array::from_fn(|x| ((8 * y + x) as u16).wrapping_mul(0x0843)));
+        let mut state = 1_u32;
+        let mut random = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 15
+        };
+        for case in 0..2000 {
+            let (z, dz_dx) = (random() >> 1, random() as i32 >> 12);
+            let (uv, duv) = ([random() as i32 >> 8; 2], [random() as i32 >> 8, random() as i32 >> 8]);
+            // All pass, all but a few, few.
+            let far = [0, 1, 5, 13][case % 4];
+            let depths: [u16; STEP] = core::array::from_fn(|_| if random() % 16 < far { 0 } else { u16::MAX });
+            let draw = |in_two: bool, greater: bool| {
+                let mut pen = Pen { z, dz_dx, vu: 0, step: 0 };
+                let mut walk = walk(uv, duv);
+                let (mut colors, mut depths) = ([0; STEP], depths);
+                let (tile, colors_mut, depths_mut) = (&Tile::new(&texels), &mut colors, &mut depths);
+                if !in_two {
+                    (pen.vu, pen.step) = walk.run();
+                }
+                let any = AnyDepth::new(DepthState { compare: Compare::Greater, write: false });
+                match (in_two, greater) {
+                    (false, false) => pen.run::<Rgb565, _, _>(tile, LessWrite, colors_mut, depths_mut),
+                    (true, false) => pen.run_in_two::<Rgb565, _, _>(tile, LessWrite, &mut walk, colors_mut, depths_mut),
+                    (false, true) => pen.run::<Rgb565, _, _>(tile, any, colors_mut, depths_mut),
+                    (true, true) => pen.run_in_two::<Rgb565, _, _>(tile, any, &mut walk, colors_mut, depths_mut),
+                }
+                (colors, depths, pen.z)
+            };
+            assert_eq!(draw(true, false), draw(false, false), "{case}");
+            assert_eq!(draw(true, true), draw(false, true), "{case}");
+        }
+    }
+}

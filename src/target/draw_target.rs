@@ -1,0 +1,286 @@
+//! 2-D drawing into the strip: an embedded-graphics target over whatever is being drawn just now.
+//!
+//! Its bounding box is the whole screen, so that what is drawn does not depend on strips; pixels outside of the current
+//! strip are left out. Areas are cut before their pixels are looked at, [`Overlay::draw`] leaves out what has no pixel in the
+//! strip, and single pixels cost a comparison.
+
+use super::framebuffer::Framebuffer;
+use crate::color::{PixelFormat, fill};
+use crate::raster::PixelRect;
+use crate::span::{DepthTest, MAX_SPAN};
+use core::convert::Infallible;
+use core::marker::PhantomData;
+use core::ops::Range;
+use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Point, Size};
+use embedded_graphics_core::image::ImageDrawable;
+use embedded_graphics_core::pixelcolor::PixelColor;
+use embedded_graphics_core::primitives::Rectangle;
+use embedded_graphics_core::{Drawable, Pixel};
+
+/// What a framebuffer's pixels are in memory, and as colours.
+type Raw<F> = <<F as Framebuffer>::Format as PixelFormat>::Raw;
+type Color<F> = <<F as Framebuffer>::Format as PixelFormat>::Color;
+
+/// A target for embedded-graphics, over the strip that is being drawn; from [`Scene::overlay`](crate::scene::Scene::overlay) and
+/// [`Scene::at_depth`](crate::scene::Scene::at_depth).
+///
+/// While the closure is only recorded there are no pixels, and drawing does nothing.
+#[derive(Debug)]
+pub struct Overlay<'o, F, D> {
+    /// None while the closure is recorded.
+    framebuffer: Option<&'o mut F>,
+    /// Depths of the strip's rows, one after the other; empty where there are none, so that every test passes.
+    depth: &'o mut [u16],
+    first_row: i32,
+    screen: (u16, u16),
+    /// Pixels that are drawn: never outside of the strip.
+    clip: PixelRect,
+    z: u16,
+    test: D,
+}
+
+impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
+    /// Over `rows` of a screen.
+    pub(crate) fn new(
+        target: Option<(&'o mut F, &'o mut [u16], Range<i32>)>,
+        screen: (u16, u16),
+        z: u16,
+        test: D,
+    ) -> Self {
+        let (framebuffer, depth, rows) = match target {
+            Some((framebuffer, depth, rows)) => (Some(framebuffer), depth, rows),
+            None => (None, Default::default(), 0..0),
+        };
+        let clip = PixelRect { x: 0..i32::from(screen.0), y: rows };
+        Self { framebuffer, depth, first_row: clip.y.start, screen, clip, z, test }
+    }
+
+    /// Whether any pixel of an area is drawn just now; where not, what draws nothing outside of it need not be drawn.
+    ///
+    /// The answer changes from strip to strip, so it must not decide about meshes, which have to be drawn each time.
+    #[inline(never)]
+    pub fn is_visible(&self, area: &Rectangle) -> bool {
+        !self.clip.intersection(&pixels(area)).is_empty()
+    }
+
+    /// Draws what has no pixel outside of its bounding box, if that touches the strip: a lot cheaper than
+    /// [`Drawable::draw`] for what does not, as text, images and shapes look at all of their pixels otherwise.
+    ///
+    /// Pixels outside of the bounding box are not drawn. (The box of underlined text, in embedded-graphics 0.8, ends at the
+    /// underline: draw that as it is.)
+    pub fn draw<T: Drawable<Color = Color<F>> + Dimensions>(&mut self, drawable: &T) {
+        let area = drawable.bounding_box();
+        if self.is_visible(&area) {
+            let clip = self.clip.intersection(&pixels(&area));
+            let mut part = Overlay {
+                framebuffer: self.framebuffer.as_deref_mut(),
+                depth: self.depth,
+                clip,
+                first_row: self.first_row,
+                screen: self.screen,
+                z: self.z,
+                test: self.test,
+            };
+            let Ok(_) = drawable.draw(&mut part);
+        }
+    }
+
+    /// Draws an image with its corner at `top_left`, and of it only the part that is in the strip: embedded-graphics' own
+    /// `Image` walks through all that is above. Colours are converted where they are of another type.
+    pub fn draw_image<T: ImageDrawable<Color: Into<Color<F>>>>(&mut self, image: &T, top_left: Point) {
+        let area = pixels(&Rectangle::new(top_left, image.size()));
+        let part = self.clip.intersection(&area);
+        if part.is_empty() {
+            return;
+        }
+        let corner = Point::new(part.x.start, part.y.start);
+        let size = Size::new((part.x.end - part.x.start) as u32, (part.y.end - part.y.start) as u32);
+        let offset = Point::new(corner.x.wrapping_sub(top_left.x), corner.y.wrapping_sub(top_left.y));
+        let mut moved = Moved { overlay: self, origin: corner, color: PhantomData };
+        let Ok(()) = image.draw_sub_image(&mut moved, &Rectangle::new(offset, size));
+    }
+}
+
+/// An overlay with its origin elsewhere and its colours converted: what images draw on.
+struct Moved<'m, 'o, F, D, C> {
+    overlay: &'m mut Overlay<'o, F, D>,
+    origin: Point,
+    color: PhantomData<C>,
+}
+
+impl<F: Framebuffer, D: DepthTest, C> Dimensions for Moved<'_, '_, F, D, C> {
+    fn bounding_box(&self) -> Rectangle {
+        self.moved(&self.overlay.bounding_box(), Point::new(self.origin.x.wrapping_neg(), self.origin.y.wrapping_neg()))
+    }
+}
+
+impl<F, D, C> Moved<'_, '_, F, D, C> {
+    fn moved(&self, area: &Rectangle, by: Point) -> Rectangle {
+        Rectangle::new(plus(area.top_left, by), area.size)
+    }
+}
+
+fn plus(a: Point, b: Point) -> Point {
+    Point::new(a.x.wrapping_add(b.x), a.y.wrapping_add(b.y))
+}
+
+impl<F: Framebuffer, D: DepthTest, C: PixelColor + Into<Color<F>>> DrawTarget for Moved<'_, '_, F, D, C> {
+    type Color = C;
+    type Error = Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<C>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        let origin = self.origin;
+        self.overlay.draw_iter(pixels.into_iter().map(|Pixel(at, color)| Pixel(plus(at, origin), color.into())))
+    }
+
+    fn fill_contiguous<I: IntoIterator<Item = C>>(&mut self, area: &Rectangle, colors: I) -> Result<(), Infallible> {
+        self.overlay.fill_contiguous(&self.moved(area, self.origin), colors.into_iter().map(Into::into))
+    }
+
+    fn fill_solid(&mut self, area: &Rectangle, color: C) -> Result<(), Infallible> {
+        self.overlay.fill_solid(&self.moved(area, self.origin), color.into())
+    }
+}
+
+/// The pixels of an area; cut at what 32 bits hold.
+fn pixels(area: &Rectangle) -> PixelRect {
+    let Rectangle { top_left, size } = *area;
+    PixelRect {
+        x: top_left.x..top_left.x.saturating_add_unsigned(size.width),
+        y: top_left.y..top_left.y.saturating_add_unsigned(size.height),
+    }
+}
+
+/// Columns of a row of the strip: the pixels that there are.
+#[inline(never)]
+fn colors<'r, F: Framebuffer>(framebuffer: &'r mut F, y: i32, columns: &Range<i32>) -> &'r mut [Raw<F>] {
+    framebuffer.span(y as u32, columns.start as usize, (columns.end - columns.start) as usize)
+}
+
+/// What is stored of their depths; nothing where there is no depth buffer.
+#[inline(always)]
+fn depths<'r, D: DepthTest>(
+    depth: &'r mut [u16],
+    nothing: &'r mut [(); MAX_SPAN],
+    row: i32,
+    width: u16,
+    columns: &Range<i32>,
+) -> &'r mut [D::Stored] {
+    let start = (row as usize).wrapping_mul(usize::from(width)).wrapping_add(columns.start as usize);
+    D::stored(depth, nothing, start, (columns.end - columns.start) as usize)
+}
+
+/// Tests a depth against the stored one, and leaves it if it passes.
+#[inline(always)]
+fn passes<D: DepthTest>(test: D, z: u16, stored: &mut D::Stored) -> bool {
+    let passes = test.passes(z, *stored);
+    if passes {
+        test.write(z, stored);
+    }
+    passes
+}
+
+impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
+    type Color = Color<F>;
+    type Error = Infallible;
+
+    /// Pixels that follow one another in a row cost two comparisons each, and a row is looked up once.
+    fn draw_iter<I: IntoIterator<Item = Pixel<Self::Color>>>(&mut self, pixels: I) -> Result<(), Infallible> {
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test } = self else {
+            return Ok(());
+        };
+        let (left, top, height) = (clip.x.start, clip.y.start, (clip.y.end - clip.y.start).max(0) as u32);
+        let mut nothing = [(); MAX_SPAN];
+        let mut y = i32::MIN;
+        let (mut row, mut stored): (&mut [_], &mut [_]) = Default::default();
+        for Pixel(point, color) in pixels {
+            if point.y != y {
+                if point.y.wrapping_sub(top) as u32 >= height {
+                    continue;
+                }
+                y = point.y;
+                row = colors(*framebuffer, y, &clip.x);
+                stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &clip.x);
+            }
+            // What is left of the columns wraps to the far right.
+            let column = point.x.wrapping_sub(left) as usize;
+            if let Some(pixel) = row.get_mut(column) {
+                if !D::ENABLED || stored.get_mut(column).is_none_or(|stored| passes(*test, *z, stored)) {
+                    *pixel = F::Format::from_color(color);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Colours of pixels that are not drawn are passed over by `Iterator::nth`.
+    fn fill_contiguous<I: IntoIterator<Item = Self::Color>>(
+        &mut self,
+        area: &Rectangle,
+        colors_of_all: I,
+    ) -> Result<(), Infallible> {
+        let all = pixels(area);
+        let part = self.clip.intersection(&all);
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
+            return Ok(());
+        };
+        if part.is_empty() {
+            return Ok(());
+        }
+        let width = area.size.width as usize;
+        let mut nothing = [(); MAX_SPAN];
+        let mut new = colors_of_all.into_iter();
+        let rows_above = part.y.start.wrapping_sub(all.y.start) as usize;
+        let columns_left = part.x.start.wrapping_sub(all.x.start) as usize;
+        let mut skip = rows_above.saturating_mul(width).saturating_add(columns_left);
+        for y in part.y {
+            if skip > 0 && new.nth(skip - 1).is_none() {
+                return Ok(());
+            }
+            let row = colors(*framebuffer, y, &part.x);
+            // Less than the whole area's width is drawn, or all of it.
+            skip = width.wrapping_sub(row.len());
+            let mut stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x).iter_mut();
+            for (pixel, color) in row.iter_mut().zip(&mut new) {
+                if !D::ENABLED || stored.next().is_none_or(|stored| passes(*test, *z, stored)) {
+                    *pixel = F::Format::from_color(color);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    #[inline(never)]
+    fn fill_solid(&mut self, area: &Rectangle, color: Self::Color) -> Result<(), Infallible> {
+        let part = self.clip.intersection(&pixels(area));
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
+            return Ok(());
+        };
+        if part.is_empty() {
+            return Ok(());
+        }
+        let value = F::Format::from_color(color);
+        let mut nothing = [(); MAX_SPAN];
+        for y in part.y {
+            let row = colors(*framebuffer, y, &part.x);
+            let stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x);
+            if D::ENABLED && !stored.is_empty() {
+                for (pixel, stored) in row.iter_mut().zip(stored) {
+                    if passes(*test, *z, stored) {
+                        *pixel = value;
+                    }
+                }
+            } else {
+                fill(row, value);
+            }
+        }
+        Ok(())
+    }
+}
+
+impl<F, D> OriginDimensions for Overlay<'_, F, D> {
+    fn size(&self) -> Size {
+        Size::new(u32::from(self.screen.0), u32::from(self.screen.1))
+    }
+}

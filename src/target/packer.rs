@@ -1,0 +1,303 @@
+//! Strips → the bytes of panels with less than a byte a pixel, dithered, and dithered colours for displays.
+//!
+//! A strip is drawn in a format of full precision, [`Gray8`] for one: neighbours of a byte cannot be drawn one by one
+//! without reading them back, and blending wants more than two greys.
+
+use super::sink::{StripPixels, StripSink};
+use crate::color::{Dither, Levels, PixelFormat};
+use core::fmt;
+use core::marker::PhantomData;
+use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::pixelcolor::BinaryColor;
+
+/// How pixels share bytes.
+pub trait PackedFormat {
+    /// What a pixel can be.
+    type Color: Levels;
+
+    /// How many rows share a byte: strips begin at multiples of that.
+    const ROWS: u16;
+
+    /// Bytes of so many pixels in a row, and so many rows.
+    fn bytes(width: u16, rows: u16) -> usize;
+
+    /// Packs whole rows of `width` pixels, the first one row `y` of the screen.
+    fn pack<P: PixelFormat>(dither: &Dither<Self::Color>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]);
+}
+
+/// A byte is eight rows high and one pixel wide, its lowest bit on top; bytes go from left to right, then pages of eight
+/// rows from top to bottom: what monochrome OLED and LCD controllers want (SSD1306, SH1106, ST7565, PCD8544).
+#[derive(Clone, Copy, Debug)]
+pub struct Pages;
+
+/// Rows of bytes, the leftmost pixel in their highest bits: e-paper and ST7920 with `BinaryColor`, SSD0323 with `Gray4`.
+/// Each row begins a new byte.
+#[derive(Clone, Copy, Debug)]
+pub struct Rows<C>(PhantomData<C>);
+
+/// Rows of bytes, the leftmost pixel in their lowest bits: Sharp's memory displays, whose bus takes the lowest bit first, and
+/// controllers told so. Each row begins a new byte.
+#[derive(Clone, Copy, Debug)]
+pub struct RowsLowFirst<C>(PhantomData<C>);
+
+impl PackedFormat for Pages {
+    type Color = BinaryColor;
+
+    const ROWS: u16 = 8;
+
+    fn bytes(width: u16, rows: u16) -> usize {
+        usize::from(width) * usize::from(rows.div_ceil(8))
+    }
+
+    fn pack<P: PixelFormat>(dither: &Dither<BinaryColor>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]) {
+        if width == 0 {
+            return;
+        }
+        let mut first = y;
+        for (page, bytes) in pixels.chunks(width.saturating_mul(8)).zip(bytes.chunks_exact_mut(width)) {
+            bytes.fill(0);
+            let mut y = first + (page.len() / width) as i32;
+            first = y;
+            // From the bottom up: each row moves those below it on.
+            for row in page.chunks_exact(width).rev() {
+                y -= 1;
+                push_row::<P>(&dither.row(y), row, bytes);
+            }
+        }
+    }
+}
+
+/// A row of a page: its bits come in from below.
+#[inline(never)]
+fn push_row<P: PixelFormat>(entries: &[u32; 8], row: &[P::Raw], bytes: &mut [u8]) {
+    let push = |byte: &mut u8, raw: &P::Raw, entry: u32| {
+        *byte = *byte << 1 | BinaryColor::level((), entry, P::luma(*raw));
+    };
+    let (mut pixels, mut bytes) = (row.chunks_exact(8), bytes.chunks_exact_mut(8));
+    for (pixels, bytes) in (&mut pixels).zip(&mut bytes) {
+        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        let ([p0, p1, p2, p3, p4, p5, p6, p7], [b0, b1, b2, b3, b4, b5, b6, b7]) = (pixels, bytes) else { return };
+        push(b0, p0, entries[0]);
+        push(b1, p1, entries[1]);
+        push(b2, p2, entries[2]);
+        push(b3, p3, entries[3]);
+        push(b4, p4, entries[4]);
+        push(b5, p5, entries[5]);
+        push(b6, p6, entries[6]);
+        push(b7, p7, entries[7]);
+    }
+    for ((pixel, byte), entry) in pixels.remainder().iter().zip(bytes.into_remainder()).zip(entries) {
+        push(byte, pixel, *entry);
+    }
+}
+
+impl<C: Levels> PackedFormat for Rows<C> {
+    type Color = C;
+
+    const ROWS: u16 = 1;
+
+    fn bytes(width: u16, rows: u16) -> usize {
+        row_bytes::<C>(usize::from(width)) * usize::from(rows)
+    }
+
+    fn pack<P: PixelFormat>(dither: &Dither<C>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]) {
+        pack_rows::<P, C, true>(dither, pixels, width, y, bytes);
+    }
+}
+
+impl<C: Levels> PackedFormat for RowsLowFirst<C> {
+    type Color = C;
+
+    const ROWS: u16 = 1;
+
+    fn bytes(width: u16, rows: u16) -> usize {
+        row_bytes::<C>(usize::from(width)) * usize::from(rows)
+    }
+
+    fn pack<P: PixelFormat>(dither: &Dither<C>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]) {
+        pack_rows::<P, C, false>(dither, pixels, width, y, bytes);
+    }
+}
+
+const fn row_bytes<C: Levels>(width: usize) -> usize {
+    (width * C::BITS as usize).div_ceil(8)
+}
+
+fn pack_rows<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
+    dither: &Dither<C>,
+    pixels: &[P::Raw],
+    width: usize,
+    y: i32,
+    bytes: &mut [u8],
+) {
+    let row_bytes = row_bytes::<C>(width);
+    if width == 0 || row_bytes == 0 {
+        return;
+    }
+    let rows = pixels.chunks_exact(width).zip(bytes.chunks_exact_mut(row_bytes));
+    for ((row, bytes), y) in rows.zip(y..) {
+        pack_row::<P, C, HIGH_FIRST>(&dither.row(y), dither.tones, row, bytes);
+    }
+}
+
+/// Eight pixels to a word, and that to one, two or four bytes.
+#[inline(never)]
+fn pack_row<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
+    entries: &[u32; 8],
+    tones: C::Tones,
+    row: &[P::Raw],
+    bytes: &mut [u8],
+) {
+    let push = |word: u32, raw: P::Raw, entry: u32| {
+        let level = u32::from(C::level(tones, entry, P::luma(raw)));
+        if HIGH_FIRST { word << C::BITS | level } else { word >> C::BITS | level << (32 - C::BITS) }
+    };
+    let Some((bytes, last)) = bytes.split_at_mut_checked(row.len() / 8 * C::BITS as usize) else { return };
+    let mut pixels = row.chunks_exact(8);
+    for (pixels, bytes) in (&mut pixels).zip(bytes.chunks_exact_mut(C::BITS as usize)) {
+        let [p0, p1, p2, p3, p4, p5, p6, p7] = pixels else { return };
+        let word = push(0, *p0, entries[0]);
+        let word = push(word, *p1, entries[1]);
+        let word = push(word, *p2, entries[2]);
+        let word = push(word, *p3, entries[3]);
+        let word = push(word, *p4, entries[4]);
+        let word = push(word, *p5, entries[5]);
+        let word = push(word, *p6, entries[6]);
+        let word = push(word, *p7, entries[7]);
+        // The word's last bytes when it was filled from below, all of it or its last bytes when from above.
+        match (bytes, if HIGH_FIRST { word.to_be_bytes() } else { word.to_le_bytes() }) {
+            ([a], [.., w]) => *a = w,
+            ([a, b], [.., v, w]) => (*a, *b) = (v, w),
+            ([a, b, c, d], [t, u, v, w]) => (*a, *b, *c, *d) = (t, u, v, w),
+            _ => {}
+        }
+    }
+    // What is left of the row, filled up with black.
+    let mut word = 0;
+    let rest = pixels.remainder();
+    for (k, entry) in entries.iter().enumerate() {
+        word = match rest.get(k) {
+            Some(raw) => push(word, *raw, *entry),
+            None if HIGH_FIRST => word << C::BITS,
+            None => word >> C::BITS,
+        };
+    }
+    let word = if HIGH_FIRST { word.to_be_bytes() } else { word.to_le_bytes() };
+    for (byte, value) in last.iter_mut().zip(word.iter().skip(4 - C::BITS as usize)) {
+        *byte = *value;
+    }
+}
+
+/// Why a packer could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum PackerError {
+    /// The buffer does not hold a strip: how many bytes it has, and how many it needs.
+    TooShort(usize, usize),
+    /// Strips of so many rows do not end where bytes do, which takes a multiple of the second number.
+    PartialPages(u16, u16),
+}
+
+impl fmt::Display for PackerError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::TooShort(has, needs) => write!(f, "buffer of {has} bytes, a packed strip has {needs}"),
+            Self::PartialPages(rows, page) => write!(f, "strips of {rows} rows, but {page} rows share a byte"),
+        }
+    }
+}
+
+impl core::error::Error for PackerError {}
+
+/// Packs strips into the bytes of a panel.
+///
+/// ```
+/// use embedded_graphics_core::pixelcolor::{Gray8, GrayColor};
+/// use zstrip::color::Dither;
+/// use zstrip::frame::{Buffers, Renderer};
+/// use zstrip::target::{Packer, Pages};
+/// let (color, depth, records) = (&mut [0; 128 * 16], &mut [0; 128 * 16], &mut [0; 64]);
+/// let mut renderer = Renderer::<Gray8>::new((128, 64), Buffers { color, depth, records })?;
+/// let mut bytes = [0; 128 * 16 / 8];
+/// let mut packer = Packer::<Pages>::new((128, 64), renderer.strip_rows(), Dither::BAYER_8, &mut bytes)?;
+/// # let mut sent = 0;
+/// # let mut i2c_write = |bytes: &[u8]| sent += bytes.len();
+/// let mut frame = renderer.begin(Gray8::BLACK);
+/// while let Some(strip) = frame.next_strip(|scene| { /* scene.draw(...) */ })? {
+///     i2c_write(packer.pack(&strip));
+/// }
+/// # assert_eq!(sent, 128 * 64 / 8);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug)]
+pub struct Packer<'b, F: PackedFormat> {
+    dither: Dither<F::Color>,
+    bytes: &'b mut [u8],
+}
+
+impl<'b, F: PackedFormat> Packer<'b, F> {
+    /// For strips of `strip_rows` rows of a screen of `(width, height)` pixels.
+    ///
+    /// # Errors
+    /// When a strip's bytes do not fit, or a strip does not end where bytes do and another follows.
+    pub fn new(
+        screen: (u16, u16),
+        strip_rows: u16,
+        dither: Dither<F::Color>,
+        bytes: &'b mut [u8],
+    ) -> Result<Self, PackerError> {
+        let rows = strip_rows.min(screen.1);
+        if rows < screen.1 && !rows.is_multiple_of(F::ROWS) {
+            return Err(PackerError::PartialPages(strip_rows, F::ROWS));
+        }
+        let needs = F::bytes(screen.0, rows);
+        if bytes.len() < needs {
+            return Err(PackerError::TooShort(bytes.len(), needs));
+        }
+        Ok(Self { dither, bytes })
+    }
+
+    /// The bytes of a strip, for the part of the panel that the strip covers.
+    ///
+    /// A strip larger than those the packer was made for is cut at the end of its buffer.
+    pub fn pack<P: PixelFormat>(&mut self, strip: &StripPixels<'_, P>) -> &[u8] {
+        let area = strip.area();
+        let (width, rows) = (area.size.width as u16, area.size.height as u16);
+        F::pack::<P>(&self.dither, strip.pixels(), usize::from(width), area.top_left.y, self.bytes);
+        let length = F::bytes(width, rows).min(self.bytes.len());
+        self.bytes.get(..length).unwrap_or_default()
+    }
+}
+
+/// A display of few levels (`BinaryColor`, `Gray2`, `Gray4`) as a sink for strips of full precision: dithered, they arrive
+/// through `fill_contiguous`.
+#[derive(Debug)]
+pub struct DitheredDisplay<'d, D: DrawTarget<Color: Levels>> {
+    display: &'d mut D,
+    dither: Dither<D::Color>,
+}
+
+impl<'d, D: DrawTarget<Color: Levels>> DitheredDisplay<'d, D> {
+    /// Draws on `display`.
+    pub const fn new(display: &'d mut D, dither: Dither<D::Color>) -> Self {
+        Self { display, dither }
+    }
+}
+
+impl<P: PixelFormat, D: DrawTarget<Color: Levels>> StripSink<P> for DitheredDisplay<'_, D> {
+    type Error = D::Error;
+
+    fn strip(&mut self, strip: &StripPixels<'_, P>) -> Result<(), D::Error> {
+        let area = strip.area();
+        let dither = self.dither;
+        let rows = strip.pixels().chunks((area.size.width as usize).max(1)).zip(area.top_left.y..);
+        let colors = rows.flat_map(|(row, y)| {
+            let entries = dither.row(y);
+            row.iter()
+                .enumerate()
+                .map(move |(x, raw)| D::Color::from_level(D::Color::level(dither.tones, entries[x & 7], P::luma(*raw))))
+        });
+        self.display.fill_contiguous(&area, colors)
+    }
+}

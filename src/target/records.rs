@@ -1,0 +1,613 @@
+//! Records: what the first walk over a scene leaves for the strips, in a slice of words that the caller lends.
+//!
+//! ```text
+//!  strips   draw 0              draw 1                 free              triangles, newest first
+//! ┌───────┬────────┬──────────┬────────┬─────────────┬───────────── ─ ─ ┬──────┬──────┬──────┐
+//! │ lists │ header │ vertices │ header │ vertices    │ →             ←  │  2   │  1   │  0   │
+//! └───────┴────────┴──────────┴────────┴─────────────┴───────────── ─ ─ ┴──────┴──────┴──────┘
+//! ```
+//! Vertices are the positions of all of them, two words each, then the varyings of all of them; what the clipper adds comes
+//! behind, position and varyings together.
+//!
+//! A strip's word holds the first and the last of its triangles, which are linked through their records in drawing
+//! order. Each triangle is in one list at a time: recorded into the list of the topmost strip it touches, it moves on to
+//! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
+
+use crate::color::clear_words;
+use crate::vertex::{FEW, Placed, ScreenVertex, Varyings, VertexShader};
+
+/// No triangle.
+const NONE: u16 = u16::MAX;
+/// Words of a draw's header: fingerprint, first word of its vertices, number of its last triangle + 1, next header.
+const HEADER: usize = 4;
+/// Words of a triangle: two vertices; the third and the link; the word of its face.
+const TRIANGLE: usize = 3;
+/// Words of a vertex beside its varyings.
+pub(crate) const VERTEX_WORDS: usize = 2;
+
+/// Words of records that a scene needs at most when nothing is clipped: `draws` calls with `vertices` vertices and
+/// `triangles` visible triangles in all, and `varying_words` words of varyings a vertex
+/// ([`VertexShader::WORDS`](crate::vertex::VertexShader::WORDS)).
+///
+/// With less, the frame takes more walks over the scene; with none, one a strip.
+pub const fn records_len(
+    strips: usize,
+    draws: usize,
+    vertices: usize,
+    varying_words: usize,
+    triangles: usize,
+) -> usize {
+    strips + HEADER * draws + (VERTEX_WORDS + varying_words) * vertices + TRIANGLE * triangles
+}
+
+/// What the records hold of where a vertex is: two words, x and y in 24 bits each, above the high and the low byte of z.
+///
+/// An x that no vertex on the screen has marks one that is not there: its low byte is the outcode, or [`UNSHADED`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Slot([u32; 2]);
+
+const OFF_SCREEN: u32 = 0x8000_0000;
+const UNSHADED: u32 = OFF_SCREEN | 0x80;
+
+impl Slot {
+    /// Of a vertex on the screen, or of one that has to be clipped and so cannot be projected.
+    #[inline]
+    pub(crate) const fn new(placed: &Placed) -> Self {
+        match placed {
+            Placed::Screen(v) => Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32]),
+            Placed::Outside(code) => Self([OFF_SCREEN | code.0 as u32, 0]),
+        }
+    }
+
+    /// Of a vertex that is not shaded yet.
+    pub(crate) const NONE: Self = Self([UNSHADED, 0]);
+
+    /// x of [`screen`](Self::screen) of a vertex that is not on the screen.
+    pub(crate) const OFF_SCREEN_X: i32 = OFF_SCREEN as i32 >> 8;
+
+    /// From its words, taken as signed.
+    #[inline]
+    pub(crate) const fn signed([a, b]: [i32; 2]) -> Self {
+        Self([a as u32, b as u32])
+    }
+
+    /// From its words.
+    #[inline]
+    pub(crate) const fn from_words(words: [u32; 2]) -> Self {
+        Self(words)
+    }
+
+    #[inline]
+    pub(crate) const fn is_unshaded(self) -> bool {
+        self.0[0] == UNSHADED
+    }
+
+    #[inline]
+    pub(crate) const fn is_on_screen(self) -> bool {
+        self.0[0] >> 8 != OFF_SCREEN >> 8
+    }
+
+    /// Outcode of a vertex that is not on the screen, 0 of one that is.
+    pub(crate) const fn outcode(self) -> u8 {
+        if self.is_on_screen() { 0 } else { self.0[0] as u8 }
+    }
+
+    /// Its words.
+    #[inline]
+    pub(crate) const fn words(self) -> [u32; 2] {
+        self.0
+    }
+
+    /// First words below it, taken as signed, are not those of vertices on the screen; y of others begins their second.
+    pub(crate) const LEAST_X: i32 = (OFF_SCREEN as i32) + 0x100;
+
+    /// Where a vertex on the screen is.
+    #[inline]
+    pub(crate) const fn screen(self) -> ScreenVertex {
+        let [a, b] = self.0;
+        ScreenVertex::new(a as i32 >> 8, b as i32 >> 8, ((a & 0xFF) << 8 | (b & 0xFF)) as u16)
+    }
+}
+
+/// A triangle from the records.
+#[derive(Clone, Copy, Debug, Default)]
+// Cleared by the same routine as 64-bit numbers are.
+#[repr(align(8))]
+pub(crate) struct TriangleRecord {
+    pub(crate) v: [ScreenVertex; 3],
+    /// The first two corners, the second in the upper half, and the third.
+    corners: u32,
+    last: u16,
+    pub(crate) face: u32,
+}
+
+impl TriangleRecord {
+    /// Its vertices.
+    #[inline]
+    pub(crate) const fn corners(&self) -> [u16; 3] {
+        [self.corners as u16, (self.corners >> 16) as u16, self.last]
+    }
+}
+
+/// The words, and where in them things are.
+#[derive(Debug)]
+pub(crate) struct Records<'a> {
+    words: &'a mut [u32],
+    layout: &'a mut Layout,
+}
+
+/// A word of two halves; which of them is above does not matter.
+#[inline]
+fn pair(halves: [u16; 2]) -> u32 {
+    bytemuck::cast(halves)
+}
+
+/// The two halves of a word.
+#[inline]
+fn halves(word: &mut u32) -> &mut [u16; 2] {
+    bytemuck::cast_mut(word)
+}
+
+#[inline]
+fn signed([a, b]: &[u32; 2]) -> [i32; 2] {
+    [*a as i32, *b as i32]
+}
+
+/// The words of a draw, taken apart for a walk over its triangles.
+#[derive(Debug)]
+pub(crate) struct Triangles<'r> {
+    lists: &'r mut [u32],
+    /// The vertices of the draw; where they are is known at the beginning, of as many as the mesh has.
+    vertices: &'r [u32],
+    places: &'r [[u32; 2]],
+    /// What is behind the vertices, as much of it as triangles may take: they are at its end.
+    triangles: &'r mut [u32],
+    /// How many there are.
+    count: u16,
+    layout: &'r mut Layout,
+}
+
+impl Triangles<'_> {
+    /// Words of the [`Slot`]s of vertices, signed.
+    #[inline(always)]
+    pub(crate) fn places(&self, [i, j, k]: [u16; 3]) -> [[i32; 2]; 3] {
+        let place = |index: u16| signed(self.places.get(usize::from(index)).unwrap_or(&Slot::NONE.0));
+        [place(i), place(j), place(k)]
+    }
+
+    /// The vertices of a triangle of a list without indices, and words of their [`Slot`]s.
+    #[inline(always)]
+    pub(crate) fn in_a_row(&self, number: usize) -> ([u16; 3], [[i32; 2]; 3]) {
+        let first = 3 * number;
+        let places = match self.places.get(first..) {
+            Some([a, b, c, ..]) => [signed(a), signed(b), signed(c)],
+            _ => [signed(&Slot::NONE.0); 3],
+        };
+        ([first as u16, (first + 1) as u16, (first + 2) as u16], places)
+    }
+
+    /// How many have been recorded.
+    pub(crate) const fn count(&self) -> u16 {
+        self.count
+    }
+
+    /// Leaves no room for more.
+    pub(crate) fn close(&mut self) {
+        self.triangles = &mut [];
+    }
+
+    /// Notes that there was no room for a triangle.
+    pub(crate) const fn overflow(&mut self) {
+        self.layout.overflow = true;
+    }
+
+    /// Ends a walk that recorded triangles.
+    pub(crate) const fn finish(self) {
+        self.layout.triangles = self.count;
+    }
+
+    /// Records a triangle whose topmost strip, in this band, is `strip`; its first two corners in a word. Whether there was room.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, corners: u32, last: u16, face: u32, strip: usize) -> bool {
+        let behind = TRIANGLE * usize::from(self.count) + TRIANGLE;
+        let Some(at) = self.triangles.len().checked_sub(behind) else { return false };
+        let Some([a, b, c, ..]) = self.triangles.get_mut(at..) else { return false };
+        let number = self.count;
+        (*a, *b, *c) = (corners, pair([last, NONE]), face);
+        self.count += 1;
+        let Some([first, end]) = self.lists.get_mut(strip).map(halves) else { return true };
+        let before = core::mem::replace(end, number);
+        if before == NONE {
+            *first = number;
+        } else {
+            self.link(before, number);
+        }
+        true
+    }
+
+    /// The next triangle of the draw in this strip, if its number is below `last`. If it reaches beyond `end`, see
+    /// [`end_of`](Self::end_of), it moves on to the next strip.
+    #[inline(always)]
+    pub(crate) fn replay(&mut self, last: u32, end: i32, to: &mut TriangleRecord) -> bool {
+        let number = self.layout.next;
+        if u32::from(number) >= last {
+            return false;
+        }
+        let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
+        let [last, next]: [u16; 2] = bytemuck::cast(*b);
+        (to.corners, to.last, to.face) = (*a, last, *face);
+        self.layout.next = next;
+        let [i, j, k] = to.corners();
+        let screen = |index: u16| match self.places.get(usize::from(index)) {
+            Some(words) => Slot(*words).screen(),
+            None => self.added(index).screen(),
+        };
+        // One by one, so that few things are at hand at once.
+        let [a, b, c] = &mut to.v;
+        *a = screen(i);
+        let mut above = end - a.y;
+        *b = screen(j);
+        above |= end - b.y;
+        *c = screen(k);
+        above |= end - c.y;
+        if above < 0 {
+            self.move_on(number);
+        }
+        true
+    }
+
+    /// What coordinates of triangles that end above a row are not greater than.
+    pub(crate) const fn end_of(row: i32) -> i32 {
+        // The first pixel whose centre is not before a coordinate is (coordinate + 127) / 256.
+        row * 256 + 128
+    }
+
+    /// Where a vertex is that the clipper added.
+    #[inline(never)]
+    fn added(&self, index: u16) -> Slot {
+        match self.vertices.get(self.layout.stride * usize::from(index)..) {
+            Some([a, b, ..]) => Slot([*a, *b]),
+            _ => Slot::NONE,
+        }
+    }
+
+    /// Reads the varyings of a vertex of the draw.
+    #[inline(always)]
+    pub(crate) fn varyings<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
+        if S::Varyings::LEN > FEW {
+            self.varyings_apart::<S>(index, to);
+        } else if S::WORDS > 0 {
+            *to = self.load::<S>(index);
+        }
+    }
+
+    /// Many of them take room on the stack until they are put together.
+    #[inline(never)]
+    fn varyings_apart<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
+        *to = self.load::<S>(index);
+    }
+
+    #[inline(always)]
+    fn load<S: VertexShader>(&self, index: u16) -> S::Varyings {
+        let (index, count) = (usize::from(index), self.places.len());
+        let at = if index < count {
+            VERTEX_WORDS * count + S::WORDS * index
+        } else {
+            (S::WORDS + VERTEX_WORDS) * index + VERTEX_WORDS
+        };
+        S::load(self.vertices.get(at..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
+    }
+
+    fn triangle_at(&self, number: u16) -> usize {
+        self.triangles.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
+    }
+
+    #[inline(always)]
+    fn link(&mut self, from: u16, to: u16) {
+        let at = self.triangles.len().wrapping_sub(TRIANGLE * usize::from(from) + TRIANGLE - 1);
+        if let Some([_, link]) = self.triangles.get_mut(at).map(halves) {
+            *link = to;
+        }
+    }
+
+    fn linked(&self, from: u16) -> u16 {
+        let [_, link] =
+            self.triangles.get(self.triangle_at(from).wrapping_add(1)).map_or([NONE; 2], |word| bytemuck::cast(*word));
+        link
+    }
+
+    /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
+    ///
+    /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
+    #[inline(never)]
+    fn move_on(&mut self, number: u16) {
+        let strip = self.layout.strip + 1;
+        if strip >= self.lists.len() {
+            return;
+        }
+        let (mut before, mut after) = (self.layout.moved, self.layout.after);
+        while after < number {
+            before = after;
+            after = self.linked(after);
+        }
+        self.layout.after = after;
+        self.link(number, after);
+        if before != NONE {
+            self.link(before, number);
+        } else if let Some([first, _]) = self.lists.get_mut(strip).map(halves) {
+            *first = number;
+        }
+        self.layout.moved = number;
+    }
+}
+
+/// Positions in the words; kept by the frame from one walk to the next.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Layout {
+    /// First free word.
+    front: usize,
+    /// Triangles recorded.
+    triangles: u16,
+    /// The current draw: its header, the first word of its vertices, how many the mesh has, how many the clipper added, and
+    /// words a vertex.
+    header: usize,
+    vertices: usize,
+    count: usize,
+    added: u16,
+    stride: usize,
+    overflow: bool,
+    /// Replay: the strip, its next triangle, the last one that was moved on, and the one that follows it in the next strip's list.
+    strip: usize,
+    next: u16,
+    moved: u16,
+    after: u16,
+    /// First word behind the lists of the strips.
+    lists: usize,
+}
+
+impl<'a> Records<'a> {
+    /// Takes up the words where a walk left them.
+    pub(crate) fn new(words: &'a mut [u32], layout: &'a mut Layout) -> Self {
+        Self { words, layout }
+    }
+
+    /// Empties the records, for a strip that is drawn directly.
+    pub(crate) fn clear(&mut self) {
+        *self.layout = Layout::default();
+    }
+
+    fn get(&self, at: usize) -> u32 {
+        self.words.get(at).copied().unwrap_or(0)
+    }
+
+    fn set(&mut self, at: usize, value: u32) {
+        if let Some(word) = self.words.get_mut(at) {
+            *word = value;
+        }
+    }
+
+    /// Empties the records and starts lists for as many strips.
+    pub(crate) fn begin_band(&mut self, strips: usize) {
+        *self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
+        match self.words.get_mut(..strips) {
+            Some(lists) => clear_words(lists, NONE),
+            None => self.layout.overflow = true,
+        }
+    }
+
+    /// Whether something did not fit, so that the walk is in vain.
+    pub(crate) fn overflowed(&self) -> bool {
+        self.layout.overflow
+    }
+
+    /// Words that are still free.
+    fn free(&self) -> usize {
+        self.words.len().saturating_sub(self.layout.front + TRIANGLE * usize::from(self.layout.triangles))
+    }
+
+    /// Room for the vertices of a draw, all unshaded; whether there is enough.
+    fn reserve(&mut self, vertices: usize, stride: usize) -> bool {
+        let start = self.layout.front;
+        // At most 2¹⁶ · 255: no overflow even in 32 bits.
+        let needs = vertices * stride;
+        if self.free() < needs {
+            return false;
+        }
+        self.layout.vertices = start;
+        self.layout.count = vertices;
+        self.layout.added = 0;
+        self.layout.stride = stride;
+        self.layout.front = start + needs;
+        let (places, _) = self.vertices_mut();
+        places.fill(Slot::NONE.0);
+        true
+    }
+
+    /// Starts recording a draw.
+    pub(crate) fn begin_draw(&mut self, fingerprint: u32, vertices: usize, stride: usize) {
+        let header = self.layout.front;
+        if self.free() < HEADER {
+            self.layout.overflow = true;
+            return;
+        }
+        self.layout.header = header;
+        self.layout.front = header + HEADER;
+        if !self.reserve(vertices, stride) {
+            self.layout.overflow = true;
+            return;
+        }
+        self.set(header, fingerprint);
+        self.set(header + 1, self.layout.vertices as u32);
+    }
+
+    /// Ends recording a draw.
+    pub(crate) fn end_draw(&mut self) {
+        self.set(self.layout.header + 2, u32::from(self.layout.triangles));
+        self.set(self.layout.header + 3, self.layout.front as u32);
+    }
+
+    /// Lends all the words to the vertices of one draw that is drawn directly, if they fit.
+    pub(crate) fn begin_direct(&mut self, vertices: usize, stride: usize) {
+        // Behind the end: all vertices read as unshaded.
+        *self.layout = Layout { vertices: self.words.len(), ..Layout::default() };
+        self.reserve(vertices, stride);
+    }
+
+    /// Whether there is a place for each vertex of the current draw.
+    #[inline]
+    pub(crate) fn has_vertices(&self) -> bool {
+        self.layout.stride > 0
+    }
+
+    /// What is known of where the vertices of the current draw are: words of [`Slot`]s.
+    #[inline]
+    pub(crate) fn positions(&self) -> &[[u32; 2]] {
+        let start = self.layout.vertices;
+        let words = self.words.get(start..start + 2 * self.layout.count).unwrap_or_default();
+        bytemuck::try_cast_slice(words).unwrap_or_default()
+    }
+
+    /// What is known of where a vertex of the current draw is.
+    #[inline]
+    pub(crate) fn slot(&self, index: usize) -> Slot {
+        self.positions().get(index).map_or(Slot::NONE, |words| Slot(*words))
+    }
+
+    /// The places of all vertices, and those of their varyings.
+    pub(crate) fn vertices_mut(&mut self) -> (&mut [[u32; 2]], &mut [u32]) {
+        let start = self.layout.vertices;
+        let words = self.words.get_mut(start..start + self.layout.count * self.layout.stride).unwrap_or_default();
+        let Some((positions, varyings)) = words.split_at_mut_checked(2 * self.layout.count) else {
+            return Default::default();
+        };
+        (bytemuck::try_cast_slice_mut(positions).unwrap_or_default(), varyings)
+    }
+
+    /// The first words of a vertex's position and of its varyings.
+    #[inline]
+    fn places(&self, index: usize) -> (usize, usize) {
+        let Layout { vertices, count, stride, .. } = *self.layout;
+        if index < count {
+            (vertices + VERTEX_WORDS * index, vertices + VERTEX_WORDS * count + (stride - VERTEX_WORDS) * index)
+        } else {
+            let start = vertices + stride * index;
+            (start, start + VERTEX_WORDS)
+        }
+    }
+
+    /// Packs a vertex of the current draw, which has places for vertices.
+    #[inline]
+    pub(crate) fn keep<S: VertexShader>(&mut self, index: usize, slot: Slot, varyings: &S::Varyings) {
+        let (position, rest) = self.places(index);
+        let [a, b] = slot.0;
+        self.set(position, a);
+        self.set(position + 1, b);
+        S::store(varyings, self.words.get_mut(rest..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default());
+    }
+
+    /// The varyings of a vertex of the current draw.
+    #[inline]
+    pub(crate) fn varyings<S: VertexShader>(&self, index: u16) -> S::Varyings {
+        if S::WORDS == 0 {
+            return S::Varyings::ZERO;
+        }
+        let (_, rest) = self.places(index.into());
+        S::load(self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
+    }
+
+    /// Adds a vertex to the current draw, for a polygon that the clipper made.
+    pub(crate) fn push_vertex(&mut self) -> u16 {
+        let index = self.layout.count + usize::from(self.layout.added);
+        if self.free() < self.layout.stride || index >= usize::from(u16::MAX) {
+            self.layout.overflow = true;
+            return 0;
+        }
+        self.layout.front += self.layout.stride;
+        self.layout.added += 1;
+        index as u16
+    }
+
+    /// Records a triangle whose topmost strip, in this band, is `strip`.
+    pub(crate) fn push_triangle(&mut self, [i, j, k]: [u16; 3], face: u32, strip: usize) {
+        let mut triangles = self.parts();
+        if !triangles.push(u32::from(i) | u32::from(j) << 16, k, face, strip) {
+            triangles.overflow();
+        }
+        triangles.finish();
+    }
+
+    /// The words taken apart, for a walk over many triangles that adds no vertices.
+    #[inline(never)]
+    pub(crate) fn triangles(&mut self) -> Triangles<'_> {
+        self.parts()
+    }
+
+    #[inline(always)]
+    fn parts(&mut self) -> Triangles<'_> {
+        let Self { words, layout } = self;
+        let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
+        let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
+        let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
+        let places = vertices.get(..VERTEX_WORDS * layout.count).unwrap_or_default();
+        // Numbers are below that which stands for none.
+        let beyond = rest.len().saturating_sub(TRIANGLE * usize::from(NONE));
+        Triangles {
+            lists,
+            vertices,
+            places: bytemuck::try_cast_slice(places).unwrap_or_default(),
+            triangles: rest.get_mut(beyond..).unwrap_or_default(),
+            count: layout.triangles,
+            layout,
+        }
+    }
+
+    /// Starts replaying a strip of the band.
+    pub(crate) fn begin_replay(&mut self, strip: usize) {
+        self.layout.strip = strip;
+        let first = |strip| {
+            let [first, _]: [u16; 2] = bytemuck::cast(self.get(strip));
+            first
+        };
+        (self.layout.next, self.layout.after) = (first(strip), first(strip + 1));
+        self.layout.moved = NONE;
+        self.layout.front = self.layout.lists;
+    }
+
+    /// Finds the next recorded draw; `false` if it is not the one that was recorded.
+    pub(crate) fn replay_draw(&mut self, fingerprint: u32, vertices: usize, stride: usize) -> bool {
+        let header = self.layout.front;
+        self.layout.header = header;
+        self.layout.vertices = self.get(header + 1) as usize;
+        self.layout.count = vertices;
+        self.layout.stride = stride;
+        self.layout.front = self.get(header + 3) as usize;
+        self.get(header) == fingerprint
+    }
+
+    /// Whether the draw that was found has no vertices.
+    pub(crate) fn is_draw_empty(&self) -> bool {
+        self.layout.front == self.layout.vertices
+    }
+
+    /// How many triangles have been recorded.
+    pub(crate) const fn triangle_count(&self) -> u16 {
+        self.layout.triangles
+    }
+
+    /// The words of the triangles from a number on, the newest first.
+    #[inline]
+    pub(crate) fn triangles_from(&mut self, first: u16) -> &mut [u32] {
+        let end = self.triangle_at(first).wrapping_add(TRIANGLE);
+        let start = self.triangle_at(self.layout.triangles).wrapping_add(TRIANGLE);
+        self.words.get_mut(start..end).unwrap_or_default()
+    }
+
+    fn triangle_at(&self, number: u16) -> usize {
+        self.words.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
+    }
+
+    /// The number behind that of the last triangle of the draw that was found.
+    pub(crate) fn last_triangle(&self) -> u32 {
+        self.get(self.layout.header + 2)
+    }
+}

@@ -1,0 +1,308 @@
+//! Textures: images in flash, in the formats of [`TexelFormat`], and small tiles for the fastest loop.
+
+use super::texel::{OPAQUE, TexelFormat, expand};
+use crate::color::PixelFormat;
+
+/// A rectangle of texels.
+///
+/// Coordinates that a shader asks for are always in range; what an implementation returns for others does not matter.
+pub trait Texture {
+    /// Columns and rows, at least one each.
+    fn size(&self) -> (u16, u16);
+
+    /// The texel at a column and a row.
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4];
+
+    /// A pixel from it, unless it is transparent.
+    fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw>;
+
+    /// Whether all texels are what [`rgb565`](Self::rgb565) says.
+    const IS_RGB565: bool = false;
+
+    /// Whether no texel is transparent.
+    const IS_OPAQUE: bool = Self::IS_RGB565;
+
+    /// The texel as RGB565.
+    #[inline]
+    fn rgb565(&self, x: u32, y: u32) -> u16 {
+        let [r, g, b, _] = self.rgba(x, y);
+        (r as u16 & 0xF8) << 8 | (g as u16 & 0xFC) << 3 | b as u16 >> 3
+    }
+
+    /// The pixel at fractions of the texture, 0.16 each: u in the lower half of a word, v in the upper.
+    #[inline(always)]
+    fn fetch<P: PixelFormat>(&self, vu: u32) -> Option<P::Raw> {
+        let (width, height) = self.size();
+        self.pixel::<P>(((vu & 0xFFFF) * u32::from(width)) >> 16, ((vu >> 16) * u32::from(height)) >> 16)
+    }
+}
+
+/// Why bytes are no image.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum TextureError {
+    /// No columns or no rows.
+    Empty,
+    /// More or fewer bytes than the size takes.
+    Length {
+        /// How many there are.
+        found: usize,
+        /// How many there must be.
+        expected: usize,
+    },
+    /// A size of another image does not fit this one: alpha beside colours, or a level of a mip chain.
+    Size {
+        /// What it is.
+        found: (u16, u16),
+        /// What it must be.
+        expected: (u16, u16),
+    },
+}
+
+impl core::fmt::Display for TextureError {
+    fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
+        match self {
+            Self::Empty => write!(f, "a texture has at least one column and one row"),
+            Self::Length { found, expected } => write!(f, "{found} bytes, but the size takes {expected}"),
+            Self::Size { found, expected } => {
+                write!(f, "{} x {} texels instead of {} x {}", found.0, found.1, expected.0, expected.1)
+            }
+        }
+    }
+}
+
+impl core::error::Error for TextureError {}
+
+/// An image of any size: the bytes of an embedded-graphics `ImageRaw`.
+///
+/// ```
+/// use zstrip::texture::{Image, Rgb565Texel, TextureError};
+/// static BYTES: [u8; 8] = [0xF8, 0x00, 0x07, 0xE0, 0x00, 0x1F, 0xFF, 0xFF];
+/// let image = Image::new(&BYTES, (2, 2), Rgb565Texel)?;
+/// assert_eq!(Image::new(&BYTES, (3, 2), Rgb565Texel).err(), Some(TextureError::Length { found: 8, expected: 12 }));
+/// # let _ = image;
+/// # Ok::<(), TextureError>(())
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Image<'a, F> {
+    data: &'a [u8],
+    width: u16,
+    height: u16,
+    /// Bytes a row.
+    stride: usize,
+    format: F,
+}
+
+impl<'a, F: TexelFormat> Image<'a, F> {
+    /// From bytes, columns and rows.
+    ///
+    /// # Errors
+    /// If it is empty, or the bytes are not as many as the size takes.
+    pub const fn new(data: &'a [u8], (width, height): (u16, u16), format: F) -> Result<Self, TextureError> {
+        if width == 0 || height == 0 {
+            return Err(TextureError::Empty);
+        }
+        let stride = (width as usize * F::BITS).div_ceil(8);
+        let expected = stride * height as usize;
+        if data.len() != expected {
+            return Err(TextureError::Length { found: data.len(), expected });
+        }
+        Ok(Self { data, width, height, stride, format })
+    }
+
+    /// The bits of a texel; 0 outside of the image.
+    #[inline(always)]
+    fn texel(&self, x: u32, y: u32) -> u32 {
+        let (x, row) = (x as usize, y as usize * self.stride);
+        match F::BITS {
+            16 => match self.data.get(row + 2 * x..) {
+                Some([high, low, ..]) => u32::from(u16::from_be_bytes([*high, *low])),
+                _ => 0,
+            },
+            24 => match self.data.get(row + 3 * x..) {
+                Some([r, g, b, ..]) => u32::from_be_bytes([0, *r, *g, *b]),
+                _ => 0,
+            },
+            8 => self.data.get(row + x).copied().unwrap_or(0).into(),
+            bits => {
+                let first = x * bits;
+                let byte = u32::from(self.data.get(row + first / 8).copied().unwrap_or(0));
+                // The first texel of a byte is in its upper bits.
+                byte >> (8 - bits - first % 8) & ((1 << bits) - 1)
+            }
+        }
+    }
+}
+
+impl<F: TexelFormat> Texture for Image<'_, F> {
+    #[inline(always)]
+    fn size(&self) -> (u16, u16) {
+        (self.width, self.height)
+    }
+
+    #[inline(always)]
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
+        self.format.rgba(self.texel(x, y))
+    }
+
+    #[inline(always)]
+    fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw> {
+        self.format.pixel::<P>(self.texel(x, y))
+    }
+
+    const IS_RGB565: bool = F::IS_RGB565;
+
+    #[inline(always)]
+    fn rgb565(&self, x: u32, y: u32) -> u16 {
+        self.format.rgb565(self.texel(x, y))
+    }
+}
+
+/// A texture of RGB565 whose sides are powers of two, known to the compiler: what the fastest loop wants.
+///
+/// ```
+/// use zstrip::texture::Tile;
+/// static TEXELS: [[u16; 4]; 2] = [[0xF800, 0, 0xF800, 0], [0, 0xF800, 0, 0xF800]];
+/// static TILE: Tile<'static, 4, 2> = Tile::new(&TEXELS);
+/// ```
+/// Other sides do not compile.
+/// ```compile_fail
+/// let tile = zstrip::texture::Tile::new(&[[0; 3]; 2]);
+/// ```
+#[derive(Clone, Copy, Debug)]
+pub struct Tile<'a, const W: usize, const H: usize>(&'a [[u16; W]; H]);
+
+impl<'a, const W: usize, const H: usize> Tile<'a, W, H> {
+    /// From rows of texels, in the processor's byte order.
+    pub const fn new(texels: &'a [[u16; W]; H]) -> Self {
+        const { assert!(W.is_power_of_two() && H.is_power_of_two(), "the sides of a tile are powers of two") };
+        const { assert!(W <= 1 << 15 && H <= 1 << 15, "the sides of a tile are at most 32,768") };
+        Self(texels)
+    }
+}
+
+impl<const W: usize, const H: usize> Texture for Tile<'_, W, H> {
+    #[inline(always)]
+    fn size(&self) -> (u16, u16) {
+        (W as u16, H as u16)
+    }
+
+    #[inline(always)]
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
+        expand(self.rgb565(x, y))
+    }
+
+    #[inline(always)]
+    fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw> {
+        Some(P::from_rgb565(self.rgb565(x, y)))
+    }
+
+    const IS_RGB565: bool = true;
+
+    /// Outside of the tile, that of the same place in another tile.
+    #[inline(always)]
+    fn rgb565(&self, x: u32, y: u32) -> u16 {
+        // Nothing is out of bounds, which the compiler sees.
+        self.0.get(y as usize % H).and_then(|row| row.get(x as usize % W)).copied().unwrap_or(0)
+    }
+
+    #[inline(always)]
+    fn fetch<P: PixelFormat>(&self, vu: u32) -> Option<P::Raw> {
+        let (columns, rows) = (W.trailing_zeros(), H.trailing_zeros());
+        if columns + rows > 16 || rows > 8 || rows == 0 {
+            return self.pixel::<P>(vu >> (16 - columns), vu >> 16 >> (16 - rows));
+        }
+        // The upper bits of both halves, those of the lower one moved up to the others: the number of the texel.
+        let bits = vu & (!(u32::MAX >> rows) | (0xFFFF ^ 0xFFFF >> columns));
+        let number = (bits | bits << (16 - rows)) >> (32 - rows - columns);
+        // Nothing is out of bounds, which the compiler sees.
+        Some(P::from_rgb565(self.0.as_flattened().get(number as usize).copied().unwrap_or(0)))
+    }
+}
+
+/// A texture whose alpha is in 4 bits a texel beside it, two texels a byte, the first in the upper bits: 0 transparent,
+/// 15 opaque.
+#[derive(Clone, Copy, Debug)]
+pub struct WithAlpha<'a, T> {
+    texture: T,
+    alpha: Image<'a, crate::texture::PaletteTexel<'a, 4>>,
+}
+
+impl<'a, T: Texture> WithAlpha<'a, T> {
+    /// From colours and the bytes of alpha, rows starting at whole bytes.
+    ///
+    /// # Errors
+    /// If there are not as many bytes as the texture's size takes.
+    pub fn new(texture: T, alpha: &'a [u8]) -> Result<Self, TextureError> {
+        let alpha = Image::new(alpha, texture.size(), crate::texture::PaletteTexel(&[]))?;
+        Ok(Self { texture, alpha })
+    }
+}
+
+impl<T: Texture> Texture for WithAlpha<'_, T> {
+    #[inline(always)]
+    fn size(&self) -> (u16, u16) {
+        self.texture.size()
+    }
+
+    #[inline(always)]
+    fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
+        let [r, g, b, _] = self.texture.rgba(x, y);
+        [r, g, b, (self.alpha.texel(x, y) * 17) as u8]
+    }
+
+    #[inline(always)]
+    fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw> {
+        let [r, g, b, a] = self.rgba(x, y);
+        if a >= OPAQUE { Some(P::pack([r, g, b])) } else { None }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::texel::{PaletteTexel, Rgb565Texel, Rgb888Texel};
+    use super::*;
+    use embedded_graphics_core::pixelcolor::Rgb888;
+
+    #[test]
+    fn images_check_their_length() {
+        assert_eq!(Image::new(&[], (0, 4), Rgb565Texel).err(), Some(TextureError::Empty));
+        let expected = TextureError::Length { found: 5, expected: 4 };
+        // Nine texels of one bit take two bytes.
+        assert_eq!(Image::new(&[0; 5], (9, 2), PaletteTexel::<1>(&[])).err(), Some(expected));
+        assert!(Image::new(&[0; 4], (9, 2), PaletteTexel::<1>(&[])).is_ok());
+        let colors = Image::new(&[0; 12], (2, 2), Rgb888Texel).expect("an image");
+        assert_eq!(WithAlpha::new(colors, &[0; 3]).err(), Some(TextureError::Length { found: 3, expected: 2 }));
+    }
+
+    #[test]
+    fn texels_are_where_image_raw_has_them() {
+        let palette: [[u8; 3]; 16] = core::array::from_fn(|k| [k as u8; 3]);
+        let four = Image::new(&[0x12, 0x30, 0x45, 0x60], (3, 2), PaletteTexel::<4>(&palette)).expect("an image");
+        let found: [u8; 6] = core::array::from_fn(|k| four.rgba(k as u32 % 3, k as u32 / 3)[0]);
+        assert_eq!(found, [1, 2, 3, 4, 5, 6]);
+        let two = Image::new(&[0b0001_1011], (4, 1), PaletteTexel::<2>(&palette)).expect("an image");
+        assert_eq!([0, 1, 2, 3].map(|x| two.rgba(x, 0)[0]), [0, 1, 2, 3]);
+        let alpha = WithAlpha::new(four, &[0x8F, 0x70, 0x00, 0x00]).expect("an image");
+        assert_eq!([0, 1, 2].map(|x| alpha.rgba(x, 0)), [[1, 1, 1, 136], [2, 2, 2, 255], [3, 3, 3, 119]]);
+        assert_eq!(alpha.pixel::<Rgb888>(0, 0), Some([1, 1, 1]));
+        assert_eq!(alpha.pixel::<Rgb888>(2, 0), None);
+    }
+
+    #[test]
+    fn tiles_and_images_are_the_same() {
+        let texels: [[u16; 8]; 4] =
+            core::array::from_fn(|y| core::array::from_fn(|x| ((8 * y + x) as u16).wrapping_mul(0x0843)));
+        let mut bytes = [0; 64];
+        for (pair, texel) in bytes.chunks_exact_mut(2).zip(texels.iter().flatten()) {
+            pair.copy_from_slice(&texel.to_be_bytes());
+        }
+        let (tile, image) = (Tile::new(&texels), Image::new(&bytes, (8, 4), Rgb565Texel).expect("an image"));
+        for k in 0..32 * 256 {
+            let vu = u32::wrapping_mul(k, 0x0123_4567);
+            assert_eq!(tile.fetch::<Rgb888>(vu), image.fetch::<Rgb888>(vu), "{vu:x}");
+            let (x, y) = (k % 8, k / 8 % 4);
+            assert_eq!(tile.rgba(x, y), image.rgba(x, y));
+        }
+    }
+}

@@ -1,0 +1,380 @@
+//! Sampling: from texture coordinates to a colour, by the nearest texel or bilinearly.
+//!
+//! Coordinates are 16.16, the texture being 0..1 in both directions; what is beyond is up to a [`Wrap`].
+
+use super::image::Texture;
+use super::texel::OPAQUE;
+use crate::color::PixelFormat;
+
+/// What is outside of the texture.
+pub trait Wrap: Copy {
+    /// Whether a coordinate's fraction is all that counts.
+    const REPEATS: bool = false;
+
+    /// The place in the texture, 0.16, for a coordinate of 16.16.
+    fn fraction(coordinate: i32) -> u32;
+
+    /// The texel for a number from -1 to `size`, both included.
+    fn texel(number: i32, size: u16) -> u32;
+}
+
+/// The texture again, and again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Repeat;
+
+impl Wrap for Repeat {
+    const REPEATS: bool = true;
+
+    #[inline(always)]
+    fn fraction(coordinate: i32) -> u32 {
+        coordinate as u32 & 0xFFFF
+    }
+
+    #[inline(always)]
+    fn texel(number: i32, size: u16) -> u32 {
+        match number {
+            -1 => u32::from(size) - 1,
+            n if n == i32::from(size) => 0,
+            n => n as u32,
+        }
+    }
+}
+
+/// The texture's mirror image, and the texture again.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Mirror;
+
+impl Wrap for Mirror {
+    #[inline(always)]
+    fn fraction(coordinate: i32) -> u32 {
+        // All bits of the odd ones are turned round: 1 - 2⁻¹⁶ - fraction.
+        let odd = coordinate << 15 >> 31;
+        (coordinate ^ odd) as u32 & 0xFFFF
+    }
+
+    #[inline(always)]
+    fn texel(number: i32, size: u16) -> u32 {
+        Clamp::texel(number, size)
+    }
+}
+
+/// The texels at its border.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Clamp;
+
+impl Wrap for Clamp {
+    #[inline(always)]
+    fn fraction(coordinate: i32) -> u32 {
+        coordinate.clamp(0, 0xFFFF) as u32
+    }
+
+    #[inline(always)]
+    fn texel(number: i32, size: u16) -> u32 {
+        number.max(0).min(i32::from(size) - 1) as u32
+    }
+}
+
+/// How texels become a colour.
+pub trait Filter: Copy {
+    /// Whether that is the nearest texel, as it is.
+    const NEAREST: bool = false;
+
+    /// The colour at coordinates of 16.16.
+    fn rgba<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> [u8; 4];
+
+    /// A pixel of it, unless it is transparent.
+    fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Option<P::Raw>;
+}
+
+/// The texel that the coordinates are in.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Nearest;
+
+impl Nearest {
+    #[inline(always)]
+    fn texel<T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> (u32, u32) {
+        let (width, height) = texture.size();
+        ((W::fraction(u) * u32::from(width)) >> 16, (W::fraction(v) * u32::from(height)) >> 16)
+    }
+}
+
+impl Filter for Nearest {
+    const NEAREST: bool = true;
+
+    #[inline]
+    fn rgba<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> [u8; 4] {
+        let (x, y) = Self::texel::<T, W>(texture, uv);
+        texture.rgba(x, y)
+    }
+
+    #[inline]
+    fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Option<P::Raw> {
+        let (x, y) = Self::texel::<T, W>(texture, uv);
+        texture.pixel::<P>(x, y)
+    }
+}
+
+/// The four texels whose centres are around the coordinates, by their distance: in 1/256 for 8 bits a channel, in 1/32 for
+/// RGB565, whose three channels are mixed in one word.
+///
+/// Where some are transparent, the colour is that of the others, and alpha says how much of it there is.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bilinear;
+
+/// Two columns or rows, and how far between their centres, 0.8.
+#[inline(always)]
+fn pair<W: Wrap>(coordinate: i32, size: u16) -> (u32, u32, u32) {
+    // In texels 16.16 from the centre of the first one: -1/2 at least, and below `size`, 2³² in all.
+    let place = i64::from(W::fraction(coordinate) * u32::from(size)) - (1 << 15);
+    let first = (place >> 16) as i32;
+    (W::texel(first, size), W::texel(first + 1, size), (place as u32 >> 8) & 0xFF)
+}
+
+/// `a` + (`b` - `a`) t, t in 1/256, rounded to nearest, for two channels at once.
+#[inline(always)]
+const fn mix(a: u32, b: u32, t: u32) -> u32 {
+    ((a * (256 - t) + b * t + 0x0080_0080) >> 8) & 0x00FF_00FF
+}
+
+/// The same for red, green and blue of RGB565 in one word, 5 bits apart at least: t in 1/32.
+#[inline(always)]
+const fn mix565(a: u32, b: u32, t: u32) -> u32 {
+    ((a * (32 - t) + b * t + 0x0200_8010) >> 5) & SPREAD
+}
+
+/// Where RGB565's channels are when they are spread: green in the bits 21 to 26, red in 11 to 15, blue in 0 to 4.
+const SPREAD: u32 = 0x07E0_F81F;
+
+#[inline(always)]
+const fn spread(raw: u16) -> u32 {
+    (raw as u32 | (raw as u32) << 16) & SPREAD
+}
+
+/// 2¹⁶ / alpha · 255 / 2⁸, for alpha from 128 on.
+static UNMIX: [u16; 128] = {
+    let mut table = [0; 128];
+    let mut k = 0;
+    while k < 128 {
+        table[k] = ((255 << 8) / (128 + k as u32)) as u16;
+        k += 1;
+    }
+    table
+};
+
+impl Bilinear {
+    /// Mixed colours of transparent texels are black, so what is left is brought up to what it is where all are opaque.
+    #[inline(never)]
+    fn unmix([r, g, b, a]: [u8; 4]) -> [u8; 4] {
+        let Some(factor) = UNMIX.get(usize::from(a).wrapping_sub(128)) else {
+            return [r, g, b, a];
+        };
+        let up = |c: u8| ((u32::from(c) * u32::from(*factor) + 128) >> 8).min(255) as u8;
+        [up(r), up(g), up(b), a]
+    }
+}
+
+impl Filter for Bilinear {
+    #[inline]
+    fn rgba<T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> [u8; 4] {
+        let (width, height) = texture.size();
+        let (x0, x1, tx) = pair::<W>(u, width);
+        let (y0, y1, ty) = pair::<W>(v, height);
+        // Red and blue in one word, green and alpha in the other; transparent ones black.
+        let at = |x: u32, y: u32| {
+            let [r, g, b, a] = texture.rgba(x, y);
+            let word = u32::from_le_bytes([r, g, b, a]);
+            let word = if a == 255 { word } else { premultiplied([r, g, b, a]) };
+            (word & 0x00FF_00FF, word >> 8 & 0x00FF_00FF)
+        };
+        let row = |y: u32| {
+            let (a, b) = (at(x0, y), at(x1, y));
+            (mix(a.0, b.0, tx), mix(a.1, b.1, tx))
+        };
+        let (above, below) = (row(y0), row(y1));
+        let [r, g, b, a] = (mix(above.0, below.0, ty) | mix(above.1, below.1, ty) << 8).to_le_bytes();
+        if a == 255 { [r, g, b, a] } else { Self::unmix([r, g, b, a]) }
+    }
+
+    #[inline]
+    fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> Option<P::Raw> {
+        if T::IS_RGB565 {
+            let (width, height) = texture.size();
+            let (x0, x1, tx) = pair::<W>(u, width);
+            let (y0, y1, ty) = pair::<W>(v, height);
+            let (tx, ty) = ((tx + 4) >> 3, (ty + 4) >> 3);
+            let at = |x: u32, y: u32| spread(texture.rgb565(x, y));
+            let above = mix565(at(x0, y0), at(x1, y0), tx);
+            let below = mix565(at(x0, y1), at(x1, y1), tx);
+            let mixed = mix565(above, below, ty);
+            return Some(P::from_rgb565((mixed | mixed >> 16) as u16));
+        }
+        let [r, g, b, a] = Self::rgba::<T, W>(texture, [u, v]);
+        if a >= OPAQUE { Some(P::pack([r, g, b])) } else { None }
+    }
+}
+
+/// Channels times alpha.
+#[inline(never)]
+fn premultiplied([r, g, b, a]: [u8; 4]) -> u32 {
+    let scaled = |c: u8| ((u32::from(c) * u32::from(a) * 257 + (1 << 15)) >> 16) as u8;
+    u32::from_le_bytes([scaled(r), scaled(g), scaled(b), a])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::image::Image;
+    use super::super::texel::{Keyed, PaletteTexel, Rgb565Texel, Rgb888Texel};
+    use super::*;
+    use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+    use std::println;
+    use std::vec::Vec;
+
+    #[derive(Clone, Copy, Debug)]
+    enum Mode {
+        Repeat,
+        Mirror,
+        Clamp,
+    }
+
+    /// The texel for any number.
+    fn wrapped(mode: Mode, n: i64, size: i64) -> u32 {
+        let place = match mode {
+            Mode::Repeat => n.rem_euclid(size),
+            Mode::Clamp => n.clamp(0, size - 1),
+            Mode::Mirror => {
+                let m = n.rem_euclid(2 * size);
+                if m < size { m } else { 2 * size - 1 - m }
+            }
+        };
+        place as u32
+    }
+
+    fn random(seed: u32) -> impl FnMut() -> u32 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            state ^ state >> 13
+        }
+    }
+
+    fn nearest_agrees<W: Wrap>(mode: Mode) {
+        let mut random = random(7);
+        for size in [(1, 1), (8, 8), (5, 9), (64, 3)] {
+            let bytes: Vec<u8> = (0..size.0 * size.1).flat_map(|k: u16| [0, (k >> 8) as u8, k as u8]).collect();
+            let image = Image::new(&bytes, size, Rgb888Texel).expect("an image");
+            for _ in 0..3000 {
+                let uv = [random() as i32 >> 12, random() as i32 >> 12];
+                let [x, y] = [0, 1].map(|k: usize| {
+                    let size = i64::from([size.0, size.1][k]);
+                    wrapped(mode, (f64::from(uv[k]) / 65_536.0 * size as f64).floor() as i64, size)
+                });
+                // An odd mirror image is turned round bit by bit, which moves borders of texels by 2⁻¹⁶.
+                let fraction = |k: usize, size: u16| (f64::from(uv[k]) / 65_536.0 * f64::from(size)).fract() == 0.0;
+                if fraction(0, size.0) || fraction(1, size.1) {
+                    continue;
+                }
+                let expected = (y * u32::from(size.0) + x) as u16;
+                let [_, high, low, _] = Nearest::rgba::<_, W>(&image, uv);
+                assert_eq!(u16::from_be_bytes([high, low]), expected, "{mode:?} {size:?} {uv:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn nearest_texels_are_those_of_f64() {
+        nearest_agrees::<Repeat>(Mode::Repeat);
+        nearest_agrees::<Mirror>(Mode::Mirror);
+        nearest_agrees::<Clamp>(Mode::Clamp);
+    }
+
+    /// Bilinear filtering in f64 of a channel.
+    fn filtered(mode: Mode, uv: [i32; 2], size: (u16, u16), at: impl Fn(u32, u32) -> f64) -> f64 {
+        let place = |c: i32, size: u16| {
+            let c = f64::from(c) / 65_536.0 * f64::from(size);
+            // Beyond its borders, what is clamped stays half a texel away.
+            let c = if let Mode::Clamp = mode { c.clamp(0.0, f64::from(size)) } else { c };
+            (c - 0.5).floor() as i64
+        };
+        let part = |c: i32, size: u16| {
+            let c = f64::from(c) / 65_536.0 * f64::from(size);
+            let c = if let Mode::Clamp = mode { c.clamp(0.0, f64::from(size)) } else { c };
+            (c - 0.5).rem_euclid(1.0)
+        };
+        let (x, y) = (place(uv[0], size.0), place(uv[1], size.1));
+        let (tx, ty) = (part(uv[0], size.0), part(uv[1], size.1));
+        let texel = |x: i64, y: i64| at(wrapped(mode, x, size.0.into()), wrapped(mode, y, size.1.into()));
+        let row = |y: i64| texel(x, y) * (1.0 - tx) + texel(x + 1, y) * tx;
+        row(y) * (1.0 - ty) + row(y + 1) * ty
+    }
+
+    /// Worst and mean error a channel, in 1/255, of 8 bits a channel and of RGB565.
+    fn bilinear_errors<W: Wrap>(mode: Mode) -> [[f64; 2]; 2] {
+        let mut random = random(3);
+        let (mut errors, mut count) = ([[0.0_f64; 2]; 2], 0.0);
+        for size in [(8_u16, 8_u16), (5, 9), (64, 3), (1, 1)] {
+            let bytes: Vec<u8> = (0..3 * usize::from(size.0 * size.1)).map(|_| random() as u8).collect();
+            let image = Image::new(&bytes, size, Rgb888Texel).expect("an image");
+            let packed = Image::new(&bytes[..2 * bytes.len() / 3], size, Rgb565Texel).expect("an image");
+            for _ in 0..3000 {
+                let uv = [random() as i32 >> 13, random() as i32 >> 13];
+                let found = Bilinear::rgba::<_, W>(&image, uv);
+                let raw = Bilinear::pixel::<Rgb565, _, W>(&packed, uv).expect("nothing is transparent");
+                let raw = [raw >> 11, raw >> 5 & 63, raw & 31];
+                for channel in 0..3 {
+                    let exact = filtered(mode, uv, size, |x, y| image.rgba(x, y)[channel].into());
+                    let exact565 = filtered(mode, uv, size, |x, y| {
+                        let raw = packed.rgb565(x, y);
+                        [raw >> 11, raw >> 5 & 63, raw & 31][channel].into()
+                    });
+                    let unit = 255.0 / [31.0, 63.0, 31.0][channel];
+                    let error =
+                        [(f64::from(found[channel]) - exact).abs(), (f64::from(raw[channel]) - exact565).abs() * unit];
+                    for (errors, error) in errors.iter_mut().zip(error) {
+                        errors[0] = errors[0].max(error);
+                        errors[1] += error;
+                    }
+                    count += 1.0;
+                }
+            }
+        }
+        errors.map(|[worst, sum]| [worst, sum / count])
+    }
+
+    #[test]
+    fn bilinear_colours_are_close_to_those_of_f64() {
+        let all = [
+            (Mode::Repeat, bilinear_errors::<Repeat>(Mode::Repeat)),
+            (Mode::Mirror, bilinear_errors::<Mirror>(Mode::Mirror)),
+            (Mode::Clamp, bilinear_errors::<Clamp>(Mode::Clamp)),
+        ];
+        for (mode, [[worst, mean], [worst565, mean565]]) in all {
+            println!(
+                "{mode:?}: 8 bits: worst {worst:.2}, mean {mean:.2}; RGB565: worst {worst565:.1}, mean {mean565:.2}"
+            );
+            // Weights are off by 1/256 at most, in both directions, and two roundings of half a step come on top.
+            assert!(worst <= 3.0 && mean <= 0.7, "{mode:?}");
+            // In 565: by 1/64, and two roundings of half of 255/31.
+            assert!(worst565 <= 16.5 && mean565 <= 4.0, "{mode:?}");
+        }
+    }
+
+    #[test]
+    fn transparent_texels_do_not_tint_their_neighbours() {
+        let palette = [[255, 0, 255], [200, 100, 50]];
+        let format = Keyed { format: PaletteTexel::<8>(&palette), key: 0 };
+        let image = Image::new(&[1, 0, 1, 1], (2, 2), format).expect("an image");
+        let mut seen = [0, 0];
+        for k in 0..1024 {
+            let uv = [(k % 32) * 2048 + 1000, (k / 32) * 2048 + 1000];
+            let [r, g, b, a] = Bilinear::rgba::<_, Clamp>(&image, uv);
+            let pixel = Bilinear::pixel::<Rgb888, _, Clamp>(&image, uv);
+            seen[usize::from(pixel.is_some())] += 1;
+            assert_eq!(pixel.is_some(), a >= OPAQUE);
+            if a >= OPAQUE {
+                let off = [r.abs_diff(200), g.abs_diff(100), b.abs_diff(50)];
+                assert!(off.iter().all(|off| *off <= 5), "{:?} at {uv:?}", [r, g, b, a]);
+            }
+        }
+        assert!(seen[0] > 100 && seen[1] > 500, "{seen:?}");
+    }
+}

@@ -1,0 +1,114 @@
+//! Clipping of lines: by the planes of [`clip_triangle`](crate::vertex::clip_triangle), in the same order, with the same cuts.
+
+use super::clip::{ClipCorner, ClipVertex, Outcode, PLANES, Part, PolygonCorner, crossing, distance};
+
+/// Cuts a line by the planes in `codes` (the outcodes of its ends, united): the ends of what is left in one part of it, if
+/// anything is. Their third weight is 0.
+///
+/// An end that is visible passes unchanged, bit by bit; AB is cut like BA.
+pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: Part) -> Option<[ClipCorner; 2]> {
+    let (a, b) = (PolygonCorner::default(), PolygonCorner::default());
+    a.set(&ends[0], 0);
+    b.set(&ends[1], 1);
+    for plane in 0..PLANES {
+        if codes.0 & (1 << plane) == 0 {
+            continue;
+        }
+        let (da, db) = (distance(plane, &a.place), distance(plane, &b.place));
+        let [keeps_a, keeps_b] = [da, db].map(|d| (d >= 0) == part.is_inside(plane));
+        match (keeps_a, keeps_b) {
+            (true, true) => {}
+            (true, false) => crossing(plane, [&a, &b, &b], da, db),
+            (false, true) => crossing(plane, [&a, &b, &a], da, db),
+            (false, false) => return None,
+        }
+    }
+    Some([a, b].map(|corner| {
+        part.clamp(&corner.place);
+        ClipCorner { vertex: corner.vertex(), weights: corner.weights() }
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::clip::clip_triangle;
+    use super::*;
+    use std::vec::Vec;
+
+    const ONE: i64 = 1 << 50;
+
+    fn codes(vertices: &[ClipVertex]) -> Outcode {
+        Outcode(vertices.iter().fold(0, |all, v| all | Outcode::of(v).0))
+    }
+
+    /// Random ends in all directions, with w of either sign.
+    fn ends(count: usize) -> Vec<[ClipVertex; 2]> {
+        let mut state = 17_u64;
+        let mut next = |limit: i64| {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            ((i128::from((state ^ state >> 29) as i64) * i128::from(limit)) >> 63) as i64
+        };
+        let mut end = || {
+            let w = next(ONE);
+            ClipVertex { x: next(20 * ONE), y: next(20 * ONE), z: next(ONE), w }
+        };
+        (0..count).map(|_| [end(), end()]).collect()
+    }
+
+    #[test]
+    fn what_is_left_is_inside_of_all_planes() {
+        let mut left = 0;
+        for line in ends(20_000) {
+            let Some(cut) = clip_line(line, codes(&line), Part::Between) else { continue };
+            left += 1;
+            for (end, original) in cut.iter().zip(&line) {
+                // The cuts' rounding: a few units of 2⁵⁰, and 65 times that at the guard band.
+                let corner = PolygonCorner::default();
+                corner.set(&end.vertex, 0);
+                for plane in 0..PLANES {
+                    assert!(distance(plane, &corner.place) >= -400, "plane {plane}: {end:?}");
+                }
+                if Outcode::of(original) == Outcode(0) {
+                    assert_eq!(end.vertex, *original);
+                }
+            }
+        }
+        assert!(left > 1000, "{left}");
+    }
+
+    #[test]
+    fn line_is_cut_the_same_from_both_ends_and_as_the_edge_of_a_triangle() {
+        let mut cut_lines = 0;
+        for line in ends(20_000) {
+            let [a, b] = line;
+            let all = codes(&line);
+            let cut = clip_line(line, all, Part::Between);
+            let back = clip_line([b, a], all, Part::Between);
+            let turned = |corner: ClipCorner| {
+                let [a, b, c] = corner.weights;
+                ClipCorner { weights: [b, a, c], ..corner }
+            };
+            assert_eq!(cut, back.map(|[a, b]| [turned(b), turned(a)]), "{line:?}");
+            // As an edge of a triangle whose third vertex is inside.
+            let third = ClipVertex { x: 0, y: 0, z: ONE / 4, w: ONE / 2 };
+            let mut corners = Vec::new();
+            clip_triangle([a, b, third], all, Part::Between, |corner| corners.push(*corner));
+            if let Some([a, b]) = cut {
+                cut_lines += 1;
+                assert!(corners.contains(&a) && corners.contains(&b), "{line:?}");
+            }
+        }
+        assert!(cut_lines > 1000, "{cut_lines}");
+    }
+
+    #[test]
+    fn parts_before_and_beyond_meet_the_part_between() {
+        let v = |z, w| ClipVertex { x: 0, y: 0, z, w };
+        let line = [v(-ONE / 4, ONE / 2), v(ONE, ONE / 2)];
+        let all = codes(&line);
+        let parts = [Part::Before, Part::Between, Part::Beyond].map(|part| clip_line(line, all, part));
+        let [Some(before), Some(between), Some(beyond)] = parts else { panic!("{parts:?}") };
+        assert_eq!((before[0].vertex.z, before[1], between[0]), (0, between[0], before[1]));
+        assert_eq!((between[1], beyond[1].vertex.z), (beyond[0], beyond[1].vertex.w));
+    }
+}

@@ -1,0 +1,234 @@
+//! The painter's algorithm: what is farther is drawn first, for parts without RAM for depth, and for what is transparent.
+//!
+//! Triangles are sorted by their farthest vertices, and then, pair by pair, by the tests of Newell, Newell and Sancha (1972), "A
+//! solution to the hidden surface problem". All of them are made on the screen: projection leaves planes what they are, and
+//! puts the eye at depth minus infinity.
+
+use super::project::ScreenVertex;
+use super::transform::{Placed, Transform};
+use super::viewport::Viewport;
+use crate::math::Projective;
+use crate::mesh::Mesh;
+use core::fmt;
+
+/// Puts items with larger keys first: objects by their distance, for instance. Items with the same key come in any order,
+/// but always the same.
+///
+/// ```
+/// let mut order = [(20, "house"), (300, "hill"), (7, "tree")];
+/// zstrip::vertex::far_to_near(&mut order, |(distance, _)| *distance);
+/// assert_eq!(order.map(|(_, name)| name), ["hill", "house", "tree"]);
+/// ```
+///
+/// # Source
+/// Williams 1964, "Algorithm 232: heapsort".
+pub fn far_to_near<T>(items: &mut [T], key: impl Fn(&T) -> i32) {
+    for root in (0..items.len() / 2).rev() {
+        sift(items, root, items.len(), &key);
+    }
+    for end in (1..items.len()).rev() {
+        swap(items, 0, end);
+        sift(items, 0, end, &key);
+    }
+}
+
+/// Lets an item sink until none below it in the heap, which ends at `end`, has a smaller key.
+fn sift<T>(items: &mut [T], mut root: usize, end: usize, key: &impl Fn(&T) -> i32) {
+    let at = |items: &[T], k: usize| items.get(k).map_or(i32::MAX, key);
+    loop {
+        let left = 2 * root + 1;
+        if left >= end {
+            return;
+        }
+        let right = left + 1;
+        let least = if right < end && at(items, right) < at(items, left) { right } else { left };
+        if at(items, root) <= at(items, least) {
+            return;
+        }
+        swap(items, root, least);
+        root = least;
+    }
+}
+
+fn swap<T>(items: &mut [T], a: usize, b: usize) {
+    if let Ok([a, b]) = items.get_disjoint_mut([a, b]) {
+        core::mem::swap(a, b);
+    }
+}
+
+/// A triangle among those that are sorted: memory that the caller lends, with nothing in it to be set.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Sortable {
+    corners: [u16; 3],
+    /// Whether it was moved before another one already.
+    moved: bool,
+    v: [ScreenVertex; 3],
+}
+
+impl Sortable {
+    /// Depth of the nearest and of the farthest vertex.
+    fn depths(&self) -> (u16, u16) {
+        let [a, b, c] = &self.v;
+        (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z))
+    }
+
+    /// Tests 2 and 3: whether they are apart from left to right, or from top to bottom.
+    fn is_beside(&self, other: &Self) -> bool {
+        let apart = |coordinate: fn(&ScreenVertex) -> i32| {
+            let range = |[a, b, c]: &[ScreenVertex; 3]| {
+                let (a, b, c) = (coordinate(a), coordinate(b), coordinate(c));
+                (a.min(b).min(c), a.max(b).max(c))
+            };
+            let ((low, high), (other_low, other_high)) = (range(&self.v), range(&other.v));
+            high <= other_low || other_high <= low
+        };
+        apart(|v| v.x) || apart(|v| v.y)
+    }
+
+    /// Tests 4 and 5: whether all of it is on one side of the other's plane, the far side or the near one, or on the plane.
+    ///
+    /// # Format
+    /// 24.8 is cut to 20.4, differences to 21 bits, those of depth 17: components of the normal below 2³⁹, 2³⁹ and 2⁴³, sums of
+    /// products below 2⁶³. What may come from cutting and from the rounding of depth counts as on the plane.
+    fn is_beyond(&self, plane: &Self, far: bool) -> bool {
+        let [a, b, c] = &plane.v;
+        let to = |v: &ScreenVertex| ((v.x >> 4) - (a.x >> 4), (v.y >> 4) - (a.y >> 4), i32::from(v.z) - i32::from(a.z));
+        let minor = |a: i32, b: i32, c: i32, d: i32| i64::from(a) * i64::from(b) - i64::from(c) * i64::from(d);
+        let ((bx, by, bz), (cx, cy, cz)) = (to(b), to(c));
+        let (mut nx, mut ny, mut nz) = (minor(by, cz, bz, cy), minor(bz, cx, bx, cz), minor(bx, cy, by, cx));
+        // The normal points away from the eye.
+        if (nz < 0) == far {
+            (nx, ny, nz) = (-nx, -ny, -nz);
+        }
+        let slack = nx.abs() + ny.abs() + 2 * nz.abs();
+        self.v.iter().all(|v| {
+            let (x, y, z) = to(v);
+            nx * i64::from(x) + ny * i64::from(y) + nz * i64::from(z) >= -slack
+        })
+    }
+
+    /// Whether it may be drawn before the other one, by any of the tests.
+    fn is_behind(&self, other: &Self) -> bool {
+        self.is_beside(other) || self.is_beyond(other, true) || other.is_beyond(self, false)
+    }
+}
+
+/// Why triangles could not be sorted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum SortError {
+    /// There are more triangles than lent places: how many places there are, and how many it takes.
+    TooShort(usize, usize),
+    /// There are fewer indices than three a triangle: how many there are, and how many it takes.
+    IndicesTooShort(usize, usize),
+    /// The mesh has normals of faces, which would stay in their old order.
+    FaceNormals,
+}
+
+impl fmt::Display for SortError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::TooShort(has, needs) => write!(f, "{has} places to sort {needs} triangles"),
+            Self::IndicesTooShort(has, needs) => write!(f, "room for {has} indices, {needs} are needed"),
+            Self::FaceNormals => f.write_str("a mesh with normals of faces cannot be sorted"),
+        }
+    }
+}
+
+impl core::error::Error for SortError {}
+
+/// What sorting came to.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub struct Order {
+    /// Indices written, three a triangle, back to front.
+    pub indices: usize,
+    /// Pairs that no order is right for: triangles through one another, or each covering the next one in a ring.
+    pub unresolved: u32,
+}
+
+/// Sorts a mesh's triangles from back to front, and leaves their corners in `indices`: for a mesh with
+/// [`Topology::Triangles`](crate::mesh::Topology::Triangles) and otherwise the same data, to be drawn without depth
+/// ([`DepthState::OFF`](crate::span::DepthState::OFF)).
+///
+/// Triangles with a vertex that is not on the screen or near it are left where their other vertices put them; those with none
+/// come first.
+///
+/// Worst of all, every pair is compared: some 100 triangles are what it is for.
+///
+/// # Errors
+/// When a slice is too short, or the mesh has normals of faces.
+pub fn painters_order(
+    mesh: &Mesh<'_>,
+    mvp: &Projective,
+    viewport: &Viewport,
+    memory: &mut [Sortable],
+    indices: &mut [u16],
+) -> Result<Order, SortError> {
+    if mesh.data().face_normals.is_some() {
+        return Err(SortError::FaceNormals);
+    }
+    let count = mesh.triangle_count();
+    let (places, room) = (memory.len(), indices.len());
+    let Some(triangles) = memory.get_mut(..count) else { return Err(SortError::TooShort(places, count)) };
+    if room / 3 < count {
+        return Err(SortError::IndicesTooShort(room, 3 * count));
+    }
+    let transform = Transform::new(mvp, viewport, mesh, false);
+    for (number, triangle) in triangles.iter_mut().enumerate() {
+        let corners = mesh.triangle(number).unwrap_or_default();
+        let mut seen = None;
+        let mut v = corners.map(|k| match transform.place(&mesh.data().positions, usize::from(k)) {
+            Placed::Screen(vertex) => {
+                seen = Some(vertex);
+                Some(vertex)
+            }
+            Placed::Outside(_) => None,
+        });
+        let instead = seen.unwrap_or(ScreenVertex::new(0, 0, u16::MAX));
+        v.iter_mut().for_each(|v| *v = Some(v.unwrap_or(instead)));
+        *triangle = Sortable { corners, moved: false, v: v.map(Option::unwrap_or_default) };
+    }
+    far_to_near(triangles, |triangle| i32::from(triangle.depths().1));
+    let mut order = Order { indices: 3 * count, unresolved: 0 };
+    for next in 0..count {
+        order.unresolved = order.unresolved.wrapping_add(settle(triangles, next));
+    }
+    for (triangle, indices) in triangles.iter().zip(indices.chunks_exact_mut(3)) {
+        if let [a, b, c] = indices {
+            [*a, *b, *c] = triangle.corners;
+        }
+    }
+    Ok(order)
+}
+
+/// Finds the triangle that is to be drawn next, and puts it in its place; pairs that stay wrong are counted.
+fn settle(triangles: &mut [Sortable], next: usize) -> u32 {
+    // Each triangle is moved once at most, so this ends.
+    'again: loop {
+        let Some(first) = triangles.get(next).copied() else { return 0 };
+        let mut unresolved = 0;
+        for (k, other) in triangles.iter().enumerate().skip(next + 1) {
+            // Test 1: the rest is all nearer than this one.
+            if other.depths().1 <= first.depths().0 && !other.moved {
+                break;
+            }
+            if first.is_behind(other) {
+                continue;
+            }
+            if other.moved || !other.is_behind(&first) {
+                unresolved += 1;
+                continue;
+            }
+            for place in (next + 1..=k).rev() {
+                swap(triangles, place - 1, place);
+            }
+            if let Some(moved) = triangles.get_mut(next) {
+                moved.moved = true;
+            }
+            continue 'again;
+        }
+        return unresolved;
+    }
+}

@@ -1,0 +1,321 @@
+//! Varyings: what is interpolated over a triangle, linearly on the screen or, perspective-correct, linearly in space.
+//!
+//! ```text
+//! linear on the screen:     v = Σ bᵢ vᵢ                          bᵢ: a pixel's barycentric coordinates on the screen
+//! linear in space:          v = Σ bᵢ vᵢ/wᵢ  /  Σ bᵢ/wᵢ
+//! ```
+//! Plain arrays are interpolated the first way. [`Perspective`] divides a part of itself; what it takes to do so is kept
+//! in its [`Correction`], which for arrays is nothing at all.
+
+use core::fmt::Debug;
+
+/// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes, or
+/// [`Perspective`].
+///
+/// Values may differ by less than 2³¹ over the triangle; those that are linear on the screen are within 2¹³ of their exact
+/// value (and 2 for each pixel of a small triangle), so give what has to be smooth some 16 fractional bits.
+pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
+    /// How many.
+    const LEN: usize;
+    /// All zero.
+    const ZERO: Self;
+    /// How many, from the first, are perspective-correct. If any, the last one is not the shader's: the pipeline keeps
+    /// 1 / w there.
+    const PERSPECTIVE: usize = 0;
+    /// What the fragment stage must know of a triangle to correct them.
+    type Correction: Correction;
+
+    /// Adds `change`, modulo 2³².
+    #[inline]
+    fn step(&mut self, change: &Self) {
+        for (value, change) in self.as_mut().iter_mut().zip(change.as_ref()) {
+            *value = value.wrapping_add(*change);
+        }
+    }
+
+    /// Adds `pixels` times `change`, modulo 2³².
+    #[inline]
+    fn advance(&mut self, change: &Self, pixels: i32) {
+        for (value, change) in self.as_mut().iter_mut().zip(change.as_ref()) {
+            *value = value.wrapping_add(change.wrapping_mul(pixels));
+        }
+    }
+
+    /// Puts 1 / w, as [`inverse_w`](crate::vertex::inverse_w) gives it, into its place.
+    #[inline]
+    fn set_inverse_w(&mut self, inverse_w: u32) {
+        if let (true, [.., last]) = (Self::PERSPECTIVE > 0, self.as_mut()) {
+            *last = inverse_w as i32;
+        }
+    }
+}
+
+impl<const N: usize> Varyings for [i32; N] {
+    const LEN: usize = N;
+    const ZERO: Self = [0; N];
+    type Correction = ();
+
+    #[inline(always)]
+    fn step(&mut self, change: &Self) {
+        step(self, change);
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, change: &Self, pixels: i32) {
+        advance(self, change, pixels);
+    }
+}
+
+/// The most values that are kept in registers. More of them are changed where they are, by functions of their own: the loops
+/// around would otherwise hold copies of them, and of their changes, on the stack.
+pub(crate) const FEW: usize = 3;
+
+/// Adds `changes`, modulo 2³².
+#[inline(always)]
+fn step<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
+    if N > FEW { step_apart(values, changes) } else { advance_here(values, changes, 1) }
+}
+
+/// Adds `pixels` times `changes`, modulo 2³².
+#[inline(always)]
+fn advance<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
+    if N > FEW { advance_apart(values, changes, pixels) } else { advance_here(values, changes, pixels) }
+}
+
+#[inline(never)]
+fn step_apart<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
+    advance_here(values, changes, 1);
+}
+
+#[inline(never)]
+fn advance_apart<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
+    advance_here(values, changes, pixels);
+}
+
+/// Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+#[inline(always)]
+fn advance_here<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
+    let (values, changes) = (values.as_mut_slice(), changes.as_slice());
+    if !matches!(N, 1..=8) {
+        for (value, change) in values.iter_mut().zip(changes) {
+            *value = value.wrapping_add(change.wrapping_mul(pixels));
+        }
+        return;
+    }
+    advance_one(values, changes, pixels, 0);
+    advance_one(values, changes, pixels, 1);
+    advance_one(values, changes, pixels, 2);
+    advance_one(values, changes, pixels, 3);
+    advance_one(values, changes, pixels, 4);
+    advance_one(values, changes, pixels, 5);
+    advance_one(values, changes, pixels, 6);
+    advance_one(values, changes, pixels, 7);
+}
+
+/// Advances a value, if there are so many.
+#[inline(always)]
+fn advance_one(values: &mut [i32], changes: &[i32], pixels: i32, k: usize) {
+    if let (Some(value), Some(change)) = (values.get_mut(k), changes.get(k)) {
+        *value = value.wrapping_add(change.wrapping_mul(pixels));
+    }
+}
+
+/// Varyings of which the first `P` are perspective-correct, and those after them linear on the screen; `N` is one more than
+/// all of them, as the pipeline keeps 1 / w in the last place.
+///
+/// Perspective-correct values may differ by less than 2²⁸ over a triangle. They are within 2⁻¹² of the largest difference
+/// (and half a unit) of the exact value; the sub-span mode adds what [`Shader::STEP`](crate::span::Shader::STEP) says.
+///
+/// ```
+/// use zstrip::vertex::Perspective;
+/// // Two texture coordinates, and a brightness that is linear on the screen.
+/// let varyings = Perspective::<2, 4>::new([1 << 16, 2 << 16], [255 << 16]);
+/// assert_eq!(varyings.corrected(), [1 << 16, 2 << 16]);
+/// assert_eq!(varyings.linear(), [255 << 16]);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Perspective<const P: usize, const N: usize>([i32; N]);
+
+impl<const P: usize, const N: usize> Perspective<P, N> {
+    /// From the perspective-correct and the linear ones.
+    #[inline]
+    pub const fn new<const L: usize>(corrected: [i32; P], linear: [i32; L]) -> Self {
+        const { assert!(P > 0 && P + L + 1 == N, "N is one more than all varyings, for 1 / w") };
+        let mut all = [0; N];
+        let mut k = 0;
+        while k < N {
+            if k < P {
+                all[k] = corrected[k];
+            } else if k < P + L {
+                all[k] = linear[k - P];
+            }
+            k += 1;
+        }
+        Self(all)
+    }
+
+    /// The perspective-correct ones.
+    #[inline]
+    pub fn corrected(&self) -> [i32; P] {
+        self.0.first_chunk().copied().unwrap_or([0; P])
+    }
+
+    /// Those that are linear on the screen.
+    #[inline]
+    pub fn linear(&self) -> &[i32] {
+        self.0.get(P..N - 1).unwrap_or_default()
+    }
+}
+
+impl<const P: usize, const N: usize> AsRef<[i32]> for Perspective<P, N> {
+    #[inline]
+    fn as_ref(&self) -> &[i32] {
+        &self.0
+    }
+}
+
+impl<const P: usize, const N: usize> AsMut<[i32]> for Perspective<P, N> {
+    #[inline]
+    fn as_mut(&mut self) -> &mut [i32] {
+        &mut self.0
+    }
+}
+
+impl<const P: usize, const N: usize> Varyings for Perspective<P, N> {
+    #[inline(always)]
+    fn step(&mut self, change: &Self) {
+        step(&mut self.0, &change.0);
+    }
+
+    #[inline(always)]
+    fn advance(&mut self, change: &Self, pixels: i32) {
+        advance(&mut self.0, &change.0, pixels);
+    }
+
+    const LEN: usize = N;
+    const ZERO: Self = Self([0; N]);
+    const PERSPECTIVE: usize = P;
+    type Correction = Lanes<P>;
+}
+
+/// What is known of a triangle's perspective, once a triangle.
+pub trait Correction: Copy + Debug {
+    /// Of a triangle without perspective.
+    const NONE: Self;
+
+    /// How much there is to correct.
+    fn class(&self) -> PerspectiveClass;
+
+    /// 1 / w, and what belongs to each perspective-correct varying.
+    fn lanes(&mut self) -> Option<(&mut PerspectiveClass, &mut WidePlane, &mut [Lane])>;
+
+    /// What belongs to each perspective-correct varying.
+    fn varyings(&self) -> &[Lane];
+
+    /// 1 / w, where it is [`Wide`](PerspectiveClass::Wide).
+    fn wide_w(&self) -> WidePlane;
+}
+
+impl Correction for () {
+    const NONE: Self = ();
+
+    #[inline(always)]
+    fn class(&self) -> PerspectiveClass {
+        PerspectiveClass::Affine
+    }
+
+    #[inline(always)]
+    fn lanes(&mut self) -> Option<(&mut PerspectiveClass, &mut WidePlane, &mut [Lane])> {
+        None
+    }
+
+    #[inline(always)]
+    fn varyings(&self) -> &[Lane] {
+        &[]
+    }
+
+    #[inline(always)]
+    fn wide_w(&self) -> WidePlane {
+        WidePlane::ZERO
+    }
+}
+
+/// How much perspective there is in a triangle.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum PerspectiveClass {
+    /// So little that varyings are linear on the screen.
+    #[default]
+    Affine,
+    /// So much that they have to be divided, from planes in 32 bits.
+    Narrow,
+    /// Far more; from planes in 64 bits.
+    Wide,
+}
+
+/// A plane with 32 fractional bits more than others have, modulo 2⁶⁴: value at the screen's corner and changes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct WidePlane {
+    /// The value at the pixel in the screen's top left corner.
+    pub base: i64,
+    /// Change from one pixel to the next on the right.
+    pub dx: i64,
+    /// Change from one row to the next.
+    pub dy: i64,
+}
+
+impl WidePlane {
+    /// Zero everywhere.
+    pub const ZERO: Self = Self { base: 0, dx: 0, dy: 0 };
+
+    /// The value at a pixel.
+    pub(crate) const fn at(&self, (x, y): (i32, i32)) -> i64 {
+        self.base.wrapping_add(self.dx.wrapping_mul(x as i64)).wrapping_add(self.dy.wrapping_mul(y as i64))
+    }
+}
+
+/// What belongs to a perspective-correct varying: it is `base` + (h >> `shift`), h being interpolated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lane {
+    /// The value at the first vertex.
+    pub base: i32,
+    /// By how much differences from it are scaled up, so that the largest is in 2²⁷..2²⁸.
+    pub shift: u32,
+    /// h / w, where it is [`Wide`](PerspectiveClass::Wide).
+    pub plane: WidePlane,
+}
+
+/// The [`Correction`] of `P` varyings.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Lanes<const P: usize> {
+    class: PerspectiveClass,
+    wide_w: WidePlane,
+    varyings: [Lane; P],
+}
+
+impl<const P: usize> Correction for Lanes<P> {
+    const NONE: Self = Self {
+        class: PerspectiveClass::Affine,
+        wide_w: WidePlane::ZERO,
+        varyings: [Lane { base: 0, shift: 0, plane: WidePlane::ZERO }; P],
+    };
+
+    #[inline]
+    fn class(&self) -> PerspectiveClass {
+        self.class
+    }
+
+    #[inline]
+    fn lanes(&mut self) -> Option<(&mut PerspectiveClass, &mut WidePlane, &mut [Lane])> {
+        Some((&mut self.class, &mut self.wide_w, &mut self.varyings))
+    }
+
+    #[inline]
+    fn varyings(&self) -> &[Lane] {
+        &self.varyings
+    }
+
+    #[inline]
+    fn wide_w(&self) -> WidePlane {
+        self.wide_w
+    }
+}
