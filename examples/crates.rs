@@ -11,7 +11,7 @@ use scenes::textured::{Look, crates};
 use zstrip::Scene;
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 const LOOKS: [Look; 4] = [
@@ -31,7 +31,7 @@ impl Demo for Crates {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["bilinear", "nearest", "one-level", "pixels"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
         crates(scene, turn, LOOKS[mode]);
     }
 }

@@ -10,7 +10,7 @@ mod scenes;
 use host::program::{Demo, show};
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 struct Dashboard;
@@ -21,7 +21,7 @@ impl Demo<false> for Dashboard {
     const ABOUT: &'static str = "Instruments drawn with embedded-graphics, strip by strip and without a depth buffer.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, false>>, turn: Angle, _mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, false>>, turn: Angle16, _mode: usize) {
         scenes::dashboard::draw(scene, turn);
     }
 }

@@ -11,7 +11,7 @@ use scenes::light::{Mist, fog};
 use zstrip::Scene;
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 struct Fog;
@@ -24,7 +24,7 @@ impl Demo for Fog {
     const RECORDS: usize = 64 * 1024;
     const MODES: &'static [&'static str] = &["squared", "exponential", "linear"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
         fog(scene, turn, [Mist::Squared, Mist::Exponential, Mist::Linear][mode]);
     }
 }

@@ -21,7 +21,7 @@ use core::convert::Infallible;
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332};
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565};
 use zstrip::frame::{Buffers, Renderer};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::{Packer, Rows, StripPixels};
 
 #[cfg(target_os = "none")]
@@ -68,7 +68,7 @@ mod counting {
         let mut packer = Packer::<F>::new(SCREEN, renderer.strip_rows(), dither, packed).expect("strips fit");
         let mut frame = renderer.begin(Gray8::new(99));
         while let Some(strip) =
-            frame.next_strip(|scene| scenes::torus_gouraud(scene, Angle(0))).expect("the same scene")
+            frame.next_strip(|scene| scenes::torus_gouraud(scene, Angle16(0))).expect("the same scene")
         {
             count(name, || {
                 black_box(packer.pack(&strip));
@@ -161,7 +161,7 @@ mod sheet {
             Ok::<(), Infallible>(())
         };
         renderer
-            .frame_to(sink, P::to_color(P::pack([24, 28, 24])), |scene| scenes::room(scene, Angle(0)))
+            .frame_to(sink, P::to_color(P::pack([24, 28, 24])), |scene| scenes::room(scene, Angle16(0)))
             .expect("a frame");
         picture
     }
@@ -184,7 +184,7 @@ mod sheet {
             }
             Ok::<(), Infallible>(())
         };
-        renderer.frame_to(sink, Gray8::new(26), |scene| scenes::room(scene, Angle(0))).expect("a frame");
+        renderer.frame_to(sink, Gray8::new(26), |scene| scenes::room(scene, Angle16(0))).expect("a frame");
         picture
     }
 

@@ -2,7 +2,7 @@
 use std::io::Write;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
 use zstrip::light::Light;
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Flat;
 use zstrip::target::StripPixels;
@@ -22,7 +22,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (color, depth, records) = (&mut [[0; 3]; 320 * 16], &mut [0; 320 * 16], &mut [0; 256]);
     let mut renderer = Renderer::<Rgb888>::new((320, 240), Buffers { color, depth, records })?;
 
-    let camera = Projective::perspective(Angle::from_degrees(45), (320, 240), Scalar::ONE, Scalar::from_num(20))?;
+    let camera = Projective::perspective(Angle16::from_degrees(45), (320, 240), Scalar::ONE, Scalar::from_num(20))?;
     let view = Affine::look_at(Vec3::from_ints(2, 3, 4), Vec3::ZERO, Vec3::Y)?;
     let light = Light::new(Vec3::from_ints(1, 3, 2), Rgb888::CSS_DARK_GRAY, Rgb888::CSS_DIM_GRAY);
 

@@ -11,15 +11,15 @@ use minifb::Key;
 use std::process::ExitCode;
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 /// The aircraft's attitude: what is steered, and what the wind adds.
 #[derive(Default)]
 struct Horizon {
     steered: (i32, i32),
-    pitch: Angle,
-    roll: Angle,
+    pitch: Angle16,
+    roll: Angle16,
 }
 
 impl Demo for Horizon {
@@ -44,15 +44,15 @@ impl Demo for Horizon {
 
     fn prepare(&mut self, frame: u32, _: (u16, u16)) {
         let sway = |speed: u32, degrees: i32| {
-            let sine = Angle((frame.wrapping_mul(speed)) as u16).sin().to_bits();
+            let sine = Angle16((frame.wrapping_mul(speed)) as u16).sin().to_bits();
             ((i64::from(sine) * i64::from(degrees * 182)) >> 16) as i32
         };
-        self.pitch = Angle((self.steered.0 + sway(160, 9)) as u16);
-        self.roll = Angle((self.steered.1 + sway(97, 24) + sway(301, 4)) as u16);
+        self.pitch = Angle16((self.steered.0 + sway(160, 9)) as u16);
+        self.roll = Angle16((self.steered.1 + sway(97, 24) + sway(301, 4)) as u16);
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle, mode: usize) {
-        let steered = (Angle(self.steered.0 as u16), Angle(self.steered.1 as u16));
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle16, mode: usize) {
+        let steered = (Angle16(self.steered.0 as u16), Angle16(self.steered.1 as u16));
         let (pitch, roll) = if mode == 0 { (self.pitch, self.roll) } else { steered };
         scenes::horizon::horizon(scene, pitch, roll);
     }

@@ -10,7 +10,7 @@ mod scenes;
 use host::program::{Demo, show};
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 struct Labels;
@@ -21,7 +21,7 @@ impl Demo for Labels {
     const ABOUT: &'static str = "A torus with labels in its space, hidden by what is in front of them.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, _mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle16, _mode: usize) {
         scenes::labels::draw(scene, turn);
     }
 }

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb888, RgbColor};
 use zstrip::frame::{Buffers, RamBudget, Renderer};
-use zstrip::math::{Affine, Angle, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Scalar, Vec3};
 use zstrip::shader::Gouraud;
 use zstrip::target::{Packer, Pages, StripPixels};
 use zstrip::{Framebuffer, Scene};
@@ -97,7 +97,7 @@ fn frame(settings: &Settings, number: u32) -> Result<Vec<u8>, Box<dyn Error>> {
         sent.extend_from_slice(packer.pack(strip));
         Ok::<(), Infallible>(())
     };
-    let turn = Angle(number.wrapping_mul(128) as u16);
+    let turn = Angle16(number.wrapping_mul(128) as u16);
     renderer.frame_to(to_panel, Gray8::new(0), |scene| match settings.scene {
         0 => torus(scene, turn),
         _ => scenes::room(scene, turn),
@@ -106,7 +106,7 @@ fn frame(settings: &Settings, number: u32) -> Result<Vec<u8>, Box<dyn Error>> {
 }
 
 /// The torus nearer and in white, as a panel without greys wants it.
-fn torus<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn torus<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let nearer = Affine::translation(Vec3::from_milli(0, 0, 500)) * scenes::torus_model(turn);
     let mvp = scenes::camera(scene.screen(), Scalar::from_bits(1 << 15), Scalar::from_bits(12 << 16)) * nearer;
     scene.draw(&scenes::torus::MESH, &mvp, &Gouraud::new(scenes::LIGHT.to_object(&nearer), Rgb888::WHITE));

@@ -14,7 +14,7 @@ use core::convert::Infallible;
 use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray4, Gray8};
 use zstrip::frame::{Buffers, Renderer};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::{Packer, Rows, StripPixels};
 
 const WIDTH: usize = 128;
@@ -29,7 +29,7 @@ const RECORDS: usize = 8 * 1024;
 /// Draws frame number `frame` and hands over each strip in the panel's format: two pixels a byte, dithered.
 fn draw(frame: u16, buffers: &mut Memory, mut send: impl FnMut(usize, &[u8])) {
     const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
-    let turn = Angle(frame * (u16::MAX / FRAMES));
+    let turn = Angle16(frame * (u16::MAX / FRAMES));
     let Memory { color, depth, records, packed } = buffers;
     let mut renderer = Renderer::<Gray8>::new(SCREEN, Buffers { color, depth, records }).expect("rows fit");
     let rows = renderer.strip_rows();

@@ -11,7 +11,7 @@ use scenes::light::{Shading, phong};
 use zstrip::Scene;
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 const SHADINGS: [Shading; 5] =
@@ -26,7 +26,7 @@ impl Demo for Phong {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["fragment", "vertex", "face", "sun", "matcap"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
         phong(scene, turn, SHADINGS[mode]);
     }
 }

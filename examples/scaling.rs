@@ -16,7 +16,7 @@ mod ticks;
 /// Tori of radii 1 and 0.4 about the axis y, in as many quads as vertices.
 #[cfg(target_os = "none")]
 mod tori {
-    use zstrip::math::{Angle, Scalar, Vec3};
+    use zstrip::math::{Angle16, Scalar, Vec3};
     use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
 
     /// Parts of a torus, each a leaf of its hierarchy: eighths of the way around the axis.
@@ -33,7 +33,7 @@ mod tori {
 
     /// Sine and cosine of step `k` of `n`, 16.16.
     const fn unit(k: usize, n: usize) -> (i64, i64) {
-        let angle = Angle((k * 65_536 / n) as u16);
+        let angle = Angle16((k * 65_536 / n) as u16);
         (angle.sin().to_bits() as i64, angle.cos().to_bits() as i64)
     }
 
@@ -127,7 +127,7 @@ mod counting {
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
     use zstrip::frame::RamBudget;
     use zstrip::light::Light;
-    use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+    use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
     use zstrip::mesh::Mesh;
     use zstrip::shader::Gouraud;
     use zstrip::target::{Stats, StripPixels, records_len};
@@ -216,8 +216,8 @@ mod counting {
                 Ok::<(), Infallible>(())
             };
             let model = Affine::translation(Vec3::from_ints(0, 0, -3))
-                * Affine::rotation_y(Angle::from_degrees(29))
-                * Affine::rotation_x(Angle::from_degrees(40));
+                * Affine::rotation_y(Angle16::from_degrees(29))
+                * Affine::rotation_x(Angle16::from_degrees(40));
             let light = Light::from_channels(Vec3::from_ints(2, 4, 3), [215; 3], [40; 3]).to_object(&model);
             let (mvp, shader) = (*self.camera * model, Gouraud::new(light, Rgb888::new(255, 160, 64)));
             let start = ticks::now();
@@ -249,7 +249,7 @@ mod counting {
         for (width, height, heights) in SCREENS {
             let screen = (width, height);
             let far = Scalar::from_bits(16 << 16);
-            let camera = Projective::perspective(Angle::from_degrees(60), screen, Scalar::ONE, far);
+            let camera = Projective::perspective(Angle16::from_degrees(60), screen, Scalar::ONE, far);
             let camera = &camera.expect("near is before far");
             for rows in heights {
                 Shot { screen, camera, mesh: None }.report(memory, rows, "none", 0);

@@ -9,7 +9,7 @@ mod scenes;
 use host::program::{Demo, show};
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
@@ -68,10 +68,10 @@ impl Demo for Scatter {
     const BACKGROUND: Rgb565 = Rgb565::new(2, 5, 4);
 
     fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
-        let turn = Angle(frame.wrapping_mul(64) as u16) + Angle::from_degrees(32);
-        let camera = Projective::perspective(Angle::from_degrees(40), screen, Scalar::ONE, Scalar::from_num(10));
+        let turn = Angle16(frame.wrapping_mul(64) as u16) + Angle16::from_degrees(32);
+        let camera = Projective::perspective(Angle16::from_degrees(40), screen, Scalar::ONE, Scalar::from_num(10));
         let view = Affine::translation(Vec3::from_milli(0, 130, -5000))
-            * Affine::rotation_x(Angle::from_degrees(24))
+            * Affine::rotation_x(Angle16::from_degrees(24))
             * Affine::rotation_y(turn);
         self.mvp = camera.unwrap_or(Projective::IDENTITY) * view;
         // The eye is at +z before the turn: the walls at the back are those on its other side.
@@ -96,7 +96,7 @@ impl Demo for Scatter {
         axes.extend([at(-x, -1000, z), at(-x, 1000, z)]);
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle16, mode: usize) {
         let pairs = |ends| Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(ends)));
         let (Ok(grid), Ok(axes)) = (pairs(&self.grid), pairs(&self.axes)) else { return };
         let behind = State { depth: DepthState { compare: Compare::Always, write: false }, ..State::DEFAULT };

@@ -16,7 +16,7 @@ use semihosting::println;
 use scenes::wires;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::frame::{Buffers, Renderer};
-use zstrip::math::{Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, MeshData, Positions};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::target::Strip;
@@ -54,7 +54,7 @@ impl Ends {
             colors: [[255; 3]; 2 * LINES],
         };
         for k in 0..LINES {
-            let angle = Angle((k * 65_536 / LINES) as u16);
+            let angle = Angle16((k * 65_536 / LINES) as u16);
             let center = ((k % CELLS.0 * 40 + 20) as i32 * 256, (k / CELLS.0 * 40 + 20) as i32 * 256);
             let half = ((angle.cos().to_bits() * length) >> 9, (angle.sin().to_bits() * length) >> 9);
             for (end, sign) in [(0, -1), (1, 1)] {
@@ -74,7 +74,7 @@ impl Ends {
         let positions = Positions::Quantized { points: &self.space, scale: Scalar::ONE, offset: Vec3::ZERO };
         let data = MeshData { colors: Some(&self.colors), ..MeshData::new(positions) };
         let camera = scenes::camera((WIDTH as u16, HEIGHT as u16), Scalar::ONE, Scalar::from_bits(12 << 16));
-        let torus = camera * scenes::torus_model(Angle(5000));
+        let torus = camera * scenes::torus_model(Angle16(5000));
         Some(Input { screen: &self.screen, lines: Lines::new(Joined::Pairs, data).ok()?, torus })
     }
 }

@@ -11,7 +11,7 @@ use host::program::{Demo, show};
 use scenes::SCENES;
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 /// The scenes' names.
@@ -36,7 +36,7 @@ impl Demo for Torus {
     /// Gouraud shaded.
     const FIRST: usize = 1;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle16, mode: usize) {
         (SCENES[mode].draw)(scene, turn);
     }
 }

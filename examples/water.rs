@@ -11,7 +11,7 @@ use scenes::water::water;
 use zstrip::Scene;
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::Strip;
 
 struct Water;
@@ -23,7 +23,7 @@ impl Demo for Water {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["breeze", "waves", "gale"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
         water(scene, turn, [1, 2, 3][mode]);
     }
 }

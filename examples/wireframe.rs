@@ -11,7 +11,7 @@ use scenes::wires::BEHIND_LINES;
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::light::Light;
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
 use zstrip::shader::{DepthOnly, Flat};
 use zstrip::span::{Compare, DepthState};
@@ -56,7 +56,7 @@ impl Part {
 
     /// A tube along y, with a ring on top of it: from `low` to `high`, of two radii.
     fn tube(&mut self, (x, z): (i32, i32), (low, high): (i32, i32), (inner, outer): (i32, i32)) {
-        let angle = |k: usize| Angle((k % ROUND * 65_536 / ROUND) as u16);
+        let angle = |k: usize| Angle16((k % ROUND * 65_536 / ROUND) as u16);
         let on = |c: Scalar, r: i32| ((i64::from(c.to_bits()) * i64::from(r)) >> 16) as i32;
         let mut ring = |y: i32, r: i32| -> Vec<u16> {
             (0..ROUND).map(|k| self.point(x + on(angle(k).cos(), r), y, z - on(angle(k).sin(), r))).collect()
@@ -71,7 +71,7 @@ impl Part {
             self.sharp.extend([&high_out, &high_in, &low_out].map(|ring| [ring[k], ring[next]]));
             // The middles of the quads to either side of edge k.
             let normal = |quad: usize, sign: i32| {
-                let half = Angle((32_768 / ROUND) as u16);
+                let half = Angle16((32_768 / ROUND) as u16);
                 let middle = angle(quad) + half;
                 Vec3::new(middle.cos(), Scalar::ZERO, -middle.sin()) * Scalar::from_num(sign)
             };
@@ -126,11 +126,11 @@ impl Demo for Wireframe {
     const BACKGROUND: Rgb565 = Rgb565::new(2, 8, 8);
 
     fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
-        let turn = Angle(frame.wrapping_mul(96) as u16) + Angle::from_degrees(-35);
+        let turn = Angle16(frame.wrapping_mul(96) as u16) + Angle16::from_degrees(-35);
         let model = Affine::translation(Vec3::from_milli(0, 150, -6000))
-            * Affine::rotation_x(Angle::from_degrees(28))
+            * Affine::rotation_x(Angle16::from_degrees(28))
             * Affine::rotation_y(turn);
-        let camera = Projective::perspective(Angle::from_degrees(32), screen, Scalar::ONE, Scalar::from_num(12));
+        let camera = Projective::perspective(Angle16::from_degrees(32), screen, Scalar::ONE, Scalar::from_num(12));
         self.mvp = camera.expect("a camera") * model;
         let light = Light::from_channels(Vec3::from_ints(2, 4, 3), [190, 200, 205], [50, 50, 55]);
         self.light = light.to_object(&model);
@@ -146,7 +146,7 @@ impl Demo for Wireframe {
         }
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle16, mode: usize) {
         let mesh = self.part.mesh();
         let edges = if mode == 3 { &self.all } else { &self.seen };
         let Ok(lines) = Lines::of_mesh(&mesh, edges) else { return };

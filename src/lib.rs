@@ -5,7 +5,7 @@
 //! use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors};
 //! use zstrip::shader::Flat;
 //! use zstrip::mesh::{Mesh, MeshData, Positions};
-//! use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+//! use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 //! use zstrip::color::Rgb565Be;
 //! use zstrip::{Buffers, Renderer};
 //!
@@ -17,8 +17,8 @@
 //! let (color, depth, records) = (&mut [0; 320 * 16], &mut [0; 320 * 16], &mut [0; 64]);
 //! let mut renderer = Renderer::<Rgb565Be>::new((320, 240), Buffers { color, depth, records })?;
 //!
-//! let camera = Projective::perspective(Angle::from_degrees(60), (320, 240), Scalar::ONE, Scalar::from_num(100))?;
-//! let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(Angle::from_degrees(15));
+//! let camera = Projective::perspective(Angle16::from_degrees(60), (320, 240), Scalar::ONE, Scalar::from_num(100))?;
+//! let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(Angle16::from_degrees(15));
 //!
 //! # let mut sent = 0;
 //! # let mut spi_write = |bytes: &[u8]| sent += bytes.len();
@@ -51,7 +51,7 @@
 //! | [`span`] | the [`Shader`](span::Shader) seam, the depth test, the loops over pixels |
 //! | [`shader`] | the ready-made shaders, ordinary users of that seam |
 //! | [`target`] | framebuffers, strips, sinks, packers, embedded-graphics targets, records |
-//! | `scene` | the one place that calls every stage, in order: [`Scene`] |
+//! | [`scene`] | the one place that calls every stage, in order: [`Scene`] |
 //! | [`frame`] | bands and strips, renderers, views, RAM budgets |
 //!
 //! A folder imports only from those above it in this table, and no two files import each other: `tests/floors.rs` checks both.
@@ -91,14 +91,24 @@ pub mod light;
 pub mod math;
 pub mod mesh;
 pub mod raster;
-mod scene;
+pub mod scene;
 pub mod shader;
 pub mod span;
 pub mod target;
 pub mod texture;
 pub mod vertex;
 
+#[doc(hidden)]
+pub mod internals;
+pub mod prelude;
+
+// The crates whose types stand in signatures.
+pub use bytemuck;
 pub use embedded_graphics_core;
+pub use fixed;
+#[cfg(feature = "micromath")]
+pub use micromath;
+
 pub use frame::{Buffers, Renderer};
 pub use scene::{Canvas, Cull, Dashed, Scene, ScreenPoint, Smooth, State, Stroke, Thick, Thin, Winding};
 pub use target::Framebuffer;

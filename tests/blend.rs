@@ -6,7 +6,7 @@ mod support;
 use support::{difference, strips, whole};
 use zstrip::color::{PixelFormat, Rgb565Be, Rgba8888};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{
     Add, AddAlpha, Alpha, AlphaTest, Blend, BlendMode, Flat, FogCurve, FogTable, Fogged, Gouraud, Multiply, Opacity,
@@ -290,7 +290,7 @@ fn fog_leaves_what_it_should_at_every_depth() {
 #[test]
 fn fog_mixes_colours_by_distance() {
     let (near, far) = (Scalar::ONE, Scalar::from_num(20));
-    let camera = Projective::perspective(Angle::from_degrees(60), SCREEN, near, far).expect("a camera");
+    let camera = Projective::perspective(Angle16::from_degrees(60), SCREEN, near, far).expect("a camera");
     let curve = FogCurve::Exponential { density: Scalar::from_num(0.2) };
     let table = FogTable::perspective(near, far, curve).expect("planes");
     let fog = Rgb888::new(180, 190, 200);
@@ -317,7 +317,7 @@ fn blended_pictures_do_not_depend_on_strips() {
     let table = table.expect("planes");
     let draw = |rows: usize, records: usize| {
         strips::<Rgb565>(SCREEN, rows, records, Rgb565::CSS_DARK_SLATE_BLUE, |scene| {
-            let turned = |angle: i32| Projective::from(Affine::rotation_z(Angle::from_degrees(angle)));
+            let turned = |angle: i32| Projective::from(Affine::rotation_z(Angle16::from_degrees(angle)));
             scene.draw_with(TEST, &SQUARE, &turned(10), &Fogged::new(Gouraud::colors_unlit(), &table, Rgb888::WHITE));
             scene.draw_with(TEST, &SQUARE, &turned(30), &Blend::new(Gouraud::colors_unlit(), Opacity(100)));
             scene.draw_with(TEST, &SQUARE, &turned(50), &Blend::new(Ramp([250, 20, 10]), AddAlpha));

@@ -7,7 +7,7 @@ use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{strips, vector};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Blend, Replace, ScreenDoor};
 use zstrip::span::{DepthState, Fragment, Shader};
@@ -63,7 +63,7 @@ impl<const CLIP: usize> Shader<Rgb565> for Cut<CLIP> {
 }
 
 fn camera() -> Projective {
-    let lens = Projective::perspective(Angle::from_degrees(60), SCREEN, Scalar::from_num(0.5), Scalar::from_num(50));
+    let lens = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::from_num(0.5), Scalar::from_num(50));
     lens.expect("a camera") * Affine::translation(Vec3::from_ints(0, 0, -3))
 }
 
@@ -71,7 +71,7 @@ fn camera() -> Projective {
 fn fan(rng: &mut Rng) -> [Vec3; 7] {
     let mut rim = [Vec3::ZERO; 7];
     for (k, corner) in rim.iter_mut().enumerate().skip(1) {
-        let turn = Angle::from_degrees(60 * k as i32);
+        let turn = Angle16::from_degrees(60 * k as i32);
         let toward = Affine::rotation_z(turn).transform_vector(Vec3::from_ints(2, 0, 0));
         *corner = toward + vector(rng, 2.0);
     }

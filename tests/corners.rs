@@ -11,7 +11,7 @@ use reference::subject::Subject;
 use std::cell::Cell;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, Renderer};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, Mesh, MeshData, MeshError, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
@@ -69,7 +69,7 @@ fn random_soups_have_exactly_the_right_pixels_and_depths() {
 
 #[test]
 fn clamped_meshes_are_not_culled_beyond_the_far_plane() {
-    let camera = Projective::perspective(Angle::from_degrees(60), (1, 1), Scalar::ONE, Scalar::from_num(100));
+    let camera = Projective::perspective(Angle16::from_degrees(60), (1, 1), Scalar::ONE, Scalar::from_num(100));
     let camera = camera.expect("a camera");
     // Twice: the bounds of a single square are not looked at.
     let squares = [SQUARE, SQUARE].concat();
@@ -96,7 +96,7 @@ fn spheres_that_do_not_fit_the_format_cull_nothing() {
     let ground = [ground, ground].concat();
     let mesh = Mesh::new(quad(&ground)).expect("a mesh");
     assert_eq!(mesh.bounds().sphere.radius, Scalar::MAX);
-    let camera = Projective::perspective(Angle::from_degrees(90), (1, 1), Scalar::ONE, Scalar::from_num(5000));
+    let camera = Projective::perspective(Angle16::from_degrees(90), (1, 1), Scalar::ONE, Scalar::from_num(5000));
     let (eye, target) = (Vec3::from_ints(28_000, 20, 28_000), Vec3::from_ints(29_000, 20, 28_000));
     let mvp = camera.expect("a camera") * Affine::look_at(eye, target, Vec3::Y).expect("a view");
     let (pixels, stats) = lit(|scene| scene.draw(&mesh, &mvp, &white()));
@@ -185,7 +185,7 @@ fn frame_is_over_after_its_scene_changed() {
             .next_strip(|scene| {
                 call += 1;
                 scene.draw(&square(), &Projective::IDENTITY, &white());
-                let turn = Angle(if call == 2 { 100 } else { 0 });
+                let turn = Angle16(if call == 2 { 100 } else { 0 });
                 scene.draw(&square(), &Projective::from(Affine::rotation_z(turn)), &white());
             })
             .map(|strip| strip.is_some())

@@ -8,7 +8,7 @@ mod support;
 use reference::rng::Rng;
 use support::{apply, difference, matrix, on_screen, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
 use zstrip::vertex::{Containment, Frustum, Viewport};
@@ -24,7 +24,7 @@ fn random_camera(rng: &mut Rng) -> (Projective, f64) {
         Projective::orthographic((-half, half), (-half, half), (near, end))
     } else {
         let size = (rng.between(1, 1024) as u16, rng.between(1, 1024) as u16);
-        Projective::perspective(Angle::from_degrees(rng.between(3, 170)), size, near, end)
+        Projective::perspective(Angle16::from_degrees(rng.between(3, 170)), size, near, end)
     };
     (lens.expect("a camera") * rigid(rng, far), far)
 }
@@ -309,10 +309,10 @@ fn hierarchy_draws_the_same_picture_and_culls_something() {
     let (mut culled, mut saved) = (0, 0);
     for (seed, records) in (0..24).flat_map(|seed| [(seed, 0), (seed, 5000)]) {
         let mut rng = Rng::new(seed);
-        let camera = Projective::perspective(Angle::from_degrees(50), (64, 48), Scalar::ONE, Scalar::from_num(60))
+        let camera = Projective::perspective(Angle16::from_degrees(50), (64, 48), Scalar::ONE, Scalar::from_num(60))
             .expect("a camera");
         let eye = Vec3::new(scalar(&mut rng, 20.0), scalar(&mut rng, 3.0), Scalar::ZERO);
-        let mvp = camera * Affine::rotation_y(Angle(rng.between(-6000, 6000) as u16)) * Affine::translation(-eye);
+        let mvp = camera * Affine::rotation_y(Angle16(rng.between(-6000, 6000) as u16)) * Affine::translation(-eye);
         let draw = |mesh| {
             strips::<Rgb565>((64, 48), 8, records, Rgb565::BLACK, |scene| {
                 scene.draw_with(state, mesh, &mvp, &Gouraud::colors_unlit())
@@ -339,7 +339,7 @@ fn hierarchy_of_many_leaves_draws_all_that_are_seen() {
         };
         (0..LEAVES).flat_map(corners).collect::<Vec<_>>()
     };
-    let camera = Projective::perspective(Angle::from_degrees(60), (64, 64), Scalar::ONE, Scalar::from_num(60))
+    let camera = Projective::perspective(Angle16::from_degrees(60), (64, 64), Scalar::ONE, Scalar::from_num(60))
         .expect("a camera");
     for (far, seen) in [(false, 100), (true, 34)] {
         let points = squares(far);
@@ -370,7 +370,7 @@ fn scenes_may_leave_out_what_is_not_visible() {
     let torus = &scenes::torus::MESH;
     let at = |x: i16, z: i16| Affine::translation(Vec3::from_ints(x, 0, z));
     let places = [at(0, -4), at(-40, -5), at(1, 4), at(3, -6), at(0, -80)];
-    let camera = Projective::perspective(Angle::from_degrees(60), (64, 48), Scalar::ONE, Scalar::from_num(50))
+    let camera = Projective::perspective(Angle16::from_degrees(60), (64, 48), Scalar::ONE, Scalar::from_num(50))
         .expect("a camera");
     let frame = |records, ask: bool| {
         let mut left_out = 0;
@@ -398,7 +398,7 @@ fn scenes_may_leave_out_what_is_not_visible() {
 /// Boxes as far out as coordinates go, of objects that are seen.
 #[test]
 fn far_corners_of_a_large_world_are_seen() {
-    let lens = Projective::perspective(Angle::from_degrees(60), (512, 512), Scalar::ONE, Scalar::from_num(1000));
+    let lens = Projective::perspective(Angle16::from_degrees(60), (512, 512), Scalar::ONE, Scalar::from_num(1000));
     let lens = lens.expect("a camera");
     let mut rng = Rng::new(8);
     for case in 0..300 {

@@ -12,7 +12,7 @@ use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::{FramebufferRenderer, RamBudget, Renderer};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, Mesh, Points};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{DepthState, Shader};
@@ -49,9 +49,9 @@ where
     let state = State { cull: Cull::None, depth, ..State::DEFAULT };
     let mvp = &Projective::IDENTITY;
     scene.draw_with(state, mesh, mvp, &Gouraud::colors_unlit());
-    let turned = Projective::from(Affine::rotation_z(Angle(9999)));
+    let turned = Projective::from(Affine::rotation_z(Angle16(9999)));
     scene.draw_with(state, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
-    let turned = Projective::from(Affine::rotation_z(Angle(40_000)));
+    let turned = Projective::from(Affine::rotation_z(Angle16(40_000)));
     scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
     // Lines, points and shapes on the screen.
     let data = *mesh.data();
@@ -129,15 +129,16 @@ where
     Flat: Shader<F::Format>,
 {
     let mvp = scenes::camera(SCREEN, Scalar::ONE, Scalar::ONE * 20)
-        * (Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_y(Angle(5000)));
+        * (Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_y(Angle16(5000)));
     scene.draw(&scenes::polygons::PILLAR, &mvp, &Flat::colors(scenes::LIGHT));
 }
 
 #[test]
 fn convex_body_needs_no_depth() {
     // Squares through one another do need depth.
-    let (deep, _) = strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle(9000)));
-    let flat = without_depth::<Rgb565>(50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle(9000)));
+    let (deep, _) =
+        strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle16(9000)));
+    let flat = without_depth::<Rgb565>(50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle16(9000)));
     assert_ne!(difference(&flat, &deep, SCREEN.0), None);
     let (deep, _) = strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| {
         pillar(s);

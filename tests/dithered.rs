@@ -9,7 +9,7 @@ use reference::rng::Rng;
 use support::{Soup, difference, strips, whole};
 use zstrip::color::{Bgr565Be, Ditherable, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Bgr565, Rgb565, Rgb888, RgbColor};
-use zstrip::math::{Angle, Projective, Scalar};
+use zstrip::math::{Angle16, Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::{Cull, State};
@@ -165,9 +165,9 @@ fn dithered_pictures_are_the_same_in_any_strips() {
             let background = scenes::BACKGROUND;
             let (picture, _) =
                 strips::<Dithered<Rgb565Be>>((320, 240), rows, records, background, |scene| match name {
-                    "torus_flat" => scenes::torus_flat(scene, Angle(999)),
-                    "torus_gouraud" => scenes::torus_gouraud(scene, Angle(999)),
-                    _ => scenes::room(scene, Angle(999)),
+                    "torus_flat" => scenes::torus_flat(scene, Angle16(999)),
+                    "torus_gouraud" => scenes::torus_gouraud(scene, Angle16(999)),
+                    _ => scenes::room(scene, Angle16(999)),
                 });
             picture
         };

@@ -11,7 +11,7 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use support::whole;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, Mesh, MeshData, Positions, Topology};
 use zstrip::raster::{Line, PixelRect};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
@@ -43,7 +43,7 @@ impl Shader<Rgb565> for Drawn<'_> {
     }
 }
 
-fn mvp(turn: Angle) -> Projective {
+fn mvp(turn: Angle16) -> Projective {
     scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12)) * scenes::torus_model(turn)
 }
 
@@ -85,7 +85,7 @@ fn visible_edges_have_no_gaps_and_hidden_ones_do_not_shine_through() {
     let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
     let screen = PixelRect { x: 0..i32::from(SCREEN.0), y: 0..i32::from(SCREEN.1) };
     let (mut visible, mut hidden, mut unsure) = (0, 0, 0);
-    for turn in [Angle(1234), Angle(20_000), Angle(50_000)] {
+    for turn in [Angle16(1234), Angle16(20_000), Angle16(50_000)] {
         let mvp = mvp(turn);
         let mut drawn = BTreeSet::new();
         let shader = Drawn(RefCell::new(&mut drawn));

@@ -15,7 +15,7 @@ use zstrip::embedded_graphics_core::geometry::{OriginDimensions, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, GrayColor, PixelColor, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, RamBudget, Renderer, RendererError};
-use zstrip::math::{Affine, Angle, ProjectionError, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, ProjectionError, Projective, Scalar, Vec3};
 use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, MeshError, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::Shader;
@@ -150,15 +150,15 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
 #[test]
 fn wrong_cameras_are_refused_with_the_offending_numbers() {
     let (one, two) = (Scalar::ONE, Scalar::from_num(2));
-    let right = Angle::from_degrees(90);
+    let right = Angle16::from_degrees(90);
     let perspective = |angle, aspect, near, far| told(Projective::perspective(angle, aspect, near, far));
     use ProjectionError::*;
     assert_eq!(perspective(right, (4, 3), Scalar::ZERO, one), NearNotPositive(0));
     assert_eq!(perspective(right, (4, 3), -one, one), NearNotPositive(-65_536));
     assert_eq!(perspective(right, (4, 3), two, one), NearNotBeforeFar(131_072, 65_536));
     assert_eq!(perspective(right, (4, 3), one, one), NearNotBeforeFar(65_536, 65_536));
-    assert_eq!(perspective(Angle(0), (4, 3), one, two), FieldOfView(Angle(0)));
-    assert_eq!(perspective(Angle(0x8000), (4, 3), one, two), FieldOfView(Angle(0x8000)));
+    assert_eq!(perspective(Angle16(0), (4, 3), one, two), FieldOfView(Angle16(0)));
+    assert_eq!(perspective(Angle16(0x8000), (4, 3), one, two), FieldOfView(Angle16(0x8000)));
     assert_eq!(perspective(right, (0, 3), one, two), Aspect(0, 3));
     assert_eq!(perspective(right, (4, 0), one, two), Aspect(4, 0));
     let box_of = |x, y, z| told(Projective::orthographic(x, y, z));
@@ -199,7 +199,7 @@ fn with_renderer<T>(records: usize, test: impl FnOnce(&mut Renderer<'_, Rgb565>)
 }
 
 /// The whole frame, from a renderer that has been used before.
-fn next_frame(renderer: &mut Renderer<'_, Rgb565>, turn: Angle) -> Vec<u16> {
+fn next_frame(renderer: &mut Renderer<'_, Rgb565>, turn: Angle16) -> Vec<u16> {
     let mut picture = Vec::new();
     let sink = |strip: &StripPixels<'_, Rgb565>| {
         picture.extend_from_slice(strip.pixels());
@@ -210,7 +210,7 @@ fn next_frame(renderer: &mut Renderer<'_, Rgb565>, turn: Angle) -> Vec<u16> {
     picture
 }
 
-fn first_frame(turn: Angle) -> Vec<u16> {
+fn first_frame(turn: Angle16) -> Vec<u16> {
     strips::<Rgb565>(SIZE, 48, 40_000, Rgb565::BLACK, |scene| scenes::room(scene, turn)).0
 }
 
@@ -233,11 +233,11 @@ fn failing_sink_ends_the_frame_and_the_next_one_is_right() {
     for (records, strips_left) in [0, 900, 30_000].into_iter().flat_map(|r| [0, 1, 3, 5].map(|s| (r, s))) {
         with_renderer(records, |renderer| {
             let sink = Failing { strips_left };
-            let failed = renderer.frame_to(sink, Rgb565::RED, |scene| scenes::room(scene, Angle(1000)));
+            let failed = renderer.frame_to(sink, Rgb565::RED, |scene| scenes::room(scene, Angle16(1000)));
             let error = failed.expect_err("the sink fails");
             assert_eq!(error, FrameError::Sink("the cable came off"));
             assert!(error.to_string().contains("the cable came off"));
-            let found = difference(&next_frame(renderer, Angle(9)), &first_frame(Angle(9)), 64);
+            let found = difference(&next_frame(renderer, Angle16(9)), &first_frame(Angle16(9)), 64);
             assert_eq!(found, None, "{records} records, after {strips_left} strips");
         });
     }
@@ -263,7 +263,7 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
             );
             assert_eq!(changed, Err(FrameError::SceneChanged(differs)), "{first} draws, then {later}");
             assert!(told(changed).to_string().contains(&differs.to_string()));
-            assert_eq!(difference(&next_frame(renderer, Angle(9)), &first_frame(Angle(9)), 64), None);
+            assert_eq!(difference(&next_frame(renderer, Angle16(9)), &first_frame(Angle16(9)), 64), None);
         });
     }
     // Another matrix, another state, another mesh.
@@ -278,7 +278,7 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
                     calls += 1;
                     let which = if calls < 3 { 3 } else { change };
                     scene.draw(&mesh, &Projective::IDENTITY, &shader);
-                    let turned = Projective::from(Affine::rotation_z(Angle(calls)));
+                    let turned = Projective::from(Affine::rotation_z(Angle16(calls)));
                     let state = zstrip::State {
                         cull: if which == 1 { zstrip::Cull::None } else { zstrip::Cull::Back },
                         ..zstrip::State::default()
@@ -288,7 +288,7 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
                 },
             );
             assert_eq!(changed, Err(FrameError::SceneChanged(1)), "change {change}");
-            assert_eq!(difference(&next_frame(renderer, Angle(9)), &first_frame(Angle(9)), 64), None);
+            assert_eq!(difference(&next_frame(renderer, Angle16(9)), &first_frame(Angle16(9)), 64), None);
         });
     }
 }
@@ -319,7 +319,7 @@ fn ram_of_a_frame_is_what_the_constants_say() {
     let handle = size_of_val(&renderer);
     let sink = |_: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(());
     let stats =
-        renderer.frame_to(sink, Rgb565::BLACK, |scene| scenes::torus_gouraud(scene, Angle(0))).expect("a frame");
+        renderer.frame_to(sink, Rgb565::BLACK, |scene| scenes::torus_gouraud(scene, Angle16(0))).expect("a frame");
     assert_eq!((stats.overflows, stats.direct_strips), (0, 0), "the records suffice: {stats:?}");
     println!(
         "320x240 in 16-row strips: colour {} + depth {} + records {} = {} bytes; renderer {handle} bytes; without records {}",

@@ -14,7 +14,7 @@ use reference::rng::Rng;
 use support::{Soup, angle, apply, difference, matrix, on_screen, rigid, scalar, strips, vector, whole};
 use zstrip::color::PixelFormat;
 use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
@@ -355,7 +355,7 @@ fn points_are_projected_to_where_vertices_would_be() {
     for seed in 0..600 {
         let mut rng = Rng::new(seed);
         let camera = Projective::perspective(
-            Angle::from_degrees(rng.between(20, 120)),
+            Angle16::from_degrees(rng.between(20, 120)),
             (rng.between(10, 300) as u16, rng.between(10, 300) as u16),
             Scalar::ONE,
             Scalar::ONE * 50,
@@ -405,7 +405,7 @@ fn points_are_projected_to_where_vertices_would_be() {
 #[test]
 fn points_have_the_depth_of_vertices_on_either_scale() {
     let camera =
-        Projective::perspective(Angle::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
+        Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -4));
     let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
     for depth_scale in [DepthScale::Perspective, DepthScale::Uniform { far: Scalar::ONE * 9 }] {
@@ -432,7 +432,7 @@ fn label_at_a_projected_point_is_hidden_by_what_is_in_front_of_the_point() {
     let square =
         Mesh::new(MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&SQUARE)) }).expect("a mesh");
     let camera =
-        Projective::perspective(Angle::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
+        Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -2));
     for (z, visible) in [(300, true), (-300, false)] {
         let point = Vec3::from_milli(-250, 0, z);

@@ -7,7 +7,7 @@ use reference::rng::Rng;
 use support::{strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::light::{DirectionalLight, Light, Lighting, Material, PointLight, Viewer};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Matcap, PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
 use zstrip::span::Shader;
@@ -154,7 +154,7 @@ fn sampled_normals_are_lit_as_in_double_precision() {
             let mut skipped = 0;
             for _ in 0..60 {
                 let model = Affine::translation(fixed(random_vector(&mut rng, 20.0)))
-                    * Affine::rotation(fixed(random_vector(&mut rng, 1.0)), Angle(word(&mut rng) as u16))
+                    * Affine::rotation(fixed(random_vector(&mut rng, 1.0)), Angle16(word(&mut rng) as u16))
                     * Affine::scale(Scalar::from_num(scale));
                 let corners = cube(random_vector(&mut rng, 5.0), 1.5);
                 let mesh = Mesh::new(MeshData::new(Positions::Exact(&corners))).expect("a mesh");
@@ -355,7 +355,7 @@ fn matcaps_show_the_texel_of_the_normal() {
             *texel = [(4 * x) as u8, (4 * y) as u8, 77];
         }
     }
-    let turn = Affine::rotation_z(Angle::from_degrees(30)) * Affine::scale(Scalar::from_num(0.01));
+    let turn = Affine::rotation_z(Angle16::from_degrees(30)) * Affine::scale(Scalar::from_num(0.01));
     let shader = Matcap::<Rgb888, 64>::new(&picture, &turn);
     let exact = |corners: [usize; 3], weights: V| {
         let n = interpolated(corners, weights, |k| apply(&turn, normals[k].map(|c| f64::from(c) / 163.84), 0.0));
@@ -413,7 +413,8 @@ fn two_sided_materials_light_their_backs() {
 fn lights_of_models_scaled_far_down_keep_their_direction() {
     for scale in [1.0, 0.1, 0.01, 0.002] {
         for degrees in (0..360).step_by(7) {
-            let turn = Affine::rotation_y(Angle::from_degrees(degrees)) * Affine::rotation_x(Angle::from_degrees(31));
+            let turn =
+                Affine::rotation_y(Angle16::from_degrees(degrees)) * Affine::rotation_x(Angle16::from_degrees(31));
             let model = turn * Affine::scale(Scalar::from_num(scale));
             let light = Light::new(Vec3::from_ints(4, 7, 6), Rgb888::WHITE, Rgb888::BLACK);
             let (small, exact) = (light.to_object(&model).on([255; 3]), light.to_object(&turn).on([255; 3]));
@@ -435,19 +436,24 @@ fn lit_pictures_do_not_depend_on_strips() {
     let lit = lighting().on(&material, &Affine::IDENTITY, mesh.bounds());
     let far = without_points(&lighting()).on(&material, &Affine::IDENTITY, mesh.bounds());
     // Cut by the side of a perspective camera's near plane too.
-    let camera = Projective::perspective(Angle::from_degrees(70), SCREEN, Scalar::from_num(0.6), Scalar::from_num(9));
+    let camera = Projective::perspective(Angle16::from_degrees(70), SCREEN, Scalar::from_num(0.6), Scalar::from_num(9));
     let mvp = camera.expect("a camera")
         * Affine::translation(Vec3::from_milli(0, 0, -900))
-        * Affine::rotation_y(Angle::from_degrees(50));
+        * Affine::rotation_y(Angle16::from_degrees(50));
     let texels: [[[u8; 3]; 2]; 2] = [[[10, 20, 30], [200, 20, 30]], [[10, 200, 30], [10, 20, 230]]];
     let draw = |rows: usize, records: usize| {
         strips::<Rgb565>(SCREEN, rows, records, Rgb565::BLACK, |scene| {
             scene.draw_with(BOTH, &mesh, &mvp, &Shaded::new(PerFace, lit));
-            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(3000))), &Shaded::new(PerVertex, lit));
-            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(6000))), &Shaded::new(PerFragment, far));
-            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(9000))), &Shaded::new(PerFragmentNear, lit));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(3000))), &Shaded::new(PerVertex, lit));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(6000))), &Shaded::new(PerFragment, far));
+            scene.draw_with(
+                BOTH,
+                &mesh,
+                &(mvp * Affine::rotation_x(Angle16(9000))),
+                &Shaded::new(PerFragmentNear, lit),
+            );
             let matcap = Matcap::<Rgb888, 2>::new(&texels, &Affine::IDENTITY);
-            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle(12_000))), &matcap);
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(12_000))), &matcap);
         })
         .0
     };

@@ -6,11 +6,11 @@ mod support;
 use reference::rng::Rng;
 use std::f64::consts::TAU;
 use support::{angle, apply, matrix, rigid, scalar, vector};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3, Wide};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3, Wide};
 
 const STEP: f64 = 1.0 / 65_536.0;
 
-fn radians(angle: Angle) -> f64 {
+fn radians(angle: Angle16) -> f64 {
     f64::from(angle.0) / 65_536.0 * TAU
 }
 
@@ -31,7 +31,7 @@ fn length(v: [f64; 3]) -> f64 {
 fn sine_and_cosine_are_right_at_all_angles() {
     let mut worst = 0_f64;
     for k in 0..=u16::MAX {
-        let a = Angle(k);
+        let a = Angle16(k);
         let (sin, cos) = (a.sin().to_num::<f64>(), a.cos().to_num::<f64>());
         worst = worst.max((sin - radians(a).sin()).abs()).max((cos - radians(a).cos()).abs());
         assert!(sin.abs() <= 1.0 && cos.abs() <= 1.0, "{a:?}");
@@ -42,7 +42,7 @@ fn sine_and_cosine_are_right_at_all_angles() {
     println!("worst sine or cosine is off by {:.3} · 2⁻¹⁶", worst / STEP);
     assert!(worst <= STEP, "{worst}");
     for (degrees, sin, cos) in [(0, 0, 1), (90, 1, 0), (180, 0, -1), (270, -1, 0), (-90, -1, 0), (450, 1, 0)] {
-        let a = Angle::from_degrees(degrees);
+        let a = Angle16::from_degrees(degrees);
         assert_eq!((a.sin(), a.cos()), (Scalar::from_num(sin), Scalar::from_num(cos)), "{degrees}°");
     }
 }
@@ -51,15 +51,15 @@ fn sine_and_cosine_are_right_at_all_angles() {
 fn angles_wrap_as_angles_do() {
     for degrees in -1000..1000 {
         let expected = (f64::from(degrees) / 360.0).rem_euclid(1.0) * 65_536.0;
-        let found = f64::from(Angle::from_degrees(degrees).0);
+        let found = f64::from(Angle16::from_degrees(degrees).0);
         let off = (found - expected).abs();
         assert!(off <= 0.5 || off >= 65_535.5, "{degrees}°: {found} for {expected}");
     }
-    assert_eq!(Angle(60_000) + Angle(10_000), Angle(4464));
-    assert_eq!(Angle(100) - Angle(200), Angle(65_436));
-    assert_eq!(-Angle(1), Angle(65_535));
-    Angle::from_degrees(i32::MIN);
-    Angle::from_degrees(i32::MAX);
+    assert_eq!(Angle16(60_000) + Angle16(10_000), Angle16(4464));
+    assert_eq!(Angle16(100) - Angle16(200), Angle16(65_436));
+    assert_eq!(-Angle16(1), Angle16(65_535));
+    Angle16::from_degrees(i32::MIN);
+    Angle16::from_degrees(i32::MAX);
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn rotations_are_orthonormal_and_go_the_right_way() {
     assert!(worst[0] <= 4.0 * STEP, "entries are within 2⁻¹⁴: {}", worst[0]);
     assert!(worst[1] <= 12.0 * STEP, "{}", worst[1]);
 
-    let quarter = Angle::from_degrees(90);
+    let quarter = Angle16::from_degrees(90);
     for (axis, from, to, named) in [
         (Vec3::X, Vec3::Y, Vec3::Z, Affine::rotation_x(quarter)),
         (Vec3::Y, Vec3::Z, Vec3::X, Affine::rotation_y(quarter)),
@@ -101,14 +101,14 @@ fn rotations_are_orthonormal_and_go_the_right_way() {
         assert_eq!(named.transform_vector(from), to);
         assert_eq!(Affine::rotation(axis, quarter).transform_vector(from), to);
     }
-    assert_eq!(Affine::rotation(Vec3::ZERO, Angle(77)), Affine::IDENTITY);
+    assert_eq!(Affine::rotation(Vec3::ZERO, Angle16(77)), Affine::IDENTITY);
     for k in (0..=u16::MAX).step_by(97) {
         for (axis, named) in [
-            (Vec3::X, Affine::rotation_x(Angle(k))),
-            (Vec3::Y, Affine::rotation_y(Angle(k))),
-            (Vec3::Z, Affine::rotation_z(Angle(k))),
+            (Vec3::X, Affine::rotation_x(Angle16(k))),
+            (Vec3::Y, Affine::rotation_y(Angle16(k))),
+            (Vec3::Z, Affine::rotation_z(Angle16(k))),
         ] {
-            let (a, b) = (named.to_rows(), Affine::rotation(axis, Angle(k)).to_rows());
+            let (a, b) = (named.to_rows(), Affine::rotation(axis, Angle16(k)).to_rows());
             let off = a.iter().flatten().zip(b.iter().flatten()).map(|(a, b)| (a - b).abs()).max();
             assert!(off <= Some(4), "angle {k} about {axis:?}: {a:?} {b:?}");
         }
@@ -185,7 +185,7 @@ fn perspective_maps_near_to_0_and_far_to_1() {
         let near = 0.01 + rng.unit() * 10.0;
         let far = near * (1.5 + rng.unit() * 2000.0);
         let (near, far) = (Scalar::from_num(near), Scalar::from_num(far.min(32_000.0)));
-        let fov = Angle(rng.between(400, 32_000) as u16);
+        let fov = Angle16(rng.between(400, 32_000) as u16);
         let (width, height) = (rng.between(1, 2000) as u16, rng.between(1, 2000) as u16);
         let m = matrix(&Projective::perspective(fov, (width, height), near, far).expect("a camera"));
         let (n, f) = (near.to_num::<f64>(), far.to_num::<f64>());
@@ -195,7 +195,7 @@ fn perspective_maps_near_to_0_and_far_to_1() {
             worst = worst.max((z / w - depth).abs() * n.min(1.0));
         }
         // The edge of the view at half the angle.
-        let tan = (radians(Angle(fov.0 / 2))).tan();
+        let tan = (radians(Angle16(fov.0 / 2))).tan();
         let aspect = f64::from(width) / f64::from(height);
         let [x, y, _, w] = apply(&m, [tan * aspect, tan, -1.0, 1.0]);
         assert!((x / w - 1.0).abs() < 1e-4 && (y / w - 1.0).abs() < 1e-4, "seed {seed}: ({x}, {y}) / {w}");
@@ -271,7 +271,7 @@ fn scales_and_saturation() {
 fn transforms_are_constants() {
     const NEAR: Scalar = Scalar::ONE;
     const FAR: Scalar = Scalar::from_bits(100 << 16);
-    const CAMERA: Projective = match Projective::perspective(Angle::from_degrees(60), (320, 240), NEAR, FAR) {
+    const CAMERA: Projective = match Projective::perspective(Angle16::from_degrees(60), (320, 240), NEAR, FAR) {
         Ok(camera) => camera,
         Err(_) => panic!("not a camera"),
     };
@@ -279,7 +279,8 @@ fn transforms_are_constants() {
         Ok(view) => view,
         Err(_) => panic!("not a view"),
     };
-    const MODEL: Affine = Affine::rotation(Vec3::from_ints(1, 1, 0), Angle(1000)).compose(&Affine::scale(Scalar::ONE));
+    const MODEL: Affine =
+        Affine::rotation(Vec3::from_ints(1, 1, 0), Angle16(1000)).compose(&Affine::scale(Scalar::ONE));
     const MVP: Projective = CAMERA.compose_affine(&VIEW).compose_affine(&MODEL.inverse_rigid());
     const LENGTH: Scalar = Vec3::from_ints(3, 4, 0).length();
     assert_eq!(MVP, CAMERA * VIEW * MODEL.inverse_rigid());
@@ -290,8 +291,8 @@ fn transforms_are_constants() {
 fn points_are_transformed_as_by_f64() {
     let near = Scalar::from_num(0.5);
     let camera =
-        Projective::perspective(Angle::from_degrees(70), (4, 3), near, Scalar::from_num(40)).expect("a camera");
-    let model = Affine::translation(Vec3::from_ints(1, -2, -9)) * Affine::rotation_x(Angle::from_degrees(33));
+        Projective::perspective(Angle16::from_degrees(70), (4, 3), near, Scalar::from_num(40)).expect("a camera");
+    let model = Affine::translation(Vec3::from_ints(1, -2, -9)) * Affine::rotation_x(Angle16::from_degrees(33));
     let point = Vec3::from_milli(1250, -3700, 812);
     assert_eq!(model * point, model.transform_point(point));
     let rows = (camera * model).to_rows().map(|row| row.map(|v| v as f64 / 4_294_967_296.0));

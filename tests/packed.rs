@@ -12,7 +12,7 @@ use embedded_graphics_core::geometry::{OriginDimensions, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888, WebColors};
 use zstrip::color::{Dither, Levels, PixelFormat};
 use zstrip::frame::{Buffers, Renderer};
-use zstrip::math::{Angle, Projective, Scalar};
+use zstrip::math::{Angle16, Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::target::{
@@ -38,13 +38,13 @@ fn torus<P: PixelFormat, F: PackedFormat>(
         sink(strip.area().top_left.y as usize, packer.pack(strip));
         Ok::<(), Infallible>(())
     };
-    renderer.frame_to(to_sink, background, |scene| scenes::torus_gouraud(scene, Angle(4000))).expect("a frame");
+    renderer.frame_to(to_sink, background, |scene| scenes::torus_gouraud(scene, Angle16(4000))).expect("a frame");
 }
 
 /// Greys of the same frame, pixel by pixel.
 fn greys(screen: (u16, u16)) -> Vec<u8> {
     let (picture, _) = support::strips::<Gray8>(screen, usize::from(screen.1), 20_000, Gray8::new(70), |scene| {
-        scenes::torus_gouraud(scene, Angle(4000));
+        scenes::torus_gouraud(scene, Angle16(4000));
     });
     picture
 }
@@ -136,7 +136,7 @@ fn check_display<C: Levels + PartialEq + core::fmt::Debug>(dither: Dither<C>) {
         let mut panel = Panel { size: Size::new(61, 45), pixels: vec![None; 61 * 45] };
         let sink = DitheredDisplay::new(&mut panel, dither);
         renderer
-            .frame_to(sink, Gray8::new(70), |scene| scenes::torus_gouraud(scene, Angle(4000)))
+            .frame_to(sink, Gray8::new(70), |scene| scenes::torus_gouraud(scene, Angle16(4000)))
             .expect("the same scene in each call");
         for (k, grey) in greys(screen).into_iter().enumerate() {
             let expected = dither.color(grey, (k as i32 % 61, k as i32 / 61));

@@ -8,7 +8,7 @@ mod support;
 use reference::rng::Rng;
 use support::whole;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
 use zstrip::span::DepthState;
@@ -63,7 +63,7 @@ fn torus_is_painted_as_a_depth_buffer_would_show_it() {
     let mesh = Mesh::new(data).expect("a mesh");
     for turn in [0, 9000, 31_000] {
         let camera = scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12));
-        let (differ, drawn, order) = compare(&mesh, &(camera * scenes::torus_model(Angle(turn))));
+        let (differ, drawn, order) = compare(&mesh, &(camera * scenes::torus_model(Angle16(turn))));
         assert!(drawn > 2000 && differ <= drawn / 200, "turn {turn}: {differ} of {drawn} pixels differ, {order:?}");
     }
 }

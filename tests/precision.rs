@@ -11,7 +11,7 @@ use reference::subject::Subject;
 use support::{apply, matrix, on_screen, position, rigid, scalar, vector, whole};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::Gouraud;
 use zstrip::span::DepthState;
@@ -130,7 +130,7 @@ fn objects(
             let sides = (-half, half);
             Projective::orthographic(sides, sides, (Scalar::ZERO, Scalar::from_num(far)))
         } else {
-            let angle = Angle::from_degrees(rng.between(10, 120));
+            let angle = Angle16::from_degrees(rng.between(10, 120));
             Projective::perspective(angle, size, Scalar::from_num(near), Scalar::from_num(far))
         };
         let camera = camera.unwrap_or_else(|error| panic!("{case}: {error}"));

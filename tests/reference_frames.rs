@@ -16,7 +16,7 @@ use scenes::{polygons, soup, torus};
 use support::{apply, matrix, position, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 use zstrip::light::{Light, NORMAL_ONE};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
 use zstrip::span::{DepthState, Fragment, Shader};
@@ -43,10 +43,10 @@ fn parts(meshes: &[(&'static Mesh<'static>, Projective)], cull: Cull) -> Vec<Par
 }
 
 /// The draws of the scenes of the examples, under their names.
-fn scene_parts(name: &str, size: (u16, u16), turn: Angle) -> Vec<Part> {
+fn scene_parts(name: &str, size: (u16, u16), turn: Angle16) -> Vec<Part> {
     let camera = scenes::camera(size, Scalar::ONE, Scalar::from_num(12));
     let at = |z: i16| Affine::translation(Vec3::from_ints(0, 0, z));
-    let (spin, tilt) = (Affine::rotation_z(turn), Affine::rotation_x(Angle::from_degrees(-20)));
+    let (spin, tilt) = (Affine::rotation_z(turn), Affine::rotation_x(Angle16::from_degrees(-20)));
     match name {
         "torus" => parts(&[(&torus::MESH, camera * scenes::torus_model(turn))], Cull::Back),
         "room" => {
@@ -63,8 +63,8 @@ fn scene_parts(name: &str, size: (u16, u16), turn: Angle) -> Vec<Part> {
             parts(&meshes, Cull::Back)
         }
         "intersections" => {
-            let turned = Affine::rotation_y(turn + Angle::from_degrees(25));
-            let mvp = camera * at(-3) * Affine::rotation_x(Angle::from_degrees(40)) * turned;
+            let turned = Affine::rotation_y(turn + Angle16::from_degrees(25));
+            let mvp = camera * at(-3) * Affine::rotation_x(Angle16::from_degrees(40)) * turned;
             parts(&[(&polygons::CROSSING, mvp)], Cull::None)
         }
         "cycle" => parts(&[(&polygons::CYCLE, camera * at(-3) * spin)], Cull::Back),
@@ -85,7 +85,7 @@ fn scene_parts(name: &str, size: (u16, u16), turn: Angle) -> Vec<Part> {
 #[test]
 fn parts_are_what_the_examples_draw() {
     let size = (80, 60);
-    let turn = Angle(4321);
+    let turn = Angle16(4321);
     let frame = |draw: &dyn Fn(&mut Scene<'_, zstrip::target::FrameSlice<'_, Rgb888>>)| {
         whole::<Rgb888>(size, Rgb888::BLACK, draw).1
     };
@@ -181,7 +181,7 @@ const SNAPPED: [&str; 9] = ["torus", "room", "intersections", "cycle", "slivers"
 #[test]
 fn coverage_is_exact_given_the_snapped_vertices() {
     let size = (120, 90);
-    for (name, turn) in SNAPPED.into_iter().flat_map(|name| [(name, Angle(0)), (name, Angle(11_111))]) {
+    for (name, turn) in SNAPPED.into_iter().flat_map(|name| [(name, Angle16(0)), (name, Angle16(11_111))]) {
         let parts = scene_parts(name, size, turn);
         // Without depth, the last triangle of those that cover a pixel shows.
         let (ids, _) = draw_ids(size, &parts, DepthState::OFF);
@@ -204,7 +204,7 @@ fn coverage_is_exact_given_the_snapped_vertices() {
 fn depth_and_colours_agree_with_the_snapped_reference() {
     let size = (48, 36);
     let (mut worst_depth, mut worst_color) = (0, 0_f64);
-    for (name, turn) in SNAPPED.into_iter().map(|name| (name, Angle(3000))) {
+    for (name, turn) in SNAPPED.into_iter().map(|name| (name, Angle16(3000))) {
         let parts = scene_parts(name, size, turn);
         let mut frame = Frame::new(size.0.into(), size.1.into(), [0.0; 3]);
         for (tri, id, cull) in snapped_parts(size, &parts) {
@@ -286,7 +286,7 @@ fn frames_agree_with_homogeneous_rasterization() {
         ("far", 5.0),
         ("soup", 2.0),
     ] {
-        for turn in [Angle(0), Angle(5000)] {
+        for turn in [Angle16(0), Angle16(5000)] {
             let parts = scene_parts(name, size, turn);
             let frame = as_frame(size, draw_ids(size, &parts, DepthState::LESS));
             let reference = homogeneous_frame(size, &parts);
@@ -308,7 +308,7 @@ fn colours_agree_with_homogeneous_rasterization() {
     let size = (96, 72);
     let mut worst = 0_f64;
     for name in ["cycle", "field", "intersections"] {
-        let parts = scene_parts(name, size, Angle(777));
+        let parts = scene_parts(name, size, Angle16(777));
         let reference = homogeneous_frame(size, &parts);
         let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| {
             for part in &parts {
@@ -330,7 +330,7 @@ fn colours_agree_with_homogeneous_rasterization() {
 #[test]
 fn lit_torus_agrees_with_light_in_f64() {
     let size = (96, 72);
-    let turn = Angle(9000);
+    let turn = Angle16(9000);
     let model = scenes::torus_model(turn);
     let mvp = scenes::camera(size, Scalar::ONE, Scalar::from_num(12)) * model;
     let rows = model.to_rows().map(|row| row.map(|v| f64::from(v) / 65_536.0));

@@ -11,7 +11,7 @@ use support::{Soup, difference, strips, unrecorded_strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{DepthBias, DepthState};
@@ -23,14 +23,14 @@ const SCREEN: (u16, u16) = (320, 240);
 const AMPLE: usize = 40_000;
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
-fn draw_scene(name: &str) -> impl Fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle) + use<> {
+fn draw_scene(name: &str) -> impl Fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle16) + use<> {
     let info = scenes::SCENES.iter().find(|info| info.name == name);
     let draw = info.unwrap_or_else(|| panic!("no scene {name}")).draw;
     move |scene, turn| draw(scene, turn)
 }
 
 /// The frame in one strip must be what it is in others; some of it must not be background.
-fn assert_strips_do_not_matter(name: &str, turn: Angle, heights: &[usize], capacities: &[usize]) {
+fn assert_strips_do_not_matter(name: &str, turn: Angle16, heights: &[usize], capacities: &[usize]) {
     let draw = draw_scene(name);
     let (expected, _) = strips::<Rgb565>(SCREEN, 240, AMPLE, scenes::BACKGROUND, |s| draw(s, turn));
     let background = Rgb565::from_color(scenes::BACKGROUND);
@@ -54,27 +54,27 @@ const CAPACITIES: [usize; 3] = [0, 100, AMPLE];
 
 #[test]
 fn torus_in_flat_shading_is_the_same_in_any_strips() {
-    assert_strips_do_not_matter("torus_flat", Angle(1234), &HEIGHTS, &CAPACITIES);
+    assert_strips_do_not_matter("torus_flat", Angle16(1234), &HEIGHTS, &CAPACITIES);
 }
 
 #[test]
 fn torus_in_gouraud_shading_is_the_same_in_any_strips() {
-    assert_strips_do_not_matter("torus_gouraud", Angle(50_000), &HEIGHTS, &CAPACITIES);
+    assert_strips_do_not_matter("torus_gouraud", Angle16(50_000), &HEIGHTS, &CAPACITIES);
 }
 
 #[test]
 fn room_is_the_same_in_any_strips() {
-    assert_strips_do_not_matter("room", Angle(0), &HEIGHTS, &CAPACITIES);
-    assert_strips_do_not_matter("room", Angle(20_000), &[16], &[0, 1000, AMPLE]);
+    assert_strips_do_not_matter("room", Angle16(0), &HEIGHTS, &CAPACITIES);
+    assert_strips_do_not_matter("room", Angle16(20_000), &[16], &[0, 1000, AMPLE]);
 }
 
 #[test]
 fn every_other_scene_is_the_same_in_any_strips() {
     for info in &scenes::SCENES[3..] {
         // A row at a time, without records, thousands of triangles: too slow to be tested for every scene.
-        assert_strips_do_not_matter(info.name, Angle(7777), &[7, 16], &[100, AMPLE]);
-        assert_strips_do_not_matter(info.name, Angle(7777), &[60], &[0]);
-        assert_strips_do_not_matter(info.name, Angle(7777), &[1, 240], &[AMPLE]);
+        assert_strips_do_not_matter(info.name, Angle16(7777), &[7, 16], &[100, AMPLE]);
+        assert_strips_do_not_matter(info.name, Angle16(7777), &[60], &[0]);
+        assert_strips_do_not_matter(info.name, Angle16(7777), &[1, 240], &[AMPLE]);
     }
 }
 
@@ -88,7 +88,7 @@ where
     scene.set_viewport(part);
     scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
     scene.set_viewport(Viewport::full(width, height).expect("the screen is a viewport"));
-    let turned = Projective::from(Affine::rotation_z(Angle(9999)));
+    let turned = Projective::from(Affine::rotation_z(Angle16(9999)));
     scene.draw_with(BOTH_SIDES, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
     scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
 }
@@ -262,7 +262,7 @@ fn framebuffer_of_ones_own_gets_the_rows_it_hands_out() {
 #[test]
 fn pulled_strips_are_those_that_are_sent() {
     let draw = draw_scene("room");
-    let (expected, _) = strips::<Rgb565>((80, 60), 60, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle(3)));
+    let (expected, _) = strips::<Rgb565>((80, 60), 60, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle16(3)));
     for records in [0, 700, AMPLE] {
         let (mut color, mut depth, mut records) = (vec![9; 80 * 7], vec![9; 80 * 7], vec![9; records]);
         let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
@@ -270,13 +270,13 @@ fn pulled_strips_are_those_that_are_sent() {
 
         let mut frame = renderer.begin(scenes::BACKGROUND);
         let mut picture = Vec::new();
-        while let Some(strip) = frame.next_strip(|s| draw(s, Angle(3))).expect("the same scene") {
+        while let Some(strip) = frame.next_strip(|s| draw(s, Angle16(3))).expect("the same scene") {
             picture.extend_from_slice(strip.pixels());
         }
         assert_eq!(frame.stats().strips, 9);
         assert_eq!(difference(&picture, &expected, 80), None);
         assert!(
-            frame.next_strip(|s| draw(s, Angle(3))).expect("no error").is_none(),
+            frame.next_strip(|s| draw(s, Angle16(3))).expect("no error").is_none(),
             "a finished frame stays finished"
         );
         assert_eq!(frame.stats().strips, 9);
@@ -285,7 +285,7 @@ fn pulled_strips_are_those_that_are_sent() {
         let mut frame = renderer.begin(scenes::BACKGROUND);
         let (mut drawn, mut sent) = (vec![1; 80 * 7], vec![2; 80 * 7]);
         let (mut picture, mut rows) = (Vec::new(), 0);
-        while let Some(strip) = frame.next_strip_in(&mut drawn, |s| draw(s, Angle(3))).expect("the same scene") {
+        while let Some(strip) = frame.next_strip_in(&mut drawn, |s| draw(s, Angle16(3))).expect("the same scene") {
             rows = strip.area().size.height as usize;
             assert_eq!(strip.pixels().len(), 80 * rows);
             std::mem::swap(&mut drawn, &mut sent);
@@ -304,14 +304,14 @@ fn frame_that_is_not_finished_does_not_disturb_the_next() {
     let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers).expect("a renderer");
     let mut frame = renderer.begin(Rgb565::BLACK);
     for _ in 0..3 {
-        assert!(frame.next_strip(|s| draw(s, Angle(100))).expect("the same scene").is_some());
+        assert!(frame.next_strip(|s| draw(s, Angle16(100))).expect("the same scene").is_some());
     }
     let mut picture = Vec::new();
     let mut frame = renderer.begin(Rgb565::BLACK);
-    while let Some(strip) = frame.next_strip(|s| draw(s, Angle(200))).expect("the same scene") {
+    while let Some(strip) = frame.next_strip(|s| draw(s, Angle16(200))).expect("the same scene") {
         picture.extend_from_slice(strip.pixels());
     }
-    let (expected, _) = strips::<Rgb565>((64, 64), 64, AMPLE, Rgb565::BLACK, |s| draw(s, Angle(200)));
+    let (expected, _) = strips::<Rgb565>((64, 64), 64, AMPLE, Rgb565::BLACK, |s| draw(s, Angle16(200)));
     assert_eq!(difference(&picture, &expected, 64), None);
 }
 
@@ -358,9 +358,9 @@ fn painted_layers_stay_in_the_order_they_were_drawn() {
 fn frame_is_the_same_at_every_capacity_about_the_overflow_points() {
     let draw = draw_scene("field");
     let screen = (48, 40);
-    let (expected, ample) = strips::<Rgb565>(screen, 40, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle(5)));
+    let (expected, ample) = strips::<Rgb565>(screen, 40, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle16(5)));
     let records_at = |records| {
-        let (picture, stats) = strips::<Rgb565>(screen, 4, records, scenes::BACKGROUND, |s| draw(s, Angle(5)));
+        let (picture, stats) = strips::<Rgb565>(screen, 4, records, scenes::BACKGROUND, |s| draw(s, Angle16(5)));
         let found = difference(&picture, &expected, screen.0);
         assert_eq!(found, None, "{records} words of records: {stats:?}");
         stats
@@ -395,7 +395,7 @@ fn frame_is_the_same_at_every_capacity_about_the_overflow_points() {
 #[test]
 fn stats_tell_how_the_frame_was_made() {
     let draw = draw_scene("torus_flat");
-    let frame = |rows, records| strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| draw(s, Angle(0))).1;
+    let frame = |rows, records| strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| draw(s, Angle16(0))).1;
     let ample = frame(16, AMPLE);
     assert_eq!((ample.strips, ample.walks, ample.draws), (15, 16, 16), "one walk records, fifteen replay");
     assert_eq!((ample.overflows, ample.direct_strips), (0, 0));

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use support::{difference, strips, whole};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::raster::{Line, PixelRect, square};
 use zstrip::shader::{Flat, Gouraud};
@@ -47,7 +47,7 @@ impl Ends {
 }
 
 /// One draw of each kind.
-fn draw_all<F: Framebuffer>(scene: &mut Scene<'_, F>, ends: &Ends, turn: Angle, range: DepthRange) {
+fn draw_all<F: Framebuffer>(scene: &mut Scene<'_, F>, ends: &Ends, turn: Angle16, range: DepthRange) {
     let mvp = Projective::from(Affine::rotation_z(turn));
     let lines = |joined| Lines::new(joined, ends.data()).expect("lines");
     let shader = Gouraud::colors_unlit();
@@ -123,7 +123,7 @@ fn in_view(rng: &mut Rng, count: usize) -> Vec<Vec3> {
 }
 
 fn camera() -> Projective {
-    let camera = Projective::perspective(Angle::from_degrees(60), SCREEN, Scalar::ONE, Scalar::from_num(10));
+    let camera = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::from_num(10));
     camera.expect("a camera") * Affine::translation(Vec3::from_ints(0, 0, -3))
 }
 
@@ -177,7 +177,7 @@ fn strips_and_loops_draw_each_pixel_of_a_joint_once() {
     for corners in [12, 13, 60, 200] {
         let ends: Vec<_> = (0..corners)
             .map(|k| {
-                let angle = Angle((k * 65_536 / corners) as u16);
+                let angle = Angle16((k * 65_536 / corners) as u16);
                 Vec3::new(angle.cos(), angle.sin(), Scalar::ZERO)
             })
             .collect();

@@ -10,7 +10,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use zstrip::color::PixelFormat;
 use zstrip::frame::RamBudget;
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::{Stats, Strip, StripPixels};
 use zstrip::{Buffers, Renderer, Scene};
 
@@ -40,7 +40,7 @@ pub trait Demo<const DEPTH: bool = true> {
     fn prepare(&mut self, _frame: u32, _screen: (u16, u16)) {}
 
     /// Draws the frame that was prepared, for an angle that each frame adds 1/512 of a turn to. Called for each strip.
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, DEPTH>>, turn: Angle, mode: usize);
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, DEPTH>>, turn: Angle16, mode: usize);
 }
 
 /// What the keys choose from; the height of the screen is the tallest strip.
@@ -66,7 +66,7 @@ fn render<D: Demo<DEPTH>, const DEPTH: bool>(
         Ok::<(), std::convert::Infallible>(())
     };
     demo.prepare(settings.frame, settings.size);
-    let turn = Angle(settings.frame.wrapping_mul(128) as u16);
+    let turn = Angle16(settings.frame.wrapping_mul(128) as u16);
     Ok(renderer.frame_to(to_picture, D::BACKGROUND, |scene| demo.draw(scene, turn, settings.mode))?)
 }
 

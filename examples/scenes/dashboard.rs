@@ -8,7 +8,7 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::*;
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBuilder};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::span::NoDepth;
 use zstrip::target::Overlay;
 use zstrip::{Framebuffer, Scene};
@@ -25,20 +25,20 @@ const RED: Rgb565 = Rgb565::new(30, 14, 8);
 const BLUE: Rgb565 = Rgb565::new(8, 40, 30);
 
 /// Draws the instruments on a screen of 320×240; `turn` is the time.
-pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let overlay = &mut scene.overlay();
     let Ok(()) = overlay.clear(BACK);
     header(overlay, turn);
     let speed = 118 + wave(turn, 1, 60) + wave(turn, 5, 14);
     gauge(overlay, Point::new(74, 100), "km/h", speed, 200);
-    let power = 47 + wave(turn + Angle(9000), 2, 38);
+    let power = 47 + wave(turn + Angle16(9000), 2, 38);
     gauge(overlay, Point::new(246, 100), "kW", power, 100);
     overlay
         .draw(&Image::new(&ImageRawLE::<Rgb565>::new(const { &picture() }, WEATHER_SIZE as u32), Point::new(140, 34)));
     label(overlay, Point::new(160, 84), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, "19 C");
     plot(overlay, Rectangle::new(Point::new(10, 176), Size::new(186, 54)), turn);
     for (k, (name, color)) in [("cell", GREEN), ("coil", AMBER), ("oil", BLUE)].into_iter().enumerate() {
-        let share = 50 + wave(turn + Angle(k as u16 * 20_000), 1 + k as u16, 45);
+        let share = 50 + wave(turn + Angle16(k as u16 * 20_000), 1 + k as u16, 45);
         bar(overlay, Point::new(206, 178 + 18 * k as i32), name, share, color);
     }
 }
@@ -46,12 +46,12 @@ pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Ang
 const DIM_TEXT: Rgb565 = Rgb565::new(19, 40, 20);
 
 /// `size` sin(k turn).
-fn wave(turn: Angle, k: u16, size: i32) -> i32 {
-    (Angle(turn.0.wrapping_mul(k)).sin().to_bits() * size) >> 16
+fn wave(turn: Angle16, k: u16, size: i32) -> i32 {
+    (Angle16(turn.0.wrapping_mul(k)).sin().to_bits() * size) >> 16
 }
 
 /// The point at `radius` from `center` in a direction, clockwise from the top; in half pixels, so that needles are round.
-fn around(center: Point, angle: Angle, radius: i32) -> Point {
+fn around(center: Point, angle: Angle16, radius: i32) -> Point {
     let at = |v: i32| (v * radius + (1 << 15)) >> 16;
     center + Point::new(at(angle.sin().to_bits()), -at(angle.cos().to_bits()))
 }
@@ -82,7 +82,7 @@ fn digits(number: i32, text: &mut [u8; 3]) -> &str {
     text.get(first..).and_then(|digits| core::str::from_utf8(digits).ok()).unwrap_or("")
 }
 
-fn header<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, turn: Angle) {
+fn header<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, turn: Angle16) {
     let Ok(()) = overlay.fill_solid(&Rectangle::new(Point::zero(), Size::new(320, 22)), BAR);
     label(overlay, Point::new(8, 11), &ascii::FONT_7X13_BOLD, TEXT, Alignment::Left, "zstrip dashboard");
     let minutes = (i32::from(turn.0) * 90) >> 16;
@@ -99,7 +99,7 @@ fn gauge<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, center: Point
     const RADIUS: i32 = 64;
     let style = PrimitiveStyleBuilder::new().fill_color(BAR).stroke_color(DIM).stroke_width(3).build();
     overlay.draw(&Circle::with_center(center, 2 * RADIUS as u32 + 1).into_styled(style));
-    let angle = |tenths: i32| Angle::from_degrees(-135 + 27 * tenths);
+    let angle = |tenths: i32| Angle16::from_degrees(-135 + 27 * tenths);
     for tenth in 0..=10 {
         let color = [GREEN, AMBER, RED][usize::from(tenth > 6) + usize::from(tenth > 8)];
         let (from, to) = (around(center, angle(tenth), RADIUS - 12), around(center, angle(tenth), RADIUS - 5));
@@ -117,8 +117,8 @@ fn gauge<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, center: Point
     label(overlay, center + Point::new(0, 52), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, unit);
     // 270 degrees are three quarters of 65,536.
     let share = (value.clamp(0, i32::from(full)) << 16) / i32::from(full.max(1));
-    let needle = Angle::from_degrees(-135) + Angle((share * 3 / 4) as u16);
-    let quarter = Angle::from_degrees(90);
+    let needle = Angle16::from_degrees(-135) + Angle16((share * 3 / 4) as u16);
+    let quarter = Angle16::from_degrees(90);
     let tip = around(center, needle, RADIUS - 14);
     let (left, right) = (around(center, needle + quarter, 4), around(center, needle - quarter, 4));
     overlay.draw(&Triangle::new(tip, left, right).into_styled(PrimitiveStyle::with_fill(RED)));
@@ -127,7 +127,7 @@ fn gauge<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, center: Point
 }
 
 /// The last minutes of something that swings.
-fn plot<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, area: Rectangle, turn: Angle) {
+fn plot<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, area: Rectangle, turn: Angle16) {
     let frame = PrimitiveStyleBuilder::new().fill_color(BAR).stroke_color(DIM).stroke_width(1).build();
     overlay.draw(&area.into_styled(frame));
     let Point { x: left, y: top } = area.top_left;
@@ -141,7 +141,7 @@ fn plot<F: Framebuffer<Format = Rgb565>>(overlay: &mut On<'_, F>, area: Rectangl
         let mut points = [Point::zero(); 45];
         for (n, point) in points.iter_mut().enumerate() {
             let n = n as i32;
-            let past = Angle(turn.0.wrapping_add((n * 800) as u16));
+            let past = Angle16(turn.0.wrapping_add((n * 800) as u16));
             let y = wave(past, k, size) + wave(past, 7 * k, size / 5);
             *point = Point::new(left + 4 + 4 * n, top + height / 2 - y);
         }

@@ -5,7 +5,7 @@ use zstrip::Scene;
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8};
 use zstrip::frame::{Buffers, Renderer};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::{PackedFormat, Packer, Pages, Rows, Strip};
 
 /// Memory for a frame: colours, packed strips and whatever else a pixel takes are in `color`.
@@ -30,11 +30,11 @@ pub struct FormatInfo {
 pub const FORMATS: &[FormatInfo] = &[
     FormatInfo {
         name: "room_dithered",
-        draw: |memory, sink| direct::<Dithered<Rgb565Be>>(memory, sink, |scene| room(scene, Angle(0))),
+        draw: |memory, sink| direct::<Dithered<Rgb565Be>>(memory, sink, |scene| room(scene, Angle16(0))),
     },
     FormatInfo {
         name: "torus_332",
-        draw: |memory, sink| direct::<Dithered<Rgb332>>(memory, sink, |scene| torus_gouraud(scene, Angle(0))),
+        draw: |memory, sink| direct::<Dithered<Rgb332>>(memory, sink, |scene| torus_gouraud(scene, Angle16(0))),
     },
     FormatInfo { name: "torus_pages", draw: |memory, sink| packed::<Pages>((80, 64), Dither::BAYER_8, memory, sink) },
     FormatInfo {
@@ -73,7 +73,7 @@ fn packed<F: PackedFormat>(screen: (u16, u16), dither: Dither<F::Color>, memory:
     let Ok(mut renderer) = Renderer::<Gray8>::new(screen, Buffers { color, depth, records }) else { return };
     let Ok(mut packer) = Packer::<F>::new(screen, renderer.strip_rows(), dither, bytes) else { return };
     let mut frame = renderer.begin(Gray8::new(26));
-    while let Ok(Some(strip)) = frame.next_strip(|scene| torus_gouraud(scene, Angle(0))) {
+    while let Ok(Some(strip)) = frame.next_strip(|scene| torus_gouraud(scene, Angle16(0))) {
         sink(packer.pack(&strip));
     }
 }

@@ -1,7 +1,7 @@
 //! An artificial horizon: an instrument drawn on the screen's plane.
 
 use super::Rgb888;
-use zstrip::math::{Angle, Scalar};
+use zstrip::math::{Angle16, Scalar};
 use zstrip::{Canvas, Framebuffer, Scene, ScreenPoint, Smooth};
 
 const SKY: [Rgb888; 2] = [Rgb888::new(24, 72, 160), Rgb888::new(120, 184, 240)];
@@ -24,7 +24,7 @@ struct Dial {
 }
 
 impl Dial {
-    fn turned(self, angle: Angle) -> Self {
+    fn turned(self, angle: Angle16) -> Self {
         Self { turn: (angle.sin().to_bits(), angle.cos().to_bits()), ..self }
     }
 
@@ -38,7 +38,7 @@ impl Dial {
 }
 
 /// Draws the instrument in the middle of the screen.
-pub fn horizon<F: Framebuffer>(scene: &mut Scene<'_, F>, pitch: Angle, roll: Angle) {
+pub fn horizon<F: Framebuffer>(scene: &mut Scene<'_, F>, pitch: Angle16, roll: Angle16) {
     let (width, height) = scene.screen();
     let dial = Dial {
         center: (i32::from(width) * 128, i32::from(height) * 128),
@@ -59,9 +59,9 @@ pub fn horizon<F: Framebuffer>(scene: &mut Scene<'_, F>, pitch: Angle, roll: Ang
 
 /// The angles of roll.
 #[inline(never)]
-fn scale<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angle) {
+fn scale<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angle16) {
     for tens in [-60, -45, -30, -20, -10, 10, 20, 30, 45, 60] {
-        let mark = dial.turned(Angle::from_degrees(tens) - roll);
+        let mark = dial.turned(Angle16::from_degrees(tens) - roll);
         let length = if tens % 30 == 0 { 30 } else { 16 };
         canvas.line_with(mark.at(0, -214), mark.at(0, -214 - length), WHITE, &Smooth::new(500));
     }
@@ -69,7 +69,7 @@ fn scale<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angl
 
 /// Where roll is zero, and what points to the scale.
 #[inline(never)]
-fn pointers<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angle) {
+fn pointers<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angle16) {
     let zero = dial.turned(-roll);
     canvas.polygon(&[zero.at(0, -214), zero.at(-14, -240), zero.at(14, -240)], WHITE);
     canvas.polygon(&[dial.at(0, -210), dial.at(13, -184), dial.at(-13, -184)], YELLOW);
@@ -128,7 +128,7 @@ fn ladder<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, world: &Dial) {
 fn bezel<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial) {
     const SIDES: u16 = 48;
     let step = |k: u16| {
-        let angle = Angle((u32::from(k % SIDES) * 65_536 / u32::from(SIDES)) as u16);
+        let angle = Angle16((u32::from(k % SIDES) * 65_536 / u32::from(SIDES)) as u16);
         let on = |c: Scalar, radius: i32| (c.to_bits() * radius + (1 << 15)) >> 16;
         move |radius: i32| (on(angle.cos(), radius), on(angle.sin(), radius))
     };

@@ -6,7 +6,7 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle};
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBuilder};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::{Framebuffer, Scene};
@@ -42,7 +42,7 @@ const fn at(x: i32, y: i32, z: i32) -> Vec3 {
 
 /// Axes: name and where it is written, rotation from x, colour.
 fn axes() -> [(&'static str, Vec3, Affine, Rgb888); 3] {
-    let quarter = Angle::from_degrees(90);
+    let quarter = Angle16::from_degrees(90);
     [
         ("x", at(LENGTH + 150, 0, 0), Affine::IDENTITY, Rgb888::new(230, 70, 60)),
         ("y", at(0, LENGTH + 150, 0), Affine::rotation_z(quarter), Rgb888::new(90, 200, 80)),
@@ -51,10 +51,10 @@ fn axes() -> [(&'static str, Vec3, Affine, Rgb888); 3] {
 }
 
 /// Draws torus, axes and names.
-pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let model = Affine::translation(at(0, -150, -3900))
-        * Affine::rotation_x(Angle::from_degrees(32))
-        * Affine::rotation_y(turn + Angle::from_degrees(35));
+        * Affine::rotation_x(Angle16::from_degrees(32))
+        * Affine::rotation_y(turn + Angle16::from_degrees(35));
     let mvp = camera(scene.screen(), Scalar::ONE, Scalar::ONE * 12) * model;
 
     scene.draw(&torus::MESH, &mvp, &Gouraud::new(LIGHT.to_object(&model), TORUS_COLOR));
@@ -72,7 +72,7 @@ pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Ang
     // Hours around the ring.
     let style = MonoTextStyleBuilder::new().font(&ascii::FONT_7X13_BOLD).text_color(Rgb565::WHITE).build();
     for (k, hour) in ["12", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11"].into_iter().enumerate() {
-        let angle = Angle((k * 65_536 / 12) as u16);
+        let angle = Angle16((k * 65_536 / 12) as u16);
         let ring = |v: i32| Scalar::from_bits((v * 3) >> 1);
         let point = Vec3::new(ring(angle.sin().to_bits()), Scalar::from_bits(1 << 14), ring(-angle.cos().to_bits()));
         label(scene, &mvp, point, &Text::with_text_style(hour, Point::zero(), style, middle));

@@ -5,7 +5,7 @@ use super::{UNLIT, landscape, pot, tiles};
 use zstrip::color::{PixelFormat, Rgba8888};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::light::{DirectionalLight, Light, Lighting, LitMaterial, Material, PointLight, Viewer};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology, sort_back_to_front, view_depth};
 use zstrip::shader::{
     AddAlpha, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity, PerFace, PerFragment,
@@ -50,7 +50,7 @@ impl Lens {
     #[inline(never)]
     fn new(screen: (u16, u16), near: Scalar, far: Scalar) -> Self {
         let camera =
-            Projective::perspective(Angle::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
+            Projective::perspective(Angle16::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
         let [[x, ..], [_, y, ..], [.., z, w], _] = camera.to_rows();
         Self { x, y, z: [z, w] }
     }
@@ -74,7 +74,7 @@ impl Lens {
 }
 
 /// A point on a circle about the y axis, radius and height in thousandths.
-fn on_circle(angle: Angle, radius: i32, height: i32) -> Vec3 {
+fn on_circle(angle: Angle16, radius: i32, height: i32) -> Vec3 {
     let along = |s: Scalar| (i64::from(s.to_bits()) * i64::from(radius) / 65_536) as i32;
     Vec3::from_milli(along(angle.cos()), height, along(angle.sin()))
 }
@@ -83,7 +83,7 @@ fn on_circle(angle: Angle, radius: i32, height: i32) -> Vec3 {
 static BY_NIGHT: Affine = look(Vec3::from_milli(0, 1750, 4300), Vec3::from_milli(120, 180, 0));
 
 /// A glazed pot on a tiled table, under the moon and two lamps.
-pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Shading) {
+pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, shading: Shading) {
     draw_backdrop(scene, &NIGHT);
     table(scene, &BY_NIGHT, || {
         let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
@@ -99,8 +99,8 @@ pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, shading: Sha
 }
 
 /// The moon and the lamps, in eye space.
-fn night(turn: Angle) -> Lighting<1, 2> {
-    let lamp = |angle: Angle, radius: i32, height: i32, color: Rgb888, range: i32| {
+fn night(turn: Angle16) -> Lighting<1, 2> {
+    let lamp = |angle: Angle16, radius: i32, height: i32, color: Rgb888, range: i32| {
         PointLight::new(BY_NIGHT * on_circle(angle, radius, height), color, Scalar::from_bits(range << 16))
     };
     let moon = BY_NIGHT.transform_vector(Vec3::from_ints(-3, 5, 4));
@@ -108,16 +108,16 @@ fn night(turn: Angle) -> Lighting<1, 2> {
         ambient: [34, 34, 52],
         directional: [DirectionalLight::new(moon, Rgb888::new(120, 130, 165))],
         points: [
-            lamp(turn + Angle::from_degrees(50), 1900, 900, Rgb888::new(255, 150, 50), 5),
-            lamp(-turn - turn + Angle::from_degrees(160), 1700, 150, Rgb888::new(40, 130, 255), 4),
+            lamp(turn + Angle16::from_degrees(50), 1900, 900, Rgb888::new(255, 150, 50), 5),
+            lamp(-turn - turn + Angle16::from_degrees(160), 1700, 150, Rgb888::new(40, 130, 255), 4),
         ],
         viewer: Viewer::At(Vec3::ZERO),
     }
 }
 
 /// Where the glazed pot is, in eye space.
-fn pot_model(turn: Angle) -> Affine {
-    BY_NIGHT * Affine::rotation_y(turn + Angle::from_degrees(-25))
+fn pot_model(turn: Angle16) -> Affine {
+    BY_NIGHT * Affine::rotation_y(turn + Angle16::from_degrees(-25))
 }
 
 /// What the pot is covered with.
@@ -126,12 +126,12 @@ fn glazed() -> Material {
 }
 
 /// The glaze under the night's lights.
-fn glaze(turn: Angle) -> LitMaterial<1, 2> {
+fn glaze(turn: Angle16) -> LitMaterial<1, 2> {
     night(turn).on(&glazed(), &pot_model(turn), pot::mesh().bounds())
 }
 
 /// The glaze under a sun where the moon is.
-fn sunlit_glaze(turn: Angle) -> LitMaterial<1, 0> {
+fn sunlit_glaze(turn: Angle16) -> LitMaterial<1, 0> {
     let Lighting { ambient, directional: [moon], .. } = night(turn);
     let sun = DirectionalLight { color: [235, 225, 210], ..moon };
     let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
@@ -140,7 +140,7 @@ fn sunlit_glaze(turn: Angle) -> LitMaterial<1, 0> {
 
 /// The pot by a shader.
 #[inline(never)]
-fn pot<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, turn: Angle, shader: impl FnOnce() -> S) {
+fn pot<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, turn: Angle16, shader: impl FnOnce() -> S) {
     let mvp = kept(|| Lens::close(scene.screen()).seen(|| pot_model(turn)));
     scene.draw_with(BOTH_SIDES, pot::mesh(), &mvp, &*kept(shader));
 }
@@ -218,7 +218,7 @@ const MORNING: Rgb888 = Rgb888::new(214, 196, 188);
 const SUN: Light = Light::from_channels(Vec3::from_milli(-800, 420, 300), [250, 205, 160], [78, 84, 108]);
 
 /// A hilly landscape with a lake in the morning fog, seen from a bird's round flight.
-pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, mist: Mist) {
+pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, mist: Mist) {
     let fog = mist.table();
     draw_backdrop(scene, &SKY);
     let (lens, view) = (kept(|| Lens::new(scene.screen(), MIST_NEAR, MIST_FAR)), kept(|| flight(turn)));
@@ -229,12 +229,12 @@ pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, mist: Mist) {
 
 /// World → the bird's eye space.
 #[inline(never)]
-fn flight(turn: Angle) -> Affine {
-    let [x, _, z] = on_circle(turn + Angle::from_degrees(76), 8200, 0).to_bits().map(|c| c / 66);
+fn flight(turn: Angle16) -> Affine {
+    let [x, _, z] = on_circle(turn + Angle16::from_degrees(76), 8200, 0).to_bits().map(|c| c / 66);
     // Above what is below, and above the hills on the way to the middle.
     let ground = (4..=8).fold(900, |highest, k| landscape::height(x * k / 8, z * k / 8).max(highest));
     let eye = Vec3::from_milli(x, ground + 1400, z);
-    look(eye, on_circle(turn + Angle::from_degrees(176), 3300, 700))
+    look(eye, on_circle(turn + Angle16::from_degrees(176), 3300, 700))
 }
 
 #[inline(never)]
@@ -314,7 +314,7 @@ const SPARKS: usize = 48;
 static BY_DAY: Affine = look(Vec3::from_milli(0, 1500, 4700), Vec3::from_milli(0, 330, 0));
 
 /// A glass pot on a lit table, between coloured panes, and a fountain of sparks.
-pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     // 1. What is opaque.
     draw_backdrop(scene, &STUDIO);
     table(scene, &BY_DAY, || {
@@ -368,17 +368,17 @@ fn table<F: Framebuffer, const P: usize>(
 }
 
 /// Where a pane is, or the pot, the last number, in eye space.
-fn glass_model(turn: Angle, k: u16) -> Affine {
+fn glass_model(turn: Angle16, k: u16) -> Affine {
     if usize::from(k) == PANES.len() {
         return BY_DAY * Affine::rotation_y(turn);
     }
-    let angle = turn + Angle(k * 16_384);
-    BY_DAY * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle(0x4000) - angle)
+    let angle = turn + Angle16(k * 16_384);
+    BY_DAY * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle16(0x4000) - angle)
 }
 
 /// The order of the panes and the pot.
 #[inline(never)]
-fn back_to_front(screen: (u16, u16), turn: Angle) -> [u16; 5] {
+fn back_to_front(screen: (u16, u16), turn: Angle16) -> [u16; 5] {
     let lens = Lens::close(screen);
     let mut order = [0, 1, 2, 3, 4];
     sort_back_to_front(&mut order, |k| view_depth(&lens.seen(|| glass_model(turn, k)), PANE.bounds()));
@@ -386,13 +386,13 @@ fn back_to_front(screen: (u16, u16), turn: Angle) -> [u16; 5] {
 }
 
 #[inline(never)]
-fn pane<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, k: u16, color: Rgb888) {
+fn pane<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, k: u16, color: Rgb888) {
     let mvp = kept(|| Lens::close(scene.screen()).seen(|| glass_model(turn, k)));
     scene.draw_with(GLASS, &PANE, &mvp, &Blend::new(Flat::unlit(color), Multiply));
 }
 
 #[inline(never)]
-fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let lens = Lens::close(scene.screen());
     for k in 0..SPARKS {
         let age = (turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16)) >> 6;
@@ -403,19 +403,19 @@ fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 }
 
 /// The pot, of a material under the day's lights.
-fn lit_pot(turn: Angle, material: &Material) -> LitMaterial<1, 1> {
+fn lit_pot(turn: Angle16, material: &Material) -> LitMaterial<1, 1> {
     day().on(material, &glass_model(turn, PANES.len() as u16), pot::mesh().bounds())
 }
 
 /// Object space of the pot → clip space.
 #[inline(never)]
-fn pot_seen(screen: (u16, u16), turn: Angle) -> Projective {
+fn pot_seen(screen: (u16, u16), turn: Angle16) -> Projective {
     Lens::close(screen).seen(|| glass_model(turn, PANES.len() as u16))
 }
 
 /// A pot of glass: its inner side and its outer side.
 #[inline(never)]
-fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| pot_seen(scene.screen(), turn));
     let shader = kept(|| {
         let body = Material { two_sided: true, ..Material::matte(Rgb888::new(150, 205, 200)) };
@@ -428,7 +428,7 @@ fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 
 /// Highlights that no transparency dims.
 #[inline(never)]
-fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| pot_seen(scene.screen(), turn));
     let shader = kept(|| {
         let gloss = Material {
@@ -447,7 +447,7 @@ fn spark(k: usize, age: i32) -> Vec3 {
     let rise = 1700 + (k * 53 % 31) as i32 * 45;
     // Thousandths: up with `rise`, and down with the square of age.
     let height = 950 + rise * age / 1024 - (2900 * (age * age / 1024)) / 1024;
-    on_circle(Angle((k * 25_033) as u16), speed * age / 1024, height)
+    on_circle(Angle16((k * 25_033) as u16), speed * age / 1024, height)
 }
 
 /// A square of 0.24 about the origin, with its coordinates in it.

@@ -26,7 +26,7 @@ use kept::kept;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::frame::{Buffers, Renderer};
 use zstrip::light::Light;
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::Shader;
 use zstrip::target::{Stats, Strip};
@@ -38,7 +38,7 @@ pub struct SceneInfo {
     /// Its name on the command line and in reports.
     pub name: &'static str,
     /// Draws it, turned by an angle, on a screen of some size.
-    pub draw: fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle),
+    pub draw: fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle16),
 }
 
 /// Scenes of plain meshes, which the flash of a small chip holds, too; the first two are a torus flat and Gouraud shaded.
@@ -66,7 +66,7 @@ const MANY: &[SceneInfo] = &[
     },
     SceneInfo { name: "close", draw: |scene, turn| textured::close(scene, turn) },
     SceneInfo { name: "water", draw: |scene, turn| water::water(scene, turn, 1) },
-    SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle(2000)) },
+    SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle16(2000)) },
     SceneInfo { name: "overlay", draw: |scene, turn| overlay::draw(scene, turn) },
     // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
     #[cfg(not(proof = "all"))]
@@ -104,7 +104,7 @@ fn in_place<T>(make: impl FnOnce() -> T) -> T {
 /// A camera with a vertical field of view of 60 degrees.
 #[inline(never)]
 pub fn camera((width, height): (u16, u16), near: Scalar, far: Scalar) -> Projective {
-    Projective::perspective(Angle::from_degrees(60), (width, height), near, far).unwrap_or(Projective::IDENTITY)
+    Projective::perspective(Angle16::from_degrees(60), (width, height), near, far).unwrap_or(Projective::IDENTITY)
 }
 
 /// Object space → clip space: the camera of most scenes, and what it is multiplied by.
@@ -121,9 +121,9 @@ static LIT: Flat = Flat::colors(LIGHT);
 static UNLIT: Gouraud = Gouraud::colors_unlit();
 
 /// Where the torus is: tumbling, since a turn about its axis would not show.
-pub fn torus_model(turn: Angle) -> Affine {
+pub fn torus_model(turn: Angle16) -> Affine {
     Affine::translation(Vec3::from_ints(0, 0, -3))
-        * Affine::rotation_x(Angle::from_degrees(40))
+        * Affine::rotation_x(Angle16::from_degrees(40))
         * Affine::rotation_y(turn)
         * Affine::rotation_z(turn)
 }
@@ -131,7 +131,7 @@ pub fn torus_model(turn: Angle) -> Affine {
 /// Draws the torus with a shader made for its light, which is given in its object space.
 pub fn torus_with<F: Framebuffer, S: Shader<F::Format>>(
     scene: &mut Scene<'_, F>,
-    turn: Angle,
+    turn: Angle16,
     shader: impl FnOnce(Light) -> S,
 ) {
     let mvp = kept(|| seen(scene.screen(), |camera| camera * torus_model(turn)));
@@ -141,52 +141,52 @@ pub fn torus_with<F: Framebuffer, S: Shader<F::Format>>(
 /// Orange.
 pub const TORUS_COLOR: Rgb888 = Rgb888::new(255, 160, 64);
 
-pub fn torus_flat<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn torus_flat<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     torus_with(scene, turn, |light| Flat::new(light, TORUS_COLOR));
 }
 
-pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     torus_with(scene, turn, |light| Gouraud::new(light, TORUS_COLOR));
 }
 
 /// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view. It
 /// looks to and fro, by 40 degrees.
 #[inline(never)]
-pub fn room_camera(screen: (u16, u16), turn: Angle) -> Projective {
+pub fn room_camera(screen: (u16, u16), turn: Angle16) -> Projective {
     let eye = Vec3::from_milli(-1500, 300, 1500);
-    let sway = Angle((turn.sin().to_bits() / 9) as u16);
-    let view = Affine::rotation_y(sway + Angle::from_degrees(40)) * Affine::translation(-eye);
+    let sway = Angle16((turn.sin().to_bits() / 9) as u16);
+    let view = Affine::rotation_y(sway + Angle16::from_degrees(40)) * Affine::translation(-eye);
     camera(screen, Scalar::from_bits(1 << 13), Scalar::from_bits(16 << 16)) * view
 }
 
 /// Takes what a model matrix brings into the room to clip space.
 #[inline(never)]
-fn in_room(screen: (u16, u16), turn: Angle, model: impl FnOnce() -> Affine) -> Projective {
+fn in_room(screen: (u16, u16), turn: Angle16, model: impl FnOnce() -> Affine) -> Projective {
     room_camera(screen, turn) * model()
 }
 
 /// A room seen from inside, with a chequered floor, a pillar and a torus of half its size.
-pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     walls(scene, turn);
     pillar(scene, turn);
     ring(scene, turn);
 }
 
 #[inline(never)]
-fn walls<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn walls<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| room_camera(scene.screen(), turn));
     scene.draw(&polygons::ROOM, &mvp, &UNLIT);
     scene.draw(&polygons::FLOOR, &mvp, &LIT);
 }
 
 #[inline(never)]
-fn pillar<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn pillar<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| in_room(scene.screen(), turn, || Affine::translation(Vec3::from_milli(800, 0, -600))));
     scene.draw(&polygons::PILLAR, &mvp, &LIT);
 }
 
 #[inline(never)]
-fn ring<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn ring<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let model = || Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
     let mvp = kept(|| in_room(scene.screen(), turn, || model() * Affine::scale(Scalar::from_bits(1 << 15))));
     let shader = kept(|| Gouraud::new(LIGHT.to_object(&model()), Rgb888::new(90, 200, 120)));
@@ -196,70 +196,70 @@ fn ring<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
 /// Three squares through one another.
-pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| {
         seen(scene.screen(), |camera| {
             camera
                 * Affine::translation(Vec3::from_ints(0, 0, -3))
-                * Affine::rotation_x(Angle::from_degrees(40))
-                * Affine::rotation_y(turn + Angle::from_degrees(25))
+                * Affine::rotation_x(Angle16::from_degrees(40))
+                * Affine::rotation_y(turn + Angle16::from_degrees(25))
         })
     });
     scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &mvp, &LIT);
 }
 
 /// Random triangles of all sizes around the eye.
-pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| seen(scene.screen(), |camera| camera * Affine::rotation_y(turn)));
     scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &UNLIT);
 }
 
 /// [`seen`] so far away, turned on the screen.
-fn turned_at(screen: (u16, u16), distance: i16, turn: Angle) -> Projective {
+fn turned_at(screen: (u16, u16), distance: i16, turn: Angle16) -> Projective {
     seen(screen, |camera| camera * Affine::translation(Vec3::from_ints(0, 0, -distance)) * Affine::rotation_z(turn))
 }
 
 /// Triangles whose vertices are up to 30,000 px outside of the screen.
-pub fn far<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn far<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| turned_at(scene.screen(), 4, turn));
     scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &UNLIT);
 }
 
 /// Triangles in clip space, cut by the near plane or with vertices behind the eye.
-pub fn near<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn near<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     scene.draw_with(BOTH_SIDES, &soup::NEAR, &kept(|| turned(turn)), &UNLIT);
 }
 
 #[inline(never)]
-fn turned(turn: Angle) -> Projective {
+fn turned(turn: Angle16) -> Projective {
     Projective::from(Affine::rotation_z(turn))
 }
 
 /// Many triangles of about 2 px.
-pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| turned_at(scene.screen(), 4, turn));
     scene.draw_with(BOTH_SIDES, soup::tiny(), &mvp, &LIT);
 }
 
 /// Three planks that each cover the next one: no order of drawing is right, only depth is.
-pub fn cycle<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn cycle<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| turned_at(scene.screen(), 3, turn));
     scene.draw(&polygons::CYCLE, &mvp, &UNLIT);
 }
 
 /// Long triangles thinner than a pixel.
-pub fn slivers<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn slivers<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| turned_at(scene.screen(), 3, turn));
     scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &UNLIT);
 }
 
 /// A grid, a strip, a fan and quads side by side.
-pub fn field<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn field<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| {
         seen(scene.screen(), |camera| {
             camera
                 * Affine::translation(Vec3::from_ints(0, 0, -3))
-                * Affine::rotation_x(Angle::from_degrees(-20))
+                * Affine::rotation_x(Angle16::from_degrees(-20))
                 * Affine::rotation_z(turn)
         })
     });
@@ -301,7 +301,7 @@ pub fn draw(
     let Some(info) = SCENES.get(index) else {
         return Stats::default();
     };
-    frame([width, height], color, depth, records, |scene| (info.draw)(scene, Angle(turn)), &mut sink)
+    frame([width, height], color, depth, records, |scene| (info.draw)(scene, Angle16(turn)), &mut sink)
 }
 
 /// Renders what a closure draws.

@@ -7,7 +7,7 @@ use zstrip::embedded_graphics_core::geometry::{Dimensions, Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{PixelColor, Rgb565, Rgb888};
 use zstrip::embedded_graphics_core::primitives::{PointsIter, Rectangle};
 use zstrip::embedded_graphics_core::{Drawable, Pixel};
-use zstrip::math::{Angle, Projective, Vec3};
+use zstrip::math::{Angle16, Projective, Vec3};
 use zstrip::shader::Gouraud;
 use zstrip::span::{Compare, DepthState};
 use zstrip::{Framebuffer, Scene};
@@ -42,7 +42,7 @@ impl<C: PixelColor> Drawable for Marker<C> {
 }
 
 /// Draws a turning torus with markers around it, some of them behind it, and a ramp of colours below.
-pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16) {
     markers(scene, turn, 0..13);
     torus_with(scene, turn, |light| Gouraud::new(light, Rgb888::new(200, 90, 160)));
     markers(scene, turn, 13..24);
@@ -50,7 +50,7 @@ pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Ang
 }
 
 #[inline(never)]
-fn markers<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle, range: Range<u16>) {
+fn markers<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16, range: Range<u16>) {
     let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
     for k in range {
         marker(scene, &mvp, k);
@@ -59,7 +59,7 @@ fn markers<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angl
 
 #[inline(never)]
 fn marker<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, mvp: &Projective, k: u16) {
-    let angle = Angle(k * 2731);
+    let angle = Angle16(k * 2731);
     let [x, y] = [angle.sin(), angle.cos()].map(|v| v.to_bits() / 64 * 104);
     let Some(place) = scene.project(Vec3::from_bits([x, 0, y]), mvp) else { return };
     let color = Rgb565::new(8 + k as u8, 60 - 2 * k as u8, 28);

@@ -1,6 +1,6 @@
 //! Scenes of a few large polygons.
 
-use zstrip::math::{Angle, Vec3};
+use zstrip::math::{Angle16, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 
 type Rgb = [u8; 3];
@@ -190,7 +190,7 @@ const fn planks() -> [Vec3; 12] {
     let mut points = [Vec3::ZERO; 12];
     let mut k = 0;
     while k < 12 {
-        let turn = Angle::from_degrees(120 * (k as i32 / 4));
+        let turn = Angle16::from_degrees(120 * (k as i32 / 4));
         let (s, c) = (turn.sin().to_bits() as i64, turn.cos().to_bits() as i64);
         // A plank at y = -0.5 from x = -1.3 to 1.3, its right end nearer.
         let (x, y, z) = match k % 4 {
@@ -255,7 +255,7 @@ const fn strip_positions() -> [Vec3; STRIP_LENGTH] {
     let mut points = [Vec3::ZERO; STRIP_LENGTH];
     let mut k = 0;
     while k < STRIP_LENGTH {
-        let angle = Angle((k as u16 / 2) * 5461);
+        let angle = Angle16((k as u16 / 2) * 5461);
         let radius = if k % 2 == 0 { 300 } else { 560 };
         let x = (angle.cos().to_bits() as i64 * radius) >> 16;
         let y = (angle.sin().to_bits() as i64 * radius) >> 16;
@@ -278,7 +278,7 @@ const fn fan_positions() -> [Vec3; FAN_LENGTH] {
     let mut points = [at(-900, -600, 200); FAN_LENGTH];
     let mut k = 1;
     while k < FAN_LENGTH {
-        let angle = Angle(((k - 1) * 4096) as u16);
+        let angle = Angle16(((k - 1) * 4096) as u16);
         let radius = if k % 2 == 0 { 520 } else { 380 };
         let x = (angle.cos().to_bits() as i64 * radius) >> 16;
         let y = (angle.sin().to_bits() as i64 * radius) >> 16;

@@ -1,6 +1,6 @@
 //! A pot with a lid, a spout and a handle: surfaces of revolution and tubes along Bézier curves, with smooth normals.
 
-use zstrip::math::{Angle, Scalar, Vec3};
+use zstrip::math::{Angle16, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 
 /// A point or a vector of a plane, 16.16.
@@ -66,7 +66,7 @@ const fn curve(c: &Curve, k: usize, n: usize) -> (Flat, Flat) {
 
 /// Sine and cosine of step `k` of `n`, 16.16.
 const fn circle(k: usize, n: usize) -> (i64, i64) {
-    let angle = Angle((k * 65_536 / n) as u16);
+    let angle = Angle16((k * 65_536 / n) as u16);
     (angle.sin().to_bits() as i64, angle.cos().to_bits() as i64)
 }
 

@@ -3,7 +3,7 @@
 use super::kept::kept;
 use super::{LIGHT, camera};
 use zstrip::light::NORMAL_ONE;
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Textured;
 use zstrip::texture::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Tile};
@@ -233,20 +233,20 @@ pub struct Look {
 }
 
 /// World → eye: around the crates.
-fn around(turn: Angle) -> Affine {
-    Affine::rotation_x(Angle::from_degrees(16))
+fn around(turn: Angle16) -> Affine {
+    Affine::rotation_x(Angle16::from_degrees(16))
         * Affine::translation(Vec3::from_milli(0, -1500, -3800))
         * Affine::rotation_y(turn)
 }
 
 /// Takes what a model matrix brings into the world to clip space.
 #[inline(never)]
-fn seen(screen: (u16, u16), turn: Angle) -> Projective {
+fn seen(screen: (u16, u16), turn: Angle16) -> Projective {
     camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * around(turn)
 }
 
 #[inline(never)]
-fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
+fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16, mips: bool, filter: G) {
     let floor = if mips { Textured::mipmapped(floor_levels()).ok() } else { None };
     let floor = floor.unwrap_or(Textured::new(&floor_levels()[0]));
     scene.draw(&GROUND, &kept(|| seen(scene.screen(), turn)), &floor.wrap(Repeat).filter(filter));
@@ -256,23 +256,23 @@ fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips:
 const CRATES: [[i32; 4]; 3] = [[-700, 500, 0, 20], [650, 500, -400, -35], [-100, 1500, -150, 50]];
 
 /// Object space of a crate → eye space.
-fn crate_model(turn: Angle, [x, y, z, degrees]: [i32; 4]) -> Affine {
-    around(turn) * Affine::translation(Vec3::from_milli(x, y, z)) * Affine::rotation_y(Angle::from_degrees(degrees))
+fn crate_model(turn: Angle16, [x, y, z, degrees]: [i32; 4]) -> Affine {
+    around(turn) * Affine::translation(Vec3::from_milli(x, y, z)) * Affine::rotation_y(Angle16::from_degrees(degrees))
 }
 
 #[inline(never)]
-fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, place: [i32; 4], filter: G) {
+fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16, place: [i32; 4], filter: G) {
     let wood = kept(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.to_object(&crate_model(turn, place))));
     scene.draw(&CRATE, &kept(|| crate_seen(scene.screen(), turn, place)), &*wood);
 }
 
 /// Object space of a crate → clip space.
 #[inline(never)]
-fn crate_seen(screen: (u16, u16), turn: Angle, place: [i32; 4]) -> Projective {
+fn crate_seen(screen: (u16, u16), turn: Angle16, place: [i32; 4]) -> Projective {
     camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * crate_model(turn, place)
 }
 
-fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: bool, filter: G) {
+fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16, mips: bool, filter: G) {
     floor(scene, turn, mips, filter);
     for place in CRATES {
         one_crate(scene, turn, place, filter);
@@ -280,7 +280,7 @@ fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle, mips: 
 }
 
 /// Crates on a floor, behind a fence.
-pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, look: Look) {
+pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, look: Look) {
     if look.bilinear {
         with(scene, turn, look.mips, Bilinear);
     } else {
@@ -291,26 +291,26 @@ pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle, look: Look)
 
 /// A fence behind the crates, seen from both sides.
 #[inline(never)]
-fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let Ok(wire) = Image::new(&WIRE, (16, 16), MaskTexel([150, 160, 170])) else { return };
     let state = State { cull: Cull::None, ..State::DEFAULT };
     scene.draw_with(state, &FENCE, &kept(|| fence_seen(scene.screen(), turn)), &Textured::new(&wire));
 }
 
 #[inline(never)]
-fn fence_seen(screen: (u16, u16), turn: Angle) -> Projective {
+fn fence_seen(screen: (u16, u16), turn: Angle16) -> Projective {
     seen(screen, turn) * Affine::translation(Vec3::from_milli(0, 0, 1300))
 }
 
 /// A crate so close that perspective is strong, and some of it before the near plane.
-pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     scene.draw(&CRATE, &kept(|| close_seen(scene.screen(), turn)), &Textured::new(&WOODEN));
 }
 
 #[inline(never)]
-fn close_seen(screen: (u16, u16), turn: Angle) -> Projective {
+fn close_seen(screen: (u16, u16), turn: Angle16) -> Projective {
     camera(screen, Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16))
         * (Affine::translation(Vec3::from_milli(0, 0, -1250))
-            * Affine::rotation_x(Angle::from_degrees(25))
+            * Affine::rotation_x(Angle16::from_degrees(25))
             * Affine::rotation_y(turn))
 }

@@ -1,6 +1,6 @@
 //! A torus: radii 1 and 0.4, 32 × 16 quads, axis y.
 
-use zstrip::math::{Angle, Scalar, Vec3};
+use zstrip::math::{Angle16, Scalar, Vec3};
 use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
 
 const AROUND: usize = 32;
@@ -13,7 +13,7 @@ const SCALE: i64 = 91_750;
 
 /// Sine and cosine of step `k` of `n`, 16.16.
 const fn unit(k: usize, n: usize) -> (i64, i64) {
-    let angle = Angle((k * 65_536 / n) as u16);
+    let angle = Angle16((k * 65_536 / n) as u16);
     (angle.sin().to_bits() as i64, angle.cos().to_bits() as i64)
 }
 

@@ -3,7 +3,7 @@
 use super::kept::kept;
 use super::{LIGHT, camera, textured};
 use zstrip::color::PixelFormat;
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Textured;
 use zstrip::span::{Fragment, Shader};
@@ -44,7 +44,7 @@ pub static SURFACE: Mesh<'static> = Mesh::constant(MeshData {
 /// Two waves that cross: how far one has come, and how high they are.
 #[derive(Clone, Copy, Debug)]
 pub struct Water {
-    pub time: Angle,
+    pub time: Angle16,
     /// Height of a wave, 16.16.
     pub height: i32,
 }
@@ -53,8 +53,8 @@ impl Water {
     /// Height and slopes (along x, along z) at a place, 16.16.
     fn wave(self, x: i32, z: i32) -> (i32, i32, i32) {
         // Angles of the waves: turns of 2 and 3 units, to directions of their own.
-        let first = Angle((x / 2 + z / 5) as u16) + self.time + self.time;
-        let second = Angle((z / 3 - x / 6) as u16) + self.time + self.time + self.time;
+        let first = Angle16((x / 2 + z / 5) as u16) + self.time + self.time;
+        let second = Angle16((z / 3 - x / 6) as u16) + self.time + self.time + self.time;
         let times = |a: Scalar, height: i32| ((i64::from(a.to_bits()) * i64::from(height)) >> 16) as i32;
         // Slopes: 2π times height over wave length.
         let (up, also) = (times(first.cos(), self.height), times(second.cos(), self.height));
@@ -98,7 +98,7 @@ impl<P: PixelFormat> Shader<P> for Water {
 }
 
 /// Water with waves of a height in tenths, and a crate on it.
-pub fn water<F: Framebuffer>(scene: &mut Scene<'_, F>, time: Angle, tenths: i32) {
+pub fn water<F: Framebuffer>(scene: &mut Scene<'_, F>, time: Angle16, tenths: i32) {
     let water = Water { time, height: tenths * 6554 };
     surface(scene, &water);
     floating(scene, water);
@@ -108,7 +108,7 @@ pub fn water<F: Framebuffer>(scene: &mut Scene<'_, F>, time: Angle, tenths: i32)
 #[inline(never)]
 fn above(screen: (u16, u16)) -> Projective {
     camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(16 << 16))
-        * (Affine::rotation_x(Angle::from_degrees(24)) * Affine::translation(Vec3::from_milli(0, -1400, -3000)))
+        * (Affine::rotation_x(Angle16::from_degrees(24)) * Affine::translation(Vec3::from_milli(0, -1400, -3000)))
 }
 
 #[inline(never)]
@@ -119,10 +119,11 @@ fn surface<F: Framebuffer>(scene: &mut Scene<'_, F>, water: &Water) {
 /// The crate goes up and down with the water, and leans with its slopes.
 fn crate_model(water: Water) -> Affine {
     let (height, along_x, along_z) = water.wave(0, 0);
-    let leaning = Affine::rotation_z(Angle((along_x / 8) as u16)) * Affine::rotation_x(Angle((along_z / -8) as u16));
+    let leaning =
+        Affine::rotation_z(Angle16((along_x / 8) as u16)) * Affine::rotation_x(Angle16((along_z / -8) as u16));
     Affine::translation(Vec3::from_bits([0, height + (1 << 14), 0]))
         * leaning
-        * Affine::rotation_y(Angle::from_degrees(30))
+        * Affine::rotation_y(Angle16::from_degrees(30))
 }
 
 /// Object space of the crate → clip space.

@@ -1,7 +1,7 @@
 //! Lines and points in space: a wireframe with its hidden lines removed, axes, a cloud of points.
 
 use super::{Rgb888, seen, torus, torus_model};
-use zstrip::math::{Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::span::{Compare, DepthBias, DepthState};
@@ -32,8 +32,8 @@ const fn spiral() -> [Vec3; POINTS] {
     let mut points = [Vec3::ZERO; POINTS];
     let mut k = 0;
     while k < POINTS {
-        let around = Angle((k * 65_536 / POINTS) as u16);
-        let across = Angle((7 * k * 65_536 / POINTS) as u16);
+        let around = Angle16((k * 65_536 / POINTS) as u16);
+        let across = Angle16((7 * k * 65_536 / POINTS) as u16);
         let ring = 65_536 + (across.cos().to_bits() as i64 * 3) / 5;
         let (x, z) = (around.cos().to_bits() as i64 * ring, around.sin().to_bits() as i64 * ring);
         points[k] = Vec3::from_bits([(x >> 16) as i32, across.sin().to_bits() / 5 * 3, (z >> 16) as i32]);
@@ -56,7 +56,7 @@ pub const BEHIND_LINES: State = State { bias: DepthBias { constant: 1, slope: Sc
 const HIDDEN: State = State { depth: DepthState { compare: Compare::Greater, write: false }, ..State::DEFAULT };
 
 /// The torus as a wireframe, with hidden lines removed.
-pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle) {
+pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
     torus_lines(scene, &mvp);
     axes(scene, &mvp);

@@ -16,7 +16,7 @@ use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::frame::{Buffers, Renderer, RendererError};
 use zstrip::light::Light;
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud, Textured};
 use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
@@ -164,7 +164,7 @@ pub fn tiny(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats
 
 /// The compiler makes it: 128-bit arithmetic stays out of the firmware.
 const CAMERA: Projective = {
-    match Projective::perspective(Angle::from_degrees(60), (WIDTH as u16, HEIGHT as u16), NEAR, FAR) {
+    match Projective::perspective(Angle16::from_degrees(60), (WIDTH as u16, HEIGHT as u16), NEAR, FAR) {
         Ok(camera) => camera,
         Err(_) => panic!("not a camera"),
     }

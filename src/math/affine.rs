@@ -1,6 +1,6 @@
 //! Affine transforms: a 3×3 matrix and a translation, for placing models and cameras.
 
-use super::angle::Angle;
+use super::angle::Angle16;
 use super::error::ProjectionError;
 use super::format::Scalar;
 use super::vector::{Vec3, saturate};
@@ -11,8 +11,8 @@ use core::ops::Mul;
 /// `a * b` applies `b` first.
 ///
 /// ```
-/// use zstrip::math::{Affine, Angle, Vec3};
-/// let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_y(Angle::from_degrees(90));
+/// use zstrip::math::{Affine, Angle16, Vec3};
+/// let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_y(Angle16::from_degrees(90));
 /// assert_eq!(model.transform_point(Vec3::X), Vec3::from_ints(0, 0, -4));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,19 +51,19 @@ impl Affine {
     }
 
     /// Rotates about the x axis, y towards z.
-    pub const fn rotation_x(angle: Angle) -> Self {
+    pub const fn rotation_x(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[ONE, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0]] }
     }
 
     /// Rotates about the y axis, z towards x.
-    pub const fn rotation_y(angle: Angle) -> Self {
+    pub const fn rotation_y(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[c, 0, s, 0], [0, ONE, 0, 0], [-s, 0, c, 0]] }
     }
 
     /// Rotates about the z axis, x towards y.
-    pub const fn rotation_z(angle: Angle) -> Self {
+    pub const fn rotation_z(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, ONE, 0]] }
     }
@@ -72,7 +72,7 @@ impl Affine {
     ///
     /// # Source
     /// Rodrigues' formula; entries within 2⁻¹⁴.
-    pub const fn rotation(axis: Vec3, angle: Angle) -> Self {
+    pub const fn rotation(axis: Vec3, angle: Angle16) -> Self {
         let Some(unit) = axis.normalized() else {
             return Self::IDENTITY;
         };

@@ -4,22 +4,25 @@ use super::format::Scalar;
 
 /// An angle in binary units: 65,536 make one turn, and arithmetic wraps as angles do.
 ///
+/// Named by its 16 bits and not plainly `Angle`, because embedded-graphics has an `Angle` of its own, an `f32`, in its prelude:
+/// both preludes may be imported side by side.
+///
 /// ```
-/// use zstrip::math::{Angle, Scalar};
-/// assert_eq!(Angle::from_degrees(90), Angle(0x4000));
-/// assert_eq!(Angle::from_degrees(90).sin(), Scalar::ONE);
-/// assert_eq!(Angle(0xC000) + Angle(0x8000), Angle(0x4000));
+/// use zstrip::math::{Angle16, Scalar};
+/// assert_eq!(Angle16::from_degrees(90), Angle16(0x4000));
+/// assert_eq!(Angle16::from_degrees(90).sin(), Scalar::ONE);
+/// assert_eq!(Angle16(0xC000) + Angle16(0x8000), Angle16(0x4000));
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Angle(pub u16);
+pub struct Angle16(pub u16);
 
 /// π/2 and the Taylor coefficients of sin(πx/2), signs alternating, in 2.30.
 ///
 /// The first term left out is (π/2)¹³/13! < 2⁻²⁴, at x = 1.
 const SINE: [i64; 6] = [1_686_629_713, 693_598_668, 85_569_306, 5_026_995, 172_272, 3_864];
 
-impl Angle {
+impl Angle16 {
     /// No rotation.
     pub const ZERO: Self = Self(0);
 
@@ -68,21 +71,21 @@ impl Angle {
     }
 }
 
-impl core::ops::Add for Angle {
+impl core::ops::Add for Angle16 {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self(self.0.wrapping_add(other.0))
     }
 }
 
-impl core::ops::Sub for Angle {
+impl core::ops::Sub for Angle16 {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         Self(self.0.wrapping_sub(other.0))
     }
 }
 
-impl core::ops::Neg for Angle {
+impl core::ops::Neg for Angle16 {
     type Output = Self;
     fn neg(self) -> Self {
         Self(self.0.wrapping_neg())

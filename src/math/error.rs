@@ -1,6 +1,6 @@
 //! Why a camera could not be built.
 
-use super::angle::Angle;
+use super::angle::Angle16;
 use super::format::Scalar;
 use core::fmt;
 
@@ -13,7 +13,7 @@ pub enum ProjectionError {
     /// The near plane is not in front of the far plane: both distances, raw 16.16.
     NearNotBeforeFar(i32, i32),
     /// The field of view is not between 0 and 180 degrees.
-    FieldOfView(Angle),
+    FieldOfView(Angle16),
     /// One side of the aspect ratio is zero.
     Aspect(u16, u16),
     /// Two opposite planes of an orthographic box coincide: both, raw 16.16.

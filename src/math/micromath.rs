@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn a_quarter_turn_is_exact() {
         let q = Quaternion::new(1.0, 0.0, 1.0, 0.0);
-        assert_eq!(Affine::try_from(q), Ok(Affine::rotation_y(crate::math::Angle::from_degrees(90))));
+        assert_eq!(Affine::try_from(q), Ok(Affine::rotation_y(crate::math::Angle16::from_degrees(90))));
     }
 
     #[test]

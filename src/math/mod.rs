@@ -18,11 +18,11 @@ mod root;
 mod vector;
 
 pub use affine::Affine;
-pub use angle::Angle;
+pub use angle::Angle16;
 pub(crate) use division::{divide, divide_modulo, divided};
 pub use error::ProjectionError;
 pub use exponential::exp_negative;
-pub use format::{Scalar, Wide};
+pub use format::{Pixels, Scalar, Wide};
 pub use inverse_sqrt::{inverse_sqrt, unit_vector};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;

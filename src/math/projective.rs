@@ -1,7 +1,7 @@
 //! Projective transforms: 4×4 matrices that take world or object space to clip space.
 
 use super::affine::Affine;
-use super::angle::Angle;
+use super::angle::Angle16;
 use super::error::ProjectionError;
 use super::format::{Scalar, Wide};
 use super::vector::Vec3;
@@ -10,11 +10,11 @@ use core::ops::Mul;
 /// A 4×4 matrix of 32.32 entries, applied to column vectors; clip space is -w ≤ x, y ≤ w, 0 ≤ z ≤ w.
 ///
 /// ```
-/// use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+/// use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 /// let near = Scalar::from_num(0.5);
-/// let camera = Projective::perspective(Angle::from_degrees(60), (320, 240), near, Scalar::from_num(100))?;
+/// let camera = Projective::perspective(Angle16::from_degrees(60), (320, 240), near, Scalar::from_num(100))?;
 /// let view = Affine::look_at(Vec3::from_ints(0, 2, 5), Vec3::ZERO, Vec3::Y)?;
-/// let mvp = camera * view * Affine::rotation_y(Angle::from_degrees(30));
+/// let mvp = camera * view * Affine::rotation_y(Angle16::from_degrees(30));
 /// # let _ = mvp;
 /// # Ok::<(), zstrip::math::ProjectionError>(())
 /// ```
@@ -80,7 +80,7 @@ impl Projective {
     /// When `near ≤ 0`, `near ≥ far`, the angle is not in 0..180°, or the aspect has a zero.
     #[inline(never)]
     pub const fn perspective(
-        field_of_view: Angle,
+        field_of_view: Angle16,
         aspect: (u16, u16),
         near: Scalar,
         far: Scalar,
@@ -98,7 +98,7 @@ impl Projective {
         if aspect.0 == 0 || aspect.1 == 0 {
             return Err(ProjectionError::Aspect(aspect.0, aspect.1));
         }
-        let half = Angle(field_of_view.0 / 2);
+        let half = Angle16(field_of_view.0 / 2);
         let (sin, cos) = (half.sin_q30() as i128, half.cos_q30() as i128);
         let x = ratio(cos * aspect.1 as i128, sin * aspect.0 as i128);
         let y = ratio(cos, sin);

@@ -57,7 +57,7 @@ pub fn sort_back_to_front(order: &mut [u16], depth: impl Fn(u16) -> i64) {
 mod tests {
     use super::super::bounds::{BoundingBox, BoundingSphere};
     use super::*;
-    use crate::math::{Affine, Angle, Scalar, Vec3};
+    use crate::math::{Affine, Angle16, Scalar, Vec3};
     use std::vec::Vec;
 
     #[test]
@@ -84,7 +84,7 @@ mod tests {
     #[test]
     fn depth_is_the_distance_before_the_camera() {
         let camera =
-            Projective::perspective(Angle::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(100)).unwrap();
+            Projective::perspective(Angle16::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(100)).unwrap();
         let center = Vec3::from_milli(300, -200, 500);
         let bounds = Bounds {
             aabb: BoundingBox { center, half: Vec3::ZERO },

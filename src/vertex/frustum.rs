@@ -36,8 +36,8 @@ pub enum Containment {
 /// ```
 /// use zstrip::mesh::BoundingSphere;
 /// use zstrip::vertex::{Containment, Frustum};
-/// use zstrip::math::{Angle, Projective, Scalar, Vec3};
-/// let camera = Projective::perspective(Angle::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(50))?;
+/// use zstrip::math::{Angle16, Projective, Scalar, Vec3};
+/// let camera = Projective::perspective(Angle16::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(50))?;
 /// let frustum = Frustum::new(&camera);
 /// let behind = BoundingSphere { center: Vec3::from_ints(0, 0, 5), radius: Scalar::ONE };
 /// assert_eq!(frustum.sphere(&behind), Containment::Outside);

@@ -6,7 +6,7 @@ use crate::reference::scenes::clip_soup;
 use zstrip::Scene;
 use zstrip::color::PixelFormat;
 use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
-use zstrip::math::{Affine, Angle, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, Positions};
 use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
 use zstrip::vertex::{
@@ -126,8 +126,8 @@ pub fn vector(rng: &mut Rng, limit: f64) -> Vec3 {
 }
 
 /// Any angle.
-pub fn angle(rng: &mut Rng) -> Angle {
-    Angle(rng.next_u64() as u16)
+pub fn angle(rng: &mut Rng) -> Angle16 {
+    Angle16(rng.next_u64() as u16)
 }
 
 /// A rotation about any axis, then a translation by up to `reach` an axis.

@@ -31,7 +31,7 @@ use rp2040_hal::{
 };
 use zstrip::color::Rgb565Be;
 use zstrip::frame::{Buffers, Renderer};
-use zstrip::math::Angle;
+use zstrip::math::Angle16;
 use zstrip::target::StripPixels;
 
 #[unsafe(link_section = ".boot2")]
@@ -123,7 +123,7 @@ fn main() -> ! {
             sending.set_low().unwrap();
             sent
         };
-        let frame = renderer.frame_to(send, scenes::BACKGROUND, |scene| scenes::torus_gouraud(scene, Angle(turn)));
+        let frame = renderer.frame_to(send, scenes::BACKGROUND, |scene| scenes::torus_gouraud(scene, Angle16(turn)));
         if frame.is_err() {
             panic!("the panel does not answer");
         }
