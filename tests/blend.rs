@@ -14,7 +14,7 @@ use zstrip::shader::{
 };
 use zstrip::span::{DepthState, Fragment, Shader};
 use zstrip::texture::{Image, Rgb888Texel, WithAlpha};
-use zstrip::vertex::{Corner, VertexShader};
+use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Cull, State};
 
 #[test]
@@ -125,7 +125,7 @@ struct Ramp([u8; 3]);
 impl VertexShader for Ramp {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 }

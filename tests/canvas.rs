@@ -14,7 +14,7 @@ use zstrip::frame::FramebufferRenderer;
 use zstrip::raster::{Line, PixelRect};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::{FrameSlice, Framebuffer};
-use zstrip::vertex::{Corner, VertexShader};
+use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Canvas, Dashed, Scene, ScreenPoint, Smooth, Thick, Thin};
 
 const SCREEN: (u16, u16) = (64, 48);
@@ -74,7 +74,7 @@ struct Count<'a>(RefCell<&'a mut Vec<(i32, i32)>>);
 impl VertexShader for Count<'_> {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 }

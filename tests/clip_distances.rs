@@ -11,7 +11,7 @@ use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Blend, Replace, ScreenDoor};
 use zstrip::span::{DepthState, Fragment, Shader};
-use zstrip::vertex::{Corner, Perspective, VertexShader};
+use zstrip::vertex::{Perspective, VertexRef, VertexShader};
 use zstrip::{Cull, State};
 
 const SCREEN: (u16, u16) = (64, 64);
@@ -28,7 +28,7 @@ impl<const CLIP: usize> Cut<CLIP> {
         Self { planes: planes.to_vec(), seen: RefCell::new(vec![(0, [0; 2]); 64 * 64]) }
     }
 
-    fn distances_at(&self, corner: &Corner<'_>) -> [i32; 4] {
+    fn distances_at(&self, corner: &VertexRef<'_>) -> [i32; 4] {
         let mut distances = [0; 4];
         for (distance, (normal, offset)) in distances.iter_mut().zip(&self.planes) {
             let dot = |a: [i32; 3], b: [i32; 3]| (0..3).map(|k| (i64::from(a[k]) * i64::from(b[k])) >> 16).sum::<i64>();
@@ -43,12 +43,12 @@ impl<const CLIP: usize> VertexShader for Cut<CLIP> {
 
     const CLIP_DISTANCES: usize = CLIP;
 
-    fn vertex(&self, corner: &Corner<'_>) -> Perspective<2, 3> {
+    fn vertex(&self, corner: &VertexRef<'_>) -> Perspective<2, 3> {
         let [a, b, ..] = self.distances_at(corner);
         Perspective::new([a, b], [])
     }
 
-    fn distances(&self, corner: &Corner<'_>) -> [i32; 4] {
+    fn distances(&self, corner: &VertexRef<'_>) -> [i32; 4] {
         self.distances_at(corner)
     }
 }
@@ -159,11 +159,11 @@ impl VertexShader for RightOf {
 
     const CULL_DISTANCES: usize = 1;
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
-    fn distances(&self, corner: &Corner<'_>) -> [i32; 4] {
+    fn distances(&self, corner: &VertexRef<'_>) -> [i32; 4] {
         [corner.position().to_bits()[0] - self.0, 0, 0, 0]
     }
 }

@@ -46,7 +46,7 @@ type Polygon = Vec<(ClipVertex, [i32; 3])>;
 fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Polygon> {
     let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
     let mut polygons = Vec::new();
-    for part in [zstrip::vertex::Part::Between].into_iter().chain(range.parts_beyond(Outcode(codes))) {
+    for part in [zstrip::vertex::DepthSlab::Inside].into_iter().chain(range.clamped_slabs(Outcode(codes))) {
         let mut polygon = Vec::new();
         clip_triangle(triangle.map(|v| v.0), Outcode(codes), part, |corner| {
             polygon.push((corner.vertex, corner.weights))

@@ -1,4 +1,4 @@
-//! Corner cases that once went wrong, or easily could.
+//! VertexRef cases that once went wrong, or easily could.
 
 mod reference;
 mod support;
@@ -16,7 +16,7 @@ use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, Mesh, MeshData, MeshErro
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
-use zstrip::vertex::{Corner, DepthRange, Face, Placed, Transform, VertexShader, Viewport};
+use zstrip::vertex::{DepthRange, Face, Projected, Transform, VertexRef, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State};
 
 const SQUARE: [Vec3; 4] =
@@ -109,7 +109,7 @@ struct Normal(Cell<[i16; 3]>);
 impl VertexShader for Normal {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
@@ -270,7 +270,7 @@ fn short_path_is_not_taken_where_rounding_leaves_its_range() {
         let transform = Transform::new(&mvp, &viewport, &mesh, false);
         short += usize::from(transform.is_short());
         for index in 0..points.len() {
-            if let Placed::Screen(vertex) = transform.place(&positions, index) {
+            if let Projected::OnScreen(vertex) = transform.project_vertex(&positions, index) {
                 let clip = transform.vertex(&positions, index);
                 assert_eq!(transform.project(&clip), Some(vertex), "nudge {nudge}, vertex {index}");
             }

@@ -10,7 +10,7 @@ use zstrip::math::{Affine, Angle16, DepthPrecision, PrecisionError, ProjectionEr
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::Flat;
 use zstrip::span::{DepthBias, DepthState};
-use zstrip::vertex::{DepthScale, Placed, Transform, Viewport};
+use zstrip::vertex::{DepthScale, Projected, Transform, Viewport};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 const SCREEN: (u16, u16) = (160, 120);
@@ -251,7 +251,7 @@ fn uniform_depth_of_vertices_is_within_half_a_step() {
         transform.set_depth_scale(DepthScale::Uniform { far });
         short += u32::from(transform.is_short());
         for (index, point) in points.iter().enumerate() {
-            let Placed::Screen(vertex) = transform.place(&mesh.data().positions, index) else { continue };
+            let Projected::OnScreen(vertex) = transform.project_vertex(&mesh.data().positions, index) else { continue };
             let row = mvp.to_rows()[2].map(|entry| entry as f64 / 2f64.powi(32));
             let z = row[3] + (0..3).map(|k| row[k] * f64::from(point[k]) / 32_768.0).sum::<f64>();
             let exact = (65_535.0 * z / far.to_num::<f64>()).clamp(0.0, 65_535.0);

@@ -12,7 +12,7 @@ use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::raster::{self, PixelRect};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Strip;
-use zstrip::vertex::{Corner, Face, Placed, Side, Transform, Varyings, VertexShader, Viewport, signed_area};
+use zstrip::vertex::{Face, Projected, Side, Transform, Varyings, VertexRef, VertexShader, Viewport, signed_area};
 use zstrip::{Cull, Scene, State, Winding};
 
 const SCREEN: (u16, u16) = (32, 32);
@@ -32,7 +32,7 @@ where
 {
     type Varyings = [i32; N];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; N] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; N] {
         core::array::from_fn(|k| (k as i32) << 16)
     }
 }
@@ -57,9 +57,9 @@ fn every_walk_covers_the_pixels_of_the_rasterizer() {
         let points = [(); 3].map(|()| Vec3::new(scalar(&mut rng, reach), scalar(&mut rng, reach), Scalar::ZERO));
         let mesh = Mesh::new(MeshData::new(Positions::Exact(&points))).expect("a triangle");
         let transform = Transform::new(&Projective::IDENTITY, &viewport, &mesh, false);
-        let v = points.map(|point| match transform.place_clip(&transform.point(point)) {
-            Placed::Screen(vertex) => vertex,
-            Placed::Outside(code) => panic!("{point:?} is outside: {code:?}"),
+        let v = points.map(|point| match transform.project_clip_vertex(&transform.point(point)) {
+            Projected::OnScreen(vertex) => vertex,
+            Projected::NeedsClip(code) => panic!("{point:?} is outside: {code:?}"),
         });
         let mut expected = vec![0; 32 * 32];
         raster::spans(&v, signed_area(&v[0], &v[1], &v[2]), &PixelRect { x: 0..32, y: 0..32 }, |y, x| {
@@ -92,7 +92,7 @@ struct Chequers(RefCell<Vec<Seen>>);
 impl VertexShader for Chequers {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 

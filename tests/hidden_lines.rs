@@ -16,7 +16,7 @@ use zstrip::mesh::{Joined, Lines, Mesh, MeshData, Positions, Topology};
 use zstrip::raster::{Line, PixelRect};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::span::{DepthBias, DepthState, Fragment, Shader};
-use zstrip::vertex::{Corner, Face, Placed, ScreenVertex, Transform, VertexShader, Viewport};
+use zstrip::vertex::{Face, Projected, ScreenVertex, Transform, VertexRef, VertexShader, Viewport};
 use zstrip::{State, Thin};
 
 const SCREEN: (u16, u16) = (320, 240);
@@ -27,7 +27,7 @@ struct Drawn<'a>(RefCell<&'a mut BTreeSet<(u32, (i32, i32))>>);
 impl VertexShader for Drawn<'_> {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
@@ -96,9 +96,9 @@ fn visible_edges_have_no_gaps_and_hidden_ones_do_not_shine_through() {
             scene.draw_lines_with(state, torus::lines(), &mvp, &shader, &Thin);
         });
         let transform = Transform::new(&mvp, &viewport, torus::lines().vertices(), false);
-        let place = |k| match transform.place(&torus::lines().vertices().data().positions, k) {
-            Placed::Screen(v) => v,
-            Placed::Outside(code) => panic!("{code:?}"),
+        let place = |k| match transform.project_vertex(&torus::lines().vertices().data().positions, k) {
+            Projected::OnScreen(v) => v,
+            Projected::NeedsClip(code) => panic!("{code:?}"),
         };
         let v: Vec<_> = (0..torus::lines().vertices().vertex_count()).map(place).collect();
         let faces = front_faces(&v);

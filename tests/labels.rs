@@ -18,7 +18,7 @@ use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
-use zstrip::vertex::{DepthScale, Placed, ScreenVertex, Transform, Viewport, place};
+use zstrip::vertex::{DepthScale, Projected, ScreenVertex, Transform, Viewport};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 const SCREEN: (u16, u16) = (64, 48);
@@ -371,14 +371,17 @@ fn points_are_projected_to_where_vertices_would_be() {
         let corners = [point, vector(&mut rng, 100.0), Vec3::new(scalar(&mut rng, 900.0), Scalar::ZERO, Scalar::ONE)];
         let positions = Positions::Exact(&corners);
         let mesh = Mesh::new(MeshData::new(positions)).expect("a mesh");
-        let as_vertex = match Transform::new(&mvp, &viewport, &mesh, false).place(&positions, 0) {
-            Placed::Screen(vertex) => Some(vertex),
-            Placed::Outside(_) => None,
+        let as_vertex = match Transform::new(&mvp, &viewport, &mesh, false).project_vertex(&positions, 0) {
+            Projected::OnScreen(vertex) => Some(vertex),
+            Projected::NeedsClip(_) => None,
         };
         assert_eq!(found, as_vertex, "seed {seed}");
         assert_eq!(
             found.is_some(),
-            matches!(place(&Transform::new(&mvp, &viewport, &mesh, false).point(point)), Placed::Screen(_))
+            matches!(
+                zstrip::vertex::projected(&Transform::new(&mvp, &viewport, &mesh, false).point(point)),
+                Projected::OnScreen(_)
+            )
         );
 
         // And by the textbook.
@@ -417,7 +420,9 @@ fn points_have_the_depth_of_vertices_on_either_scale() {
             let mesh = Mesh::new(MeshData::new(positions)).expect("a mesh");
             let mut transform = Transform::new(&mvp, &viewport, &mesh, false);
             transform.set_depth_scale(depth_scale);
-            let Placed::Screen(expected) = transform.place(&positions, 0) else { panic!("{z} is out of view") };
+            let Projected::OnScreen(expected) = transform.project_vertex(&positions, 0) else {
+                panic!("{z} is out of view")
+            };
             strips::<Rgb565>(SCREEN, 48, 0, Rgb565::BLACK, |scene| {
                 assert_eq!(scene.project_with(state, corners[0], &mvp), Some(expected), "{depth_scale:?}, z {z}");
             });

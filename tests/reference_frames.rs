@@ -20,7 +20,7 @@ use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
 use zstrip::span::{DepthState, Fragment, Shader};
-use zstrip::vertex::{Corner, DepthRange, Face, VertexShader, Viewport};
+use zstrip::vertex::{DepthRange, Face, VertexRef, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State};
 
 /// A draw of a scene.
@@ -111,7 +111,7 @@ struct Ids(u32);
 impl VertexShader for Ids {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 

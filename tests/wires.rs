@@ -15,7 +15,7 @@ use zstrip::raster::{Line, PixelRect, square};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Framebuffer;
-use zstrip::vertex::{Corner, DepthRange, Face, Placed, ScreenVertex, Transform, VertexShader, Viewport};
+use zstrip::vertex::{DepthRange, Face, Projected, ScreenVertex, Transform, VertexRef, VertexShader, Viewport};
 use zstrip::{Dashed, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 
 const SCREEN: (u16, u16) = (160, 120);
@@ -88,7 +88,7 @@ struct Seen<'a>(RefCell<&'a mut Vec<Hit>>);
 impl VertexShader for Seen<'_> {
     type Varyings = [i32; 1];
 
-    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 1] {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 1] {
         [value(vertex.index())]
     }
 
@@ -130,9 +130,9 @@ fn camera() -> Projective {
 fn placed(lines: &Lines<'_>, mvp: &Projective) -> Vec<ScreenVertex> {
     let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
     let transform = Transform::new(mvp, &viewport, lines.vertices(), false);
-    let place = |k| match transform.place(&lines.vertices().data().positions, k) {
-        Placed::Screen(v) => v,
-        Placed::Outside(code) => panic!("{code:?}"),
+    let place = |k| match transform.project_vertex(&lines.vertices().data().positions, k) {
+        Projected::OnScreen(v) => v,
+        Projected::NeedsClip(code) => panic!("{code:?}"),
     };
     (0..lines.vertices().vertex_count()).map(place).collect()
 }

@@ -12,7 +12,7 @@ use zstrip::shader::{
     PerFragmentNear, PerVertex, Shaded,
 };
 use zstrip::span::{DepthState, Fragment, Shader};
-use zstrip::vertex::{Corner, VertexShader};
+use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// How the pot is shaded.
@@ -477,7 +477,7 @@ impl VertexShader for Ember {
     /// Place in the square, -1 to 1 in 16.16.
     type Varyings = [i32; 2];
 
-    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 2] {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 2] {
         vertex.uv().map(Scalar::to_bits)
     }
 }

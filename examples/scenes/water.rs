@@ -7,7 +7,7 @@ use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Textured;
 use zstrip::span::{Fragment, Shader};
-use zstrip::vertex::{Corner, VertexShader};
+use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Framebuffer, Scene};
 
 /// Squares each way, of 1/4 each.
@@ -72,12 +72,12 @@ impl VertexShader for Water {
 
     const DISPLACES: bool = true;
 
-    fn displace(&self, corner: &Corner<'_>) -> Vec3 {
+    fn displace(&self, corner: &VertexRef<'_>) -> Vec3 {
         let [x, y, z] = corner.position().to_bits();
         Vec3::from_bits([x, y + self.wave(x, z).0, z])
     }
 
-    fn vertex(&self, corner: &Corner<'_>) -> [i32; 2] {
+    fn vertex(&self, corner: &VertexRef<'_>) -> [i32; 2] {
         let [x, _, z] = corner.position().to_bits();
         let (height, along_x, along_z) = self.wave(x, z);
         // The light comes from the right and from the front: slopes that face it are bright.

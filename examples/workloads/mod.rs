@@ -22,7 +22,7 @@ use zstrip::shader::{Flat, Gouraud, Textured};
 use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
 use zstrip::target::{Stats, Strip};
 use zstrip::texture::Tile;
-use zstrip::vertex::{Corner, Face, VertexShader};
+use zstrip::vertex::{Face, VertexRef, VertexShader};
 use zstrip::{Scene, State};
 
 pub const WIDTH: usize = 320;
@@ -192,7 +192,7 @@ struct FaceColors(Flat);
 impl VertexShader for FaceColors {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
@@ -221,7 +221,7 @@ struct OwnFlat;
 impl VertexShader for OwnFlat {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
@@ -245,7 +245,7 @@ struct OwnGouraud;
 impl VertexShader for OwnGouraud {
     type Varyings = [i32; 3];
 
-    fn vertex(&self, corner: &Corner<'_>) -> [i32; 3] {
+    fn vertex(&self, corner: &VertexRef<'_>) -> [i32; 3] {
         // 8.16, and a little away from both ends, for the gradients' errors.
         corner.color().map(|c| i32::from(c) * 0xFF00 + 0x4000)
     }

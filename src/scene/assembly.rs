@@ -1,17 +1,17 @@
 //! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
 
 use super::painter::RasterHooks;
-use super::scan::{Mark, Scan, Seen, Stop};
+use super::scan::{PendingFace, Scan, ScanEvent, ScreenTriangle};
 use super::scene::Scene;
 use super::state::{Culling, State};
 use crate::math::Projective;
 use crate::mesh::{BoundsNode, Mesh};
 use crate::raster::PixelRect;
 use crate::span::Shader;
-use crate::target::{Framebuffer, Slot};
+use crate::target::{Framebuffer, PackedVertex};
 use crate::vertex::{
-    CLIPPED_CORNERS, ClipVertex, Corner, DISTANCE_CORNERS, DepthRange, DepthScale, Face, MAX_DISTANCES, Outcode, Part,
-    Placed, Polygon, PolygonCorner, Transform, Varyings, VertexShader, inverse_w, weighted,
+    CLIPPED_CORNERS, ClipVertex, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face, MAX_DISTANCES, Outcode,
+    Polygon, PolygonCorner, Projected, Transform, Varyings, VertexRef, VertexShader, inverse_w, weighted,
 };
 use core::ops::Range;
 
@@ -21,8 +21,8 @@ const FAN: usize = 4;
 /// A corner of a clipped polygon on the screen. What is interpolated is made of it when it is drawn, or recorded.
 #[derive(Clone, Copy, Default)]
 struct FanCorner {
-    /// Words of a [`Slot`].
-    slot: [u32; 2],
+    /// Words of a [`PackedVertex`].
+    packed: [u32; 2],
     /// Parts of the triangle's corners in it, see [`ClipCorner`](crate::vertex::ClipCorner).
     weights: [i32; 3],
     /// See [`inverse_w`]; 0 where nothing is perspective-correct.
@@ -39,7 +39,7 @@ struct Fan {
     indices: [u16; 3],
 }
 
-type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut Seen, Outcode);
+type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut ScreenTriangle, Outcode);
 
 /// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
 pub struct AssemblyHooks<F: Framebuffer, S: Shader<F::Format>> {
@@ -58,7 +58,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> AssemblyHooks<F, S> {
     pub(super) const ANY: Self = Self {
         raster: RasterHooks::ANY,
         depth_scale: Some(Transform::set_depth_scale),
-        beyond: Some(|assembly, seen, codes| assembly.beyond(seen, codes)),
+        beyond: Some(|assembly, triangle, codes| assembly.beyond(triangle, codes)),
     };
 
     /// For a state.
@@ -126,14 +126,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         while !self.scene.overflowed() {
             let first = self.scene.records.triangle_count();
             let Scene { records, strips, band, stats, .. } = &mut *self.scene;
-            let stop = scan.next(records, strips, band.start, &self.clip, stats);
+            let event = scan.next(records, strips, band.start, &self.clip, stats);
             if self.scene.records.triangle_count() != first {
                 self.shade_faces(first);
             }
-            if stop == Stop::End {
+            if event == ScanEvent::Done {
                 break;
             }
-            self.shade_stop(stop, &mut scan.seen);
+            self.handle(event, &mut scan.triangle);
         }
     }
 
@@ -143,7 +143,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let Self { scene, state, mesh, shader, .. } = self;
         let mut records = scene.records.triangles_from(first);
         while let Some(([corners, last, word], rest)) = records.split_first_chunk_mut() {
-            let (number, area) = Mark(*word).parts();
+            let (number, area) = PendingFace(*word).parts();
             let [k, _] = bytemuck::cast(*last);
             let corners = [*corners as u16, (*corners >> 16) as u16, k];
             *word = shader.face(&Face::new(mesh, number, corners, state.side(area)));
@@ -154,7 +154,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Where there is nothing to scan: places are not kept, or cull distances come before them.
     #[inline(never)]
     fn each_triangle(&mut self, numbers: Range<usize>) {
-        let mut seen = Seen::NONE;
+        let mut triangle = ScreenTriangle::NONE;
         for number in numbers {
             let Some([i, j, k]) = self.mesh.any_triangle(number) else { return };
             if self.scene.overflowed() {
@@ -164,77 +164,86 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             if S::CULL_DISTANCES > 0 && self.is_culled_by_distance([i, j, k]) {
                 self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             } else {
-                (seen.number, seen.corners) = (number as u16, [i, j, k]);
-                self.shade_stop(Stop::Unplaced, &mut seen);
+                (triangle.number, triangle.corners) = (number as u16, [i, j, k]);
+                self.handle(ScanEvent::NeedsVertices, &mut triangle);
             }
         }
     }
 
     /// A triangle that may be seen, or that has to be looked at.
     #[inline(always)]
-    fn shade_stop(&mut self, stop: Stop, seen: &mut Seen) {
-        match if stop == Stop::Unplaced { self.look_at(seen) } else { stop } {
-            Stop::Seen => self.shade_face(seen),
+    fn handle(&mut self, event: ScanEvent, triangle: &mut ScreenTriangle) {
+        match if event == ScanEvent::NeedsVertices { self.shade_corners(triangle) } else { event } {
+            ScanEvent::Visible => self.shade_face(triangle),
             // 4. Clipping.
-            Stop::Clipped(codes) => {
-                self.part(seen, codes, Part::Between);
+            ScanEvent::NeedsClip(codes) => {
+                self.part(triangle, codes, DepthSlab::Inside);
                 if let Some(beyond) = self.hooks.beyond {
-                    beyond(self, seen, codes);
+                    beyond(self, triangle, codes);
                 }
             }
-            Stop::Unplaced | Stop::End => {}
+            ScanEvent::NeedsVertices | ScanEvent::Done => {}
         }
     }
 
     /// A triangle that has a vertex which is not shaded yet, or not on the screen: what else it is; the end, if it cannot be seen.
     #[inline(never)]
-    fn look_at(&mut self, seen: &mut Seen) -> Stop {
+    fn shade_corners(&mut self, triangle: &mut ScreenTriangle) -> ScanEvent {
         // 3. Vertex stage, once a vertex where there are records to keep the result.
         let mut visible = true;
         let (mut common, mut all) = (!self.state.range.clamped().0, 0);
-        for (v, index) in seen.v.iter_mut().zip(&seen.corners) {
-            let slot = self.slot(*index);
-            *v = slot.screen();
-            visible &= slot.is_on_screen();
-            common &= slot.outcode();
-            all |= slot.outcode();
+        for (v, index) in triangle.v.iter_mut().zip(&triangle.corners) {
+            let packed = self.packed_vertex(*index);
+            *v = packed.screen();
+            visible &= packed.is_on_screen();
+            common &= packed.outcode();
+            all |= packed.outcode();
         }
         if visible {
-            if seen.find(self.culling, &self.clip, self.scene.stats) { Stop::Seen } else { Stop::End }
+            if triangle.passes_culling(self.culling, &self.clip, self.scene.stats) {
+                ScanEvent::Visible
+            } else {
+                ScanEvent::Done
+            }
         } else if common != 0 {
             self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
-            Stop::End
+            ScanEvent::Done
         } else {
             self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
-            Stop::Clipped(Outcode(all))
+            ScanEvent::NeedsClip(Outcode(all))
         }
     }
 
     /// A triangle on the screen.
     #[inline(never)]
-    fn shade_face(&mut self, seen: &Seen) {
-        let word = self.face(seen);
+    fn shade_face(&mut self, triangle: &ScreenTriangle) {
+        let word = self.face(triangle);
         if self.scene.is_recording() {
-            self.record(seen.row, seen.corners, word);
+            self.record(triangle.row, triangle.corners, word);
         } else {
-            let [i, j, k] = seen.corners;
-            self.draw(seen, &mut [self.varyings(i), self.varyings(j), self.varyings(k)], word);
+            let [i, j, k] = triangle.corners;
+            self.draw(triangle, &mut [self.varyings(i), self.varyings(j), self.varyings(k)], word);
         }
     }
 
     #[inline(never)]
-    fn face(&self, seen: &Seen) -> u32 {
-        self.shader.face(&Face::new(self.mesh, seen.number.into(), seen.corners, self.state.side(seen.area)))
+    fn face(&self, triangle: &ScreenTriangle) -> u32 {
+        self.shader.face(&Face::new(
+            self.mesh,
+            triangle.number.into(),
+            triangle.corners,
+            self.state.side(triangle.area),
+        ))
     }
 
     /// The vertex stage's result for a vertex, from the records if it is there.
     #[inline]
-    fn slot(&mut self, index: u16) -> Slot {
+    fn packed_vertex(&mut self, index: u16) -> PackedVertex {
         if !self.scene.has_vertices() {
             return self.shade(index.into());
         }
-        let slot = self.scene.records.slot(index.into());
-        if slot.is_unshaded() { self.shade(index.into()) } else { slot }
+        let packed = self.scene.records.packed_vertex(index.into());
+        if packed.is_unshaded() { self.shade(index.into()) } else { packed }
     }
 
     /// 3. Vertex stage, of all vertices, where there are records to keep the result.
@@ -245,8 +254,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let (places, varyings) = scene.records.vertices_mut();
         scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
         match transform.short_points(&mesh.data().positions) {
-            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => place_all(transform, points, places),
-            _ => stage.place_each(places),
+            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => project_all(transform, points, places),
+            _ => stage.project_each(places),
         }
         if S::WORDS > 0 {
             stage.store_each(varyings);
@@ -255,14 +264,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     /// The vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
     #[inline(never)]
-    pub(super) fn shade(&mut self, index: usize) -> Slot {
+    pub(super) fn shade(&mut self, index: usize) -> PackedVertex {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
-        let slot = self.stage().place(index);
+        let packed = self.stage().project(index);
         if self.scene.has_vertices() {
             let varyings = self.vertex(index);
-            self.scene.records.keep::<S>(index, slot, &varyings);
+            self.scene.records.store_vertex::<S>(index, packed, &varyings);
         }
-        slot
+        packed
     }
 
     #[inline]
@@ -276,18 +285,18 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     /// The parts of a triangle that have their depth clamped.
-    pub(super) fn beyond(&mut self, seen: &mut Seen, codes: Outcode) {
-        for part in self.state.range.parts_beyond(codes) {
-            self.part(seen, codes, part);
+    pub(super) fn beyond(&mut self, triangle: &mut ScreenTriangle, codes: Outcode) {
+        for part in self.state.range.clamped_slabs(codes) {
+            self.part(triangle, codes, part);
         }
     }
 
     #[inline]
-    fn part(&mut self, seen: &mut Seen, codes: Outcode, part: Part) {
+    fn part(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, part: DepthSlab) {
         if S::CLIP_DISTANCES > 0 {
-            self.cut_part::<DISTANCE_CORNERS>(seen, codes, part);
+            self.cut_part::<DISTANCE_CORNERS>(triangle, codes, part);
         } else {
-            self.cut_part::<CLIPPED_CORNERS>(seen, codes, part);
+            self.cut_part::<CLIPPED_CORNERS>(triangle, codes, part);
         }
     }
 
@@ -295,14 +304,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     ///
     /// Where it has more corners than are kept, it is cut again for the next ones: that is rare, and the stack is short.
     #[inline(never)]
-    fn cut_part<const N: usize>(&mut self, seen: &mut Seen, codes: Outcode, part: Part) {
+    fn cut_part<const N: usize>(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, part: DepthSlab) {
         let mut fan = Fan::default();
         let mut before = 0;
         loop {
-            let count = self.cut::<N>(seen.corners, codes, part, before, &mut fan.corners);
+            let count = self.cut::<N>(triangle.corners, codes, part, before, &mut fan.corners);
             // The first one, and the last one before, are there already.
             for place in before.min(2)..FAN.min(count - before) {
-                self.fan_corner(seen, &mut fan, place);
+                self.fan_corner(triangle, &mut fan, place);
             }
             before += FAN - 2;
             if count <= before + 2 {
@@ -313,44 +322,45 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     /// A corner of a fan, and the triangle that it is the last of.
     #[inline(never)]
-    fn fan_corner(&mut self, seen: &mut Seen, fan: &mut Fan, place: usize) {
+    fn fan_corner(&mut self, triangle: &mut ScreenTriangle, fan: &mut Fan, place: usize) {
         let Some(corner) = fan.corners.get(place) else { return };
-        seen.v[2] = Slot::from_words(corner.slot).screen();
+        triangle.v[2] = PackedVertex::from_words(corner.packed).screen();
         if self.scene.is_recording() {
-            fan.indices[2] = self.keep(seen.corners, corner);
+            fan.indices[2] = self.store_corner(triangle.corners, corner);
         }
-        if place >= 2 && seen.find(self.culling, &self.clip, self.scene.stats) {
+        if place >= 2 && triangle.passes_culling(self.culling, &self.clip, self.scene.stats) {
             if self.scene.is_recording() {
-                self.record(seen.row, fan.indices, self.face(seen));
+                self.record(triangle.row, fan.indices, self.face(triangle));
             } else {
-                self.draw_corners(seen, &fan.corners, place);
+                self.draw_corners(triangle, &fan.corners, place);
             }
         }
         let place = usize::from(place > 0);
-        (seen.v[place], fan.indices[place]) = (seen.v[2], fan.indices[2]);
+        (triangle.v[place], fan.indices[place]) = (triangle.v[2], fan.indices[2]);
     }
 
     /// Puts a corner of a clipped triangle into the records.
     #[inline(never)]
-    fn keep(&mut self, corners: [u16; 3], corner: &FanCorner) -> u16 {
+    fn store_corner(&mut self, corners: [u16; 3], corner: &FanCorner) -> u16 {
         let index = self.scene.records.push_vertex();
         let varyings = self.corner_varyings(corners, corner);
-        self.scene.records.keep::<S>(usize::from(index), Slot::from_words(corner.slot), &varyings);
+        self.scene.records.store_vertex::<S>(usize::from(index), PackedVertex::from_words(corner.packed), &varyings);
         index
     }
 
     /// A triangle of a fan.
     #[inline(never)]
-    fn draw_corners(&mut self, seen: &Seen, corners: &[FanCorner; FAN], last: usize) {
-        let varyings = |k: usize| corners.get(k).map_or(S::Varyings::ZERO, |k| self.corner_varyings(seen.corners, k));
+    fn draw_corners(&mut self, triangle: &ScreenTriangle, corners: &[FanCorner; FAN], last: usize) {
+        let varyings =
+            |k: usize| corners.get(k).map_or(S::Varyings::ZERO, |k| self.corner_varyings(triangle.corners, k));
         let mut varyings = [varyings(0), varyings(last - 1), varyings(last)];
-        self.draw(seen, &mut varyings, self.face(seen));
+        self.draw(triangle, &mut varyings, self.face(triangle));
     }
 
     /// The varyings at a corner of a clipped triangle.
     #[inline(never)]
     fn corner_varyings(&self, corners: [u16; 3], corner: &FanCorner) -> S::Varyings {
-        let vertex = |index: u16| self.shader.vertex(&Corner::new(self.mesh, usize::from(index)));
+        let vertex = |index: u16| self.shader.vertex(&VertexRef::new(self.mesh, usize::from(index)));
         let [i, j, k] = corners;
         let mut varyings: S::Varyings = weighted(&corner.weights, &[vertex(i), vertex(j), vertex(k)]);
         if S::Varyings::PERSPECTIVE > 0 {
@@ -366,7 +376,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Whether one of the cull distances is negative at all corners.
     #[inline]
     fn is_culled_by_distance(&self, corners: [u16; 3]) -> bool {
-        let [a, b, c] = corners.map(|k| self.shader.distances(&Corner::new(self.mesh, usize::from(k))));
+        let [a, b, c] = corners.map(|k| self.shader.distances(&VertexRef::new(self.mesh, usize::from(k))));
         let all = a.iter().zip(b).zip(c).map(|((a, b), c)| a & b & c);
         all.skip(S::CLIP_DISTANCES).take(S::CULL_DISTANCES).any(|sign| sign < 0)
     }
@@ -379,7 +389,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         &self,
         corners: [u16; 3],
         codes: Outcode,
-        part: Part,
+        part: DepthSlab,
         before: usize,
         fan: &mut [FanCorner; FAN],
     ) -> usize {
@@ -395,7 +405,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                 polygon.cut_by_distance([i, j, k]);
             }
         }
-        place(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, before, fan)
+        project_corners(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, before, fan)
     }
 
     /// Sets a corner of a triangle that is to be clipped. In a function of its own for the stack.
@@ -425,16 +435,19 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 
     #[inline]
-    fn draw(&mut self, seen: &Seen, varyings: &mut [S::Varyings; 3], face: u32) {
-        self.scene
-            .painter(&self.clip, self.state, &self.hooks.raster, self.shader)
-            .triangle_of_area(&seen.v, seen.area, varyings, face);
+    fn draw(&mut self, triangle: &ScreenTriangle, varyings: &mut [S::Varyings; 3], face: u32) {
+        self.scene.painter(&self.clip, self.state, &self.hooks.raster, self.shader).triangle_of_area(
+            &triangle.v,
+            triangle.area,
+            varyings,
+            face,
+        );
     }
 }
 
 /// Corners of a polygon on the screen, see [`Assembly::cut`].
 #[inline(never)]
-fn place(
+fn project_corners(
     polygon: &Polygon,
     transform: &Transform,
     perspective: bool,
@@ -447,8 +460,8 @@ fn place(
             if let Some(to) = fan.next() {
                 let vertex = corner.vertex();
                 // All of them can be projected, as what is behind the eye has been cut away.
-                if let Some(placed) = transform.project(&vertex) {
-                    to.slot = Slot::new(&Placed::Screen(placed)).words();
+                if let Some(projected) = transform.project(&vertex) {
+                    to.packed = PackedVertex::new(&Projected::OnScreen(projected)).words();
                 }
                 to.weights = corner.weights();
                 if perspective {
@@ -473,10 +486,10 @@ pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
 
 /// Where all vertices of a mesh are, by the short path.
 #[inline(never)]
-fn place_all(transform: &Transform, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
+fn project_all(transform: &Transform, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
     for (place, point) in places.iter_mut().zip(points) {
         // Read again each time: to keep all of it at hand there are too few registers.
-        *place = Slot::new(&core::hint::black_box(transform).place_short(*point).0).words();
+        *place = PackedVertex::new(&core::hint::black_box(transform).project_quantized(*point).0).words();
     }
 }
 
@@ -490,24 +503,24 @@ struct VertexStage<'s, S> {
 impl<S: VertexShader> VertexStage<'_, S> {
     /// Where a vertex is: transformed, projected and snapped, or its outcode.
     #[inline(always)]
-    fn place(&self, index: usize) -> Slot {
-        let placed = if S::DISPLACES {
-            self.transform.place_clip(&self.transformed(index))
+    fn project(&self, index: usize) -> PackedVertex {
+        let projected = if S::DISPLACES {
+            self.transform.project_clip_vertex(&self.transformed(index))
         } else {
-            self.transform.place(&self.mesh.data().positions, index)
+            self.transform.project_vertex(&self.mesh.data().positions, index)
         };
-        let slot = Slot::new(&placed);
+        let packed = PackedVertex::new(&projected);
         if S::CLIP_DISTANCES > 0 && self.distances(index).iter().any(|distance| *distance < 0) {
             // Off the screen, but not by the planes that outcodes know.
-            return Slot::new(&Placed::Outside(Outcode(slot.outcode())));
+            return PackedVertex::new(&Projected::NeedsClip(Outcode(packed.outcode())));
         }
-        slot
+        packed
     }
 
     #[inline(never)]
-    fn place_each(&self, places: &mut [[u32; 2]]) {
+    fn project_each(&self, places: &mut [[u32; 2]]) {
         for (index, place) in places.iter_mut().enumerate() {
-            *place = self.place(index).words();
+            *place = self.project(index).words();
         }
     }
 
@@ -524,7 +537,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
     #[inline]
     fn transformed(&self, index: usize) -> ClipVertex {
         if S::DISPLACES {
-            self.transform.point(self.shader.displace(&Corner::new(self.mesh, index)))
+            self.transform.point(self.shader.displace(&VertexRef::new(self.mesh, index)))
         } else {
             self.transform.vertex(&self.mesh.data().positions, index)
         }
@@ -533,7 +546,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
     /// The clip distances of a vertex; those that the shader does not have are 0.
     #[inline]
     fn distances(&self, index: usize) -> [i32; MAX_DISTANCES] {
-        let mut distances = self.shader.distances(&Corner::new(self.mesh, index));
+        let mut distances = self.shader.distances(&VertexRef::new(self.mesh, index));
         distances.iter_mut().skip(S::CLIP_DISTANCES).for_each(|distance| *distance = 0);
         distances
     }
@@ -541,7 +554,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
     /// The varyings of a vertex, with 1 / w if they take it.
     #[inline]
     fn varyings(&self, index: usize) -> S::Varyings {
-        let mut varyings = self.shader.vertex(&Corner::new(self.mesh, index));
+        let mut varyings = self.shader.vertex(&VertexRef::new(self.mesh, index));
         if S::Varyings::PERSPECTIVE > 0 {
             let w = if S::DISPLACES {
                 self.transformed(index).w

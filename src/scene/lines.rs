@@ -13,9 +13,10 @@ use crate::math::Projective;
 use crate::mesh::{Lines, Mesh, Points, Positions};
 use crate::raster::{PixelRect, square};
 use crate::span::Shader;
-use crate::target::{Framebuffer, Slot, VERTEX_WORDS};
+use crate::target::{Framebuffer, PackedVertex, VERTEX_WORDS};
 use crate::vertex::{
-    Corner, Face, Outcode, Part, ScreenVertex, Side, Transform, Varyings, VertexShader, View, clip_line, weighted,
+    DepthSlab, Face, Outcode, ScreenMatrix, ScreenVertex, Side, Transform, Varyings, VertexRef, VertexShader,
+    clip_line, weighted,
 };
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
@@ -102,8 +103,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let rect = self.clip_rect(&self.band);
         let (x, y) = (rect.x.start - reach..rect.x.end + reach, rect.y.start - reach..rect.y.end + reach);
         let planes = state.range.clamped();
-        let mut view = View::EMPTY;
-        view.fold(mvp, &self.viewport);
+        let mut view = ScreenMatrix::EMPTY;
+        view.set_from(mvp, &self.viewport);
         let culled = bounded && !view.sees(&vertices.bounds().aabb, &x, &y, planes);
         self.stats.culled = self.stats.culled.wrapping_add(u32::from(culled));
         if recording {
@@ -163,7 +164,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         let mut number = 0;
         while let Some((candidate, [i, j])) = self.next_near(lines, number, top, bottom) {
             number = candidate + 1;
-            let (a, b) = (self.slot(usize::from(i)), self.slot(usize::from(j)));
+            let (a, b) = (self.packed_vertex(usize::from(i)), self.packed_vertex(usize::from(j)));
             if !(a.is_on_screen() & b.is_on_screen()) {
                 self.clip([a.outcode(), b.outcode()], [i, j], candidate, stroke);
                 continue;
@@ -195,7 +196,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
             if !((y < top && to_y < top) || (y > bottom && to_y > bottom)) {
                 return Some((number, [i, j]));
             }
-            if (*x as i32).min(*to_x as i32) < Slot::LEAST_X {
+            if (*x as i32).min(*to_x as i32) < PackedVertex::LEAST_X {
                 return Some((number, [i, j]));
             }
             number += 1;
@@ -206,10 +207,10 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     fn points(&mut self, size: u32) {
         for index in 0..self.vertices.vertex_count() {
             self.scene.stats.points = self.scene.stats.points.wrapping_add(1);
-            let slot = self.slot(index);
-            let place = if slot.is_on_screen() {
-                Some(slot.screen())
-            } else if slot.outcode() & !self.state.range.clamped().0 == 0 {
+            let packed = self.packed_vertex(index);
+            let place = if packed.is_on_screen() {
+                Some(packed.screen())
+            } else if packed.outcode() & !self.state.range.clamped().0 == 0 {
                 let assembly = self.assembly();
                 assembly.transform.project(&assembly.transformed(index))
             } else {
@@ -228,9 +229,9 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
 
     /// The vertex stage's result for a vertex.
     #[inline]
-    fn slot(&mut self, index: usize) -> Slot {
-        let slot = self.scene.records.slot(index);
-        if slot.is_unshaded() { self.assembly().shade(index) } else { slot }
+    fn packed_vertex(&mut self, index: usize) -> PackedVertex {
+        let packed = self.scene.records.packed_vertex(index);
+        if packed.is_unshaded() { self.assembly().shade(index) } else { packed }
     }
 
     /// The vertex stage.
@@ -258,7 +259,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         if self.scene.has_vertices() {
             return self.scene.records.varyings::<S>(index);
         }
-        rounded::<S>(&self.shader.vertex(&Corner::new(self.vertices, usize::from(index))))
+        rounded::<S>(&self.shader.vertex(&VertexRef::new(self.vertices, usize::from(index))))
     }
 
     fn face(&self, [a, b]: [u16; 2], number: usize) -> u32 {
@@ -290,7 +291,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1]);
-        for part in [Part::Between].into_iter().chain(self.state.range.parts_beyond(all)) {
+        for part in [DepthSlab::Inside].into_iter().chain(self.state.range.clamped_slabs(all)) {
             if let Some(ends) = self.cut(corners, all, part) {
                 self.draw(&ends, corners, number, stroke);
             }
@@ -300,7 +301,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     /// What is left of a part of a line, on the screen. In a function of its own, so that its ends in clip space have left
     /// the stack when it is drawn.
     #[inline(never)]
-    fn cut(&mut self, corners: [u16; 2], codes: Outcode, part: Part) -> Option<[(ScreenVertex, S::Varyings); 2]> {
+    fn cut(&mut self, corners: [u16; 2], codes: Outcode, part: DepthSlab) -> Option<[(ScreenVertex, S::Varyings); 2]> {
         let assembly = self.assembly();
         let [i, j] = corners.map(usize::from);
         let [a, b] = clip_line([assembly.transformed(i), assembly.transformed(j)], codes, part)?;

@@ -6,7 +6,7 @@ use crate::math::{Projective, Vec3};
 use crate::mesh::{Mesh, MeshData, Positions};
 use crate::span::{AnyDepth, DepthState, DepthTest, LessWrite, NoDepth};
 use crate::target::{Framebuffer, Overlay};
-use crate::vertex::{Placed, ScreenVertex, Transform};
+use crate::vertex::{Projected, ScreenVertex, Transform};
 
 /// What a transform of 16.16 positions is made for.
 static POINTS: Mesh<'static> = Mesh::constant(MeshData::new(Positions::Exact(&[])));
@@ -53,9 +53,9 @@ impl<F: Framebuffer> Scene<'_, F> {
     pub fn project_with(&self, state: State, point: Vec3, mvp: &Projective) -> Option<ScreenVertex> {
         let mut transform = Transform::new(mvp, &self.viewport, &POINTS, false);
         transform.set_depth_scale(state.depth_scale);
-        match transform.place_clip(&transform.point(point)) {
-            Placed::Screen(vertex) => Some(vertex),
-            Placed::Outside(_) => None,
+        match transform.project_clip_vertex(&transform.point(point)) {
+            Projected::OnScreen(vertex) => Some(vertex),
+            Projected::NeedsClip(_) => None,
         }
     }
 }

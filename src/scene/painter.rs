@@ -7,7 +7,7 @@ use crate::span::{
     AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps, TriangleSpan,
 };
 use crate::target::Framebuffer;
-use crate::vertex::{Correction, FEW, ScreenVertex, Varyings, signed_area};
+use crate::vertex::{Correction, MAX_IN_REGISTERS, ScreenVertex, Varyings, signed_area};
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](crate::scene::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -165,7 +165,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// 9. Spans, between two edges from row to row.
     #[inline(never)]
     fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
-        if S::Varyings::LEN > FEW {
+        if S::Varyings::LEN > MAX_IN_REGISTERS {
             return self.spans_apart(set_up, test);
         }
         let SetUp { v, area, face, depth, steps } = set_up;

@@ -4,7 +4,7 @@
 use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
 use crate::raster::{PixelRect, pixel_rect};
-use crate::target::{Records, Slot, Stats, StripRows};
+use crate::target::{PackedVertex, Records, Stats, StripRows};
 use crate::vertex::{Outcode, ScreenVertex, signed_area, small};
 use core::ops::Range;
 
@@ -17,15 +17,15 @@ pub(super) struct Scan<'m> {
     end: usize,
     culling: Culling,
     recording: bool,
-    pub(super) seen: Seen,
+    pub(super) triangle: ScreenTriangle,
 }
 
 /// What a triangle in the records has that has no word of its face yet: the number of the next triangle of the mesh, and below that
 /// the sign of its area.
 #[derive(Clone, Copy)]
-pub(super) struct Mark(pub(super) u32);
+pub(super) struct PendingFace(pub(super) u32);
 
-impl Mark {
+impl PendingFace {
     #[inline]
     const fn new(next: usize, area: i32) -> Self {
         Self((next as u32) << 1 | area as u32 >> 31)
@@ -39,7 +39,7 @@ impl Mark {
 }
 
 /// A triangle that was found: one on the screen that may have pixels, or one that has to be looked at.
-pub(super) struct Seen {
+pub(super) struct ScreenTriangle {
     /// Its number in the mesh, and its vertices.
     pub(super) number: u16,
     pub(super) corners: [u16; 3],
@@ -53,25 +53,25 @@ pub(super) struct Seen {
 
 /// What a walk stopped at.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(super) enum Stop {
+pub(super) enum ScanEvent {
     /// A triangle that may be seen.
-    Seen,
+    Visible,
     /// One that has to be looked at, with vertices that may not be shaded yet.
-    Unplaced,
+    NeedsVertices,
     /// One to be clipped, by these planes and by clip distances.
-    Clipped(Outcode),
+    NeedsClip(Outcode),
     /// There are no more.
-    End,
+    Done,
 }
 
-impl Seen {
+impl ScreenTriangle {
     /// Nothing yet.
     pub(super) const NONE: Self =
         Self { number: 0, corners: [0; 3], v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
 
     /// Whether what is at `v` may be seen: stage 5, culling by winding, and of what covers no pixel of `clip`.
     #[inline(never)]
-    pub(super) fn find(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
+    pub(super) fn passes_culling(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
         let [a, b, c] = &self.v;
         self.area = signed_area(a, b, c);
         let rect = pixel_rect(&self.v);
@@ -95,13 +95,13 @@ impl Seen {
     }
 }
 
-/// How far the second and the third vertex are from the first, in x and y, by words of their [`Slot`](crate::target::Slot)s: if that is
+/// How far the second and the third vertex are from the first, in x and y, by words of their [`PackedVertex`](crate::target::PackedVertex)s: if that is
 /// not far, and all are on the screen, or at most 16,511 px away from it.
 ///
 /// # Format
 /// A vertex off the screen has x = -2²³, and no y: that is no small difference from any other below 2²².
 #[inline(always)]
-fn near(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
+fn small_sides(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
     let (ax, ay) = (a[0] >> 8, a[1] >> 8);
     let [bx, by, cx, cy] = [(b[0] >> 8) - ax, (b[1] >> 8) - ay, (c[0] >> 8) - ax, (c[1] >> 8) - ay];
     let far = a[0].wrapping_add(1 << 30) | a[1].wrapping_add(1 << 30);
@@ -126,11 +126,11 @@ impl<'m> Scan<'m> {
             end: numbers.end.min(mesh.triangle_count()),
             culling,
             recording,
-            seen: Seen::NONE,
+            triangle: ScreenTriangle::NONE,
         }
     }
 
-    /// Goes on to the next triangle that may be seen, or that has to be looked at. Those before that are recorded, with [`Mark`]s for
+    /// Goes on to the next triangle that may be seen, or that has to be looked at. Those before that are recorded, with [`PendingFace`]s for
     /// words of their faces, and when triangles are recorded, the next is one that has to be looked at.
     pub(super) fn next(
         &mut self,
@@ -139,36 +139,36 @@ impl<'m> Scan<'m> {
         band: i32,
         clip: &PixelRect,
         stats: &mut Stats,
-    ) -> Stop {
+    ) -> ScanEvent {
         loop {
-            let stop = self.near(records, strips, band, clip, stats);
-            if stop != Stop::Seen {
-                return stop;
+            let event = self.scan_small(records, strips, band, clip, stats);
+            if event != ScanEvent::Visible {
+                return event;
             }
             // A large one, or one far away.
-            if self.seen.v.iter().any(|v| v.x == Slot::OFF_SCREEN_X) {
-                return Stop::Unplaced;
+            if self.triangle.v.iter().any(|v| v.x == PackedVertex::OFF_SCREEN_X) {
+                return ScanEvent::NeedsVertices;
             }
-            if self.seen.find(self.culling, clip, stats) {
+            if self.triangle.passes_culling(self.culling, clip, stats) {
                 if !self.recording {
-                    return Stop::Seen;
+                    return ScanEvent::Visible;
                 }
-                let mark = Mark::new(self.next, (self.seen.area >> 32) as i32);
-                records.push_triangle(self.seen.corners, mark.0, strips.of((self.seen.row - band) as u32));
+                let mark = PendingFace::new(self.next, (self.triangle.area >> 32) as i32);
+                records.push_triangle(self.triangle.corners, mark.0, strips.of((self.triangle.row - band) as u32));
             }
         }
     }
 
     /// Records triangles that are small, not far away, and on the screen, up to another one: to all intents and purposes all.
     #[inline(never)]
-    fn near(
+    fn scan_small(
         &mut self,
         records: &mut Records<'_>,
         strips: &StripRows,
         band: i32,
         clip: &PixelRect,
         stats: &mut Stats,
-    ) -> Stop {
+    ) -> ScanEvent {
         let mut triangles = records.triangles();
         let first = triangles.count();
         if !self.recording {
@@ -183,24 +183,24 @@ impl<'m> Scan<'m> {
         let mut number = self.next;
         let found = loop {
             // 2. Primitive assembly. The usual meshes by the shortest way.
-            let (corners, places) = match list.split_first_chunk() {
+            let (corners, positions) = match list.split_first_chunk() {
                 Some((corners, rest)) => {
                     list = rest;
-                    (*corners, triangles.places(*corners))
+                    (*corners, triangles.positions_of(*corners))
                 }
                 _ if number >= self.end => break None,
                 _ if in_a_row => triangles.in_a_row(number),
                 _ => match self.mesh.any_triangle(number) {
-                    Some(corners) => (corners, triangles.places(corners)),
+                    Some(corners) => (corners, triangles.positions_of(corners)),
                     None => break None,
                 },
             };
             number += 1;
             // 5. Culling by winding, as early as can be, and of what covers no pixel.
             let [i, j, k] = corners;
-            let [a, b, c] = places;
-            let Some([bx, by, cx, cy]) = near(a, b, c) else {
-                break Some((corners, places));
+            let [a, b, c] = positions;
+            let Some([bx, by, cx, cy]) = small_sides(a, b, c) else {
+                break Some((corners, positions));
             };
             let area = bx * cy - cx * by;
             if area == 0 || culling.leaves_out(area) {
@@ -222,10 +222,10 @@ impl<'m> Scan<'m> {
             }
             // 6, 7. Into the records, to the strip it begins in.
             let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
-            if !triangles.push(u32::from(i) | u32::from(j) << 16, k, Mark::new(number, area).0, strip) {
+            if !triangles.push(u32::from(i) | u32::from(j) << 16, k, PendingFace::new(number, area).0, strip) {
                 // There is no room, or none of it is to be used.
                 if !self.recording {
-                    break Some((corners, places));
+                    break Some((corners, positions));
                 }
                 triangles.overflow();
                 break None;
@@ -236,11 +236,12 @@ impl<'m> Scan<'m> {
         stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
         self.list = list;
         self.next = number;
-        self.seen.number = number.wrapping_sub(1) as u16;
-        let Some((corners, [a, b, c])) = found else { return Stop::End };
-        self.seen.corners = corners;
-        self.seen.v = [Slot::signed(a).screen(), Slot::signed(b).screen(), Slot::signed(c).screen()];
-        Stop::Seen
+        self.triangle.number = number.wrapping_sub(1) as u16;
+        let Some((corners, [a, b, c])) = found else { return ScanEvent::Done };
+        self.triangle.corners = corners;
+        self.triangle.v =
+            [PackedVertex::signed(a).screen(), PackedVertex::signed(b).screen(), PackedVertex::signed(c).screen()];
+        ScanEvent::Visible
     }
 }
 
@@ -251,7 +252,7 @@ mod tests {
     use crate::math::{Scalar, Vec3};
     use crate::mesh::{MeshData, Positions};
     use crate::target::{Layout, TriangleRecord};
-    use crate::vertex::Placed;
+    use crate::vertex::Projected;
     use std::vec;
     use std::vec::Vec;
 
@@ -267,23 +268,23 @@ mod tests {
         }
 
         /// Three vertices: tiny, small, large or huge, some of them not there.
-        fn places(&mut self) -> [[u32; 2]; 3] {
+        fn positions(&mut self) -> [[u32; 2]; 3] {
             let size = [300, 3000, 1 << 15, 1 << 17, 1 << 22][self.below(5) as usize];
             let at = [[self.below(1 << 17), self.below(1 << 16)], [(1 << 23) - 1 - size, -(1 << 23) + 1]];
             let [x, y] = at[usize::from(self.below(20) == 0)];
             [(); 3].map(|()| {
                 let v = ScreenVertex::new(x + self.below(size), y + self.below(size), self.below(1 << 16) as u16);
                 match self.below(100) {
-                    0 => Slot::NONE,
-                    1 => Slot::new(&Placed::Outside(Outcode(Outcode::NEAR))),
-                    _ => Slot::new(&Placed::Screen(v)),
+                    0 => PackedVertex::NONE,
+                    1 => PackedVertex::new(&Projected::NeedsClip(Outcode(Outcode::NEAR))),
+                    _ => PackedVertex::new(&Projected::OnScreen(v)),
                 }
                 .words()
             })
         }
     }
 
-    /// What a walk records, and what it counts, is what [`Seen::find`] says of each triangle.
+    /// What a walk records, and what it counts, is what [`ScreenTriangle::passes_culling`] says of each triangle.
     #[test]
     fn walks_find_what_is_found_one_by_one() {
         let mut random = Random(1);
@@ -301,39 +302,39 @@ mod tests {
             let clip = [PixelRect { x: 0..320, y: rows.clone() }, PixelRect { x: 50..60, y: 600..rows.start }]
                 [usize::from(case % 7 == 6)]
             .clone();
-            let places: Vec<_> = (0..COUNT).flat_map(|_| random.places()).collect();
+            let positions: Vec<_> = (0..COUNT).flat_map(|_| random.positions()).collect();
 
             let mut layout = Layout::default();
             let mut records = Records::new(&mut words, &mut layout);
             records.begin_band(STRIPS);
-            records.begin_draw(7, places.len(), 2);
-            records.vertices_mut().0.copy_from_slice(&places);
+            records.begin_draw(7, positions.len(), 2);
+            records.vertices_mut().0.copy_from_slice(&positions);
             let strips = StripRows::new(16, true);
             let mut scan = Scan::new(&mesh, 0..COUNT, state.culling(), true);
             let (mut stats, mut unplaced) = (Stats::default(), Vec::new());
-            while scan.next(&mut records, &strips, rows.start, &clip, &mut stats) == Stop::Unplaced {
-                unplaced.push((scan.seen.number, scan.seen.corners));
+            while scan.next(&mut records, &strips, rows.start, &clip, &mut stats) == ScanEvent::NeedsVertices {
+                unplaced.push((scan.triangle.number, scan.triangle.corners));
             }
             records.end_draw();
 
             let mut expected = Stats { triangles: COUNT as u32, ..Stats::default() };
-            let mut seen = Seen::NONE;
+            let mut triangle = ScreenTriangle::NONE;
             let (mut left, mut drawn) = (Vec::new(), vec![Vec::new(); STRIPS]);
             for number in 0..COUNT {
                 let corners = mesh.triangle(number).expect("a triangle");
-                let slots = corners.map(|k| Slot::from_words(places[usize::from(k)]));
-                seen.v = slots.map(Slot::screen);
-                if !slots.iter().all(|slot| slot.is_on_screen()) {
+                let packed = corners.map(|k| PackedVertex::from_words(positions[usize::from(k)]));
+                triangle.v = packed.map(PackedVertex::screen);
+                if !packed.iter().all(|packed| packed.is_on_screen()) {
                     left.push((number as u16, corners));
-                } else if seen.find(state.culling(), &clip, &mut expected) {
-                    drawn[strips.of((seen.row - rows.start) as u32)].push((corners, number, seen.area > 0));
+                } else if triangle.passes_culling(state.culling(), &clip, &mut expected) {
+                    drawn[strips.of((triangle.row - rows.start) as u32)].push((corners, number, triangle.area > 0));
                 }
             }
             assert_eq!(unplaced, left, "case {case}");
             assert_eq!(stats, expected, "case {case}");
             for (strip, drawn) in drawn.iter().enumerate() {
                 records.begin_replay(strip);
-                assert!(records.replay_draw(7, places.len(), 2));
+                assert!(records.replay_draw(7, positions.len(), 2));
                 let last = records.last_triangle();
                 let mut triangle = TriangleRecord::default();
                 for expected in drawn {
@@ -341,7 +342,7 @@ mod tests {
                         records.triangles().replay(last, i32::MAX >> 2, &mut triangle),
                         "case {case}, strip {strip}"
                     );
-                    let (number, area) = Mark(triangle.face).parts();
+                    let (number, area) = PendingFace(triangle.face).parts();
                     assert_eq!((triangle.corners(), number, area > 0), *expected, "case {case}, strip {strip}");
                     found += 1;
                 }

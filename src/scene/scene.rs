@@ -11,7 +11,7 @@ use crate::math::Projective;
 use crate::mesh::{Bounds, BoundsNode, Mesh, Positions};
 use crate::raster::PixelRect;
 use crate::target::{Framebuffer, Records, Stats, StripRows};
-use crate::vertex::{DepthRange, DepthScale, Transform, View, Viewport};
+use crate::vertex::{DepthRange, DepthScale, ScreenMatrix, Transform, Viewport};
 use core::ops::Range;
 
 /// What the closure's calls do.
@@ -60,8 +60,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// whatever [`State::range`] says of what lies beyond them.
     #[inline(never)]
     pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
-        let mut view = View::EMPTY;
-        view.fold(mvp, &self.viewport);
+        let mut view = ScreenMatrix::EMPTY;
+        view.set_from(mvp, &self.viewport);
         self.sees(&view, bounds, DepthRange::Clip)
     }
 
@@ -86,7 +86,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 
     /// Whether something may be seen in the band.
-    fn sees(&self, view: &View, bounds: &Bounds, range: DepthRange) -> bool {
+    fn sees(&self, view: &ScreenMatrix, bounds: &Bounds, range: DepthRange) -> bool {
         let rect = self.clip_rect(&self.band);
         view.sees(&bounds.aabb, &rect.x, &rect.y, range.clamped())
     }
@@ -101,8 +101,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         mvp: &Projective,
         next: &mut usize,
     ) -> u32 {
-        let mut view = View::EMPTY;
-        view.fold(mvp, &self.viewport);
+        let mut view = ScreenMatrix::EMPTY;
+        view.set_from(mvp, &self.viewport);
         let (first, mut visible) = (*next, 0);
         while let (Some(node), Some(bit)) = (nodes.get(*next), 1_u32.checked_shl((*next - first) as u32)) {
             if self.sees(&view, &node.bounds, state.range) {
@@ -132,8 +132,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if self.overflowed() {
             return false;
         }
-        let mut view = View::EMPTY;
-        view.fold(mvp, &self.viewport);
+        let mut view = ScreenMatrix::EMPTY;
+        view.set_from(mvp, &self.viewport);
         // A test takes as long as a few vertices do.
         let bounded = mesh.vertex_count() > FEW_VERTICES
             && !displaced
@@ -155,7 +155,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if F::RECORDS && !recording {
             self.records.begin_direct(mesh.vertex_count(), stride);
         }
-        transform.fold(&view, mesh, displaced);
+        transform.set_from(&view, mesh, displaced);
         true
     }
 

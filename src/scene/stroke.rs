@@ -8,7 +8,7 @@ use crate::span::{
     Steps,
 };
 use crate::target::Framebuffer;
-use crate::vertex::{Corner, Face, ScreenVertex, Side, Varyings, VertexShader};
+use crate::vertex::{Face, ScreenVertex, Side, Varyings, VertexRef, VertexShader};
 
 /// How a line is drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
 pub trait Stroke: Draw {}
@@ -438,7 +438,7 @@ impl<S: VertexShader> VertexShader for Covered<'_, S> {
     const WORDS: usize = S::WORDS;
     const ZERO_BITS: u32 = S::ZERO_BITS;
 
-    fn vertex(&self, vertex: &Corner<'_>) -> S::Varyings {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> S::Varyings {
         self.shader.vertex(vertex)
     }
 

@@ -3,7 +3,7 @@
 use crate::color::{PixelFormat, Rgba8888};
 use crate::math::Vec3;
 use crate::span::{Fragment, Shader};
-use crate::vertex::{Corner, Face, VertexShader};
+use crate::vertex::{Face, VertexRef, VertexShader};
 
 /// A way to blend pixels of format `P`.
 ///
@@ -163,17 +163,17 @@ macro_rules! inner_vertex_stage {
         const CULL_DISTANCES: usize = S::CULL_DISTANCES;
 
         #[inline]
-        fn distances(&self, vertex: &Corner<'_>) -> [i32; crate::vertex::MAX_DISTANCES] {
+        fn distances(&self, vertex: &VertexRef<'_>) -> [i32; crate::vertex::MAX_DISTANCES] {
             self.shader.distances(vertex)
         }
 
         #[inline]
-        fn vertex(&self, vertex: &Corner<'_>) -> S::Varyings {
+        fn vertex(&self, vertex: &VertexRef<'_>) -> S::Varyings {
             self.shader.vertex(vertex)
         }
 
         #[inline]
-        fn displace(&self, vertex: &Corner<'_>) -> Vec3 {
+        fn displace(&self, vertex: &VertexRef<'_>) -> Vec3 {
             self.shader.displace(vertex)
         }
 

@@ -2,7 +2,7 @@
 
 use crate::color::PixelFormat;
 use crate::span::{DepthTest, Fragment, Fragments, Shader};
-use crate::vertex::{Corner, VertexShader};
+use crate::vertex::{VertexRef, VertexShader};
 
 /// Leaves depths and no colours: what is drawn with it hides what comes after, and shows what was there before. A mesh drawn
 /// so hides the lines behind it.
@@ -12,7 +12,7 @@ pub struct DepthOnly;
 impl VertexShader for DepthOnly {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 }

@@ -4,7 +4,7 @@ use super::blend::{inner_steps, inner_vertex_stage};
 use crate::color::{PixelFormat, Rgba8888};
 use crate::math::Vec3;
 use crate::span::{Fragment, Shader};
-use crate::vertex::{Corner, Face, VertexShader};
+use crate::vertex::{Face, VertexRef, VertexShader};
 
 /// Draws the fragments whose alpha is at least a threshold, opaque: leaves, fences, letters. No order of drawing is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,7 +3,7 @@
 use crate::color::{PixelFormat, channels, packed, unpacked};
 use crate::light::Light;
 use crate::span::{DepthTest, Fragment, Fragments, Shader, flat_span};
-use crate::vertex::{Corner, Face, VertexShader};
+use crate::vertex::{Face, VertexRef, VertexShader};
 
 /// Flat shading: each triangle in one colour, lit by its face normal.
 ///
@@ -40,7 +40,7 @@ impl Flat {
 impl VertexShader for Flat {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 

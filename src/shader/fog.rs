@@ -9,7 +9,7 @@ use super::blend::{inner_steps, inner_vertex_stage};
 use crate::color::PixelFormat;
 use crate::math::{ProjectionError, Scalar, Vec3, exp_negative};
 use crate::span::{Fragment, Shader};
-use crate::vertex::{Corner, Face, VertexShader};
+use crate::vertex::{Face, VertexRef, VertexShader};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 /// How fog thickens with the distance from the camera's plane.

@@ -6,7 +6,7 @@ use crate::span::{
     DepthTest, Fragment, Fragments, Shader, TriangleSpan, fragments, luma_span, packed_fragments, packed_span, prepare,
     weighted,
 };
-use crate::vertex::{Corner, VertexShader};
+use crate::vertex::{VertexRef, VertexShader};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// Gouraud shading: lit at the vertices, by the mesh's normals, and interpolated linearly on the screen. A mesh without
@@ -61,7 +61,7 @@ impl VertexShader for Gouraud {
     const ZERO_BITS: u32 = 13;
 
     #[inline]
-    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 3] {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 3] {
         // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
         let [r, g, b] = match &self.colors {
             Colors::One(lit) => lit.shade(vertex.normal()),

@@ -3,7 +3,7 @@
 use crate::color::PixelFormat;
 use crate::math::{Affine, Vec3};
 use crate::span::{Fragment, Shader};
-use crate::vertex::{Corner, VertexShader};
+use crate::vertex::{VertexRef, VertexShader};
 
 /// Shades by a square picture, of `N` × `N` pixels of format `T`, of a ball in eye space: whatever light and material the
 /// ball has, the surface gets, for one look-up a fragment.
@@ -48,7 +48,7 @@ impl<T: PixelFormat, const N: usize> VertexShader for Matcap<'_, T, N> {
     const WORDS: usize = 1;
     const ZERO_BITS: u32 = 16;
 
-    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 2] {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 2] {
         [place(vertex.normal(), self.right), place(vertex.normal(), self.down)]
     }
 

@@ -6,7 +6,7 @@ use crate::math::unit_vector;
 use crate::span::{
     DepthTest, Fragment, Fragments, Shader, TriangleSpan, flat_span, fragments, packed_fragments, packed_span, prepare,
 };
-use crate::vertex::{Corner, Face, Side, VertexShader};
+use crate::vertex::{Face, Side, VertexRef, VertexShader};
 use core::marker::PhantomData;
 
 /// How often a [`Shaded`] surface is lit: a colour a face, lit at its middle.
@@ -73,7 +73,7 @@ fn normal(normal: [i16; 3]) -> [i32; 3] {
 impl<const D: usize, const P: usize> VertexShader for Shaded<PerFace, D, P> {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
@@ -111,7 +111,7 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerVertex, D, P> {
     const WORDS: usize = 1;
     const ZERO_BITS: u32 = 13;
 
-    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 3] {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 3] {
         let p = self.material.local(vertex.position());
         let mut normal = normal(vertex.normal());
         if self.material.is_two_sided() {
@@ -211,7 +211,7 @@ impl<const D: usize> VertexShader for Shaded<PerFragment, D, 0> {
     const WORDS: usize = 2;
     const ZERO_BITS: u32 = 16;
 
-    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 3] {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 3] {
         varying(vertex.normal())
     }
 
@@ -252,7 +252,7 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerFragmentNear, D,
     const WORDS: usize = 3;
     const ZERO_BITS: u32 = 16;
 
-    fn vertex(&self, vertex: &Corner<'_>) -> [i32; 6] {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 6] {
         let [x, y, z] = varying(vertex.normal());
         let [px, py, pz] = self.material.space().fine(vertex.position());
         // Below 2²⁹; rounded to 14 bits.

@@ -4,7 +4,7 @@ use crate::color::PixelFormat;
 use crate::light::{Light, Lit};
 use crate::span::{DepthTest, Fragment, Fragments, STEP, Shader, fragments, texture_span};
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
-use crate::vertex::{Corner, Correction, Perspective, PerspectiveClass, VertexShader};
+use crate::vertex::{Correction, Perspective, PerspectiveClass, VertexRef, VertexShader};
 use core::marker::PhantomData;
 
 /// The colours of a texture, perspective-correct: divided every 16 pixels and at both ends of a span.
@@ -96,7 +96,7 @@ impl<T, W, F> VertexShader for Textured<'_, T, W, F> {
     type Varyings = Perspective<2, 3>;
 
     #[inline]
-    fn vertex(&self, corner: &Corner<'_>) -> Perspective<2, 3> {
+    fn vertex(&self, corner: &VertexRef<'_>) -> Perspective<2, 3> {
         Perspective::new(corner.uv().map(|c| c.to_bits()), [])
     }
 }
@@ -152,7 +152,7 @@ impl<T, W, F> VertexShader for LitTexture<'_, T, W, F> {
     const WORDS: usize = 4;
 
     #[inline]
-    fn vertex(&self, corner: &Corner<'_>) -> LitVaryings {
+    fn vertex(&self, corner: &VertexRef<'_>) -> LitVaryings {
         let [r, g, b] = self.light.shade(corner.normal());
         Perspective::new(corner.uv().map(|c| c.to_bits()), [r << 8, g << 8, b << 8])
     }

@@ -4,7 +4,7 @@ use super::depth::{AnyDepth, DepthState, DepthTest};
 use super::perspective::{correct_at, nth};
 use super::span::{Fragment, Fragments, Steps, TriangleSpan};
 use crate::color::PixelFormat;
-use crate::vertex::{FEW, Varyings, VertexShader};
+use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
 
 /// The programmable fragment stage: colours pixels of format `P`.
 ///
@@ -133,7 +133,7 @@ fn linear_fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
     depth: &mut [u16],
     pixels: &mut Pixels<'_, S::Varyings>,
 ) {
-    if <S::Varyings as Varyings>::LEN > FEW {
+    if <S::Varyings as Varyings>::LEN > MAX_IN_REGISTERS {
         return paint_pixels(shader, color, depth, pixels);
     }
     // Few varyings are walked where the compiler likes, many where they are.

@@ -12,7 +12,7 @@ pub use draw_target::Overlay;
 pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip, WithoutDepth};
 pub use packer::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use records::records_len;
-pub(crate) use records::{Layout, Records, Slot, TriangleRecord, Triangles, VERTEX_WORDS};
+pub(crate) use records::{Layout, PackedVertex, Records, TriangleRecord, Triangles, VERTEX_WORDS};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
 pub(crate) use strip_rows::{StripRows, whole_rows};

@@ -14,7 +14,7 @@
 //! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
 
 use crate::color::clear_words;
-use crate::vertex::{FEW, Placed, ScreenVertex, Varyings, VertexShader};
+use crate::vertex::{MAX_IN_REGISTERS, Projected, ScreenVertex, Varyings, VertexShader};
 
 /// No triangle.
 const NONE: u16 = u16::MAX;
@@ -44,18 +44,20 @@ pub const fn records_len(
 ///
 /// An x that no vertex on the screen has marks one that is not there: its low byte is the outcode, or [`UNSHADED`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Slot([u32; 2]);
+pub(crate) struct PackedVertex([u32; 2]);
 
 const OFF_SCREEN: u32 = 0x8000_0000;
 const UNSHADED: u32 = OFF_SCREEN | 0x80;
 
-impl Slot {
+impl PackedVertex {
     /// Of a vertex on the screen, or of one that has to be clipped and so cannot be projected.
     #[inline]
-    pub(crate) const fn new(placed: &Placed) -> Self {
+    pub(crate) const fn new(placed: &Projected) -> Self {
         match placed {
-            Placed::Screen(v) => Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32]),
-            Placed::Outside(code) => Self([OFF_SCREEN | code.0 as u32, 0]),
+            Projected::OnScreen(v) => {
+                Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32])
+            }
+            Projected::NeedsClip(code) => Self([OFF_SCREEN | code.0 as u32, 0]),
         }
     }
 
@@ -159,7 +161,7 @@ pub(crate) struct Triangles<'r> {
     lists: &'r mut [u32],
     /// The vertices of the draw; where they are is known at the beginning, of as many as the mesh has.
     vertices: &'r [u32],
-    places: &'r [[u32; 2]],
+    positions: &'r [[u32; 2]],
     /// What is behind the vertices, as much of it as triangles may take: they are at its end.
     triangles: &'r mut [u32],
     /// How many there are.
@@ -168,22 +170,22 @@ pub(crate) struct Triangles<'r> {
 }
 
 impl Triangles<'_> {
-    /// Words of the [`Slot`]s of vertices, signed.
+    /// Words of the [`PackedVertex`]s of vertices, signed.
     #[inline(always)]
-    pub(crate) fn places(&self, [i, j, k]: [u16; 3]) -> [[i32; 2]; 3] {
-        let place = |index: u16| signed(self.places.get(usize::from(index)).unwrap_or(&Slot::NONE.0));
+    pub(crate) fn positions_of(&self, [i, j, k]: [u16; 3]) -> [[i32; 2]; 3] {
+        let place = |index: u16| signed(self.positions.get(usize::from(index)).unwrap_or(&PackedVertex::NONE.0));
         [place(i), place(j), place(k)]
     }
 
-    /// The vertices of a triangle of a list without indices, and words of their [`Slot`]s.
+    /// The vertices of a triangle of a list without indices, and words of their [`PackedVertex`]s.
     #[inline(always)]
     pub(crate) fn in_a_row(&self, number: usize) -> ([u16; 3], [[i32; 2]; 3]) {
         let first = 3 * number;
-        let places = match self.places.get(first..) {
+        let positions = match self.positions.get(first..) {
             Some([a, b, c, ..]) => [signed(a), signed(b), signed(c)],
-            _ => [signed(&Slot::NONE.0); 3],
+            _ => [signed(&PackedVertex::NONE.0); 3],
         };
-        ([first as u16, (first + 1) as u16, (first + 2) as u16], places)
+        ([first as u16, (first + 1) as u16, (first + 2) as u16], positions)
     }
 
     /// How many have been recorded.
@@ -238,8 +240,8 @@ impl Triangles<'_> {
         (to.corners, to.last, to.face) = (*a, last, *face);
         self.layout.next = next;
         let [i, j, k] = to.corners();
-        let screen = |index: u16| match self.places.get(usize::from(index)) {
-            Some(words) => Slot(*words).screen(),
+        let screen = |index: u16| match self.positions.get(usize::from(index)) {
+            Some(words) => PackedVertex(*words).screen(),
             None => self.added(index).screen(),
         };
         // One by one, so that few things are at hand at once.
@@ -264,17 +266,17 @@ impl Triangles<'_> {
 
     /// Where a vertex is that the clipper added.
     #[inline(never)]
-    fn added(&self, index: u16) -> Slot {
+    fn added(&self, index: u16) -> PackedVertex {
         match self.vertices.get(self.layout.stride * usize::from(index)..) {
-            Some([a, b, ..]) => Slot([*a, *b]),
-            _ => Slot::NONE,
+            Some([a, b, ..]) => PackedVertex([*a, *b]),
+            _ => PackedVertex::NONE,
         }
     }
 
     /// Reads the varyings of a vertex of the draw.
     #[inline(always)]
     pub(crate) fn varyings<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
-        if S::Varyings::LEN > FEW {
+        if S::Varyings::LEN > MAX_IN_REGISTERS {
             self.varyings_apart::<S>(index, to);
         } else if S::WORDS > 0 {
             *to = self.load::<S>(index);
@@ -289,7 +291,7 @@ impl Triangles<'_> {
 
     #[inline(always)]
     fn load<S: VertexShader>(&self, index: u16) -> S::Varyings {
-        let (index, count) = (usize::from(index), self.places.len());
+        let (index, count) = (usize::from(index), self.positions.len());
         let at = if index < count {
             VERTEX_WORDS * count + S::WORDS * index
         } else {
@@ -418,8 +420,8 @@ impl<'a> Records<'a> {
         self.layout.added = 0;
         self.layout.stride = stride;
         self.layout.front = start + needs;
-        let (places, _) = self.vertices_mut();
-        places.fill(Slot::NONE.0);
+        let (positions, _) = self.vertices_mut();
+        positions.fill(PackedVertex::NONE.0);
         true
     }
 
@@ -459,7 +461,7 @@ impl<'a> Records<'a> {
         self.layout.stride > 0
     }
 
-    /// What is known of where the vertices of the current draw are: words of [`Slot`]s.
+    /// What is known of where the vertices of the current draw are: words of [`PackedVertex`]s.
     #[inline]
     pub(crate) fn positions(&self) -> &[[u32; 2]] {
         let start = self.layout.vertices;
@@ -469,11 +471,11 @@ impl<'a> Records<'a> {
 
     /// What is known of where a vertex of the current draw is.
     #[inline]
-    pub(crate) fn slot(&self, index: usize) -> Slot {
-        self.positions().get(index).map_or(Slot::NONE, |words| Slot(*words))
+    pub(crate) fn packed_vertex(&self, index: usize) -> PackedVertex {
+        self.positions().get(index).map_or(PackedVertex::NONE, |words| PackedVertex(*words))
     }
 
-    /// The places of all vertices, and those of their varyings.
+    /// The positions of all vertices, and those of their varyings.
     pub(crate) fn vertices_mut(&mut self) -> (&mut [[u32; 2]], &mut [u32]) {
         let start = self.layout.vertices;
         let words = self.words.get_mut(start..start + self.layout.count * self.layout.stride).unwrap_or_default();
@@ -485,7 +487,7 @@ impl<'a> Records<'a> {
 
     /// The first words of a vertex's position and of its varyings.
     #[inline]
-    fn places(&self, index: usize) -> (usize, usize) {
+    fn words_of(&self, index: usize) -> (usize, usize) {
         let Layout { vertices, count, stride, .. } = *self.layout;
         if index < count {
             (vertices + VERTEX_WORDS * index, vertices + VERTEX_WORDS * count + (stride - VERTEX_WORDS) * index)
@@ -495,11 +497,11 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Packs a vertex of the current draw, which has places for vertices.
+    /// Packs a vertex of the current draw, which has positions for vertices.
     #[inline]
-    pub(crate) fn keep<S: VertexShader>(&mut self, index: usize, slot: Slot, varyings: &S::Varyings) {
-        let (position, rest) = self.places(index);
-        let [a, b] = slot.0;
+    pub(crate) fn store_vertex<S: VertexShader>(&mut self, index: usize, packed: PackedVertex, varyings: &S::Varyings) {
+        let (position, rest) = self.words_of(index);
+        let [a, b] = packed.0;
         self.set(position, a);
         self.set(position + 1, b);
         S::store(varyings, self.words.get_mut(rest..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default());
@@ -511,7 +513,7 @@ impl<'a> Records<'a> {
         if S::WORDS == 0 {
             return S::Varyings::ZERO;
         }
-        let (_, rest) = self.places(index.into());
+        let (_, rest) = self.words_of(index.into());
         S::load(self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
     }
 
@@ -548,13 +550,13 @@ impl<'a> Records<'a> {
         let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
         let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
         let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
-        let places = vertices.get(..VERTEX_WORDS * layout.count).unwrap_or_default();
+        let positions = vertices.get(..VERTEX_WORDS * layout.count).unwrap_or_default();
         // Numbers are below that which stands for none.
         let beyond = rest.len().saturating_sub(TRIANGLE * usize::from(NONE));
         Triangles {
             lists,
             vertices,
-            places: bytemuck::try_cast_slice(places).unwrap_or_default(),
+            positions: bytemuck::try_cast_slice(positions).unwrap_or_default(),
             triangles: rest.get_mut(beyond..).unwrap_or_default(),
             count: layout.triangles,
             layout,

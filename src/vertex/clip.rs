@@ -111,7 +111,7 @@ impl ClipCorner {
     /// The weight 1.
     pub const WHOLE: i32 = 1 << 30;
 
-    /// Corner `k` of a triangle.
+    /// VertexRef `k` of a triangle.
     pub const fn new(vertex: ClipVertex, k: usize) -> Self {
         Self {
             vertex,
@@ -160,7 +160,7 @@ impl PolygonCorner {
         Self { place: [const { Cell::new(0) }; 4], weights: [const { Cell::new(0) }; 3], next: Cell::new(0) }
     }
 
-    /// Corner `k` of a triangle.
+    /// VertexRef `k` of a triangle.
     pub(super) fn set(&self, vertex: &ClipVertex, k: usize) {
         for (place, c) in self.place.iter().zip([vertex.x, vertex.y, vertex.z, vertex.w]) {
             place.set(c);
@@ -245,13 +245,13 @@ impl<const N: usize> Default for Polygon<[PolygonCorner; N]> {
 
 /// A part of a triangle, by depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum DepthSlab {
     /// Before the near plane.
-    Before,
+    InFrontOfNear,
     /// Between near and far plane.
-    Between,
+    Inside,
     /// Beyond the far plane.
-    Beyond,
+    BeyondFar,
 }
 
 impl DepthRange {
@@ -265,16 +265,16 @@ impl DepthRange {
     }
 
     /// The parts to draw beside that between the planes, of a triangle whose vertices' outcodes are `codes`, united.
-    pub fn parts_beyond(self, codes: Outcode) -> impl Iterator<Item = Part> {
+    pub fn clamped_slabs(self, codes: Outcode) -> impl Iterator<Item = DepthSlab> {
         let outside = codes.0 & self.clamped().0;
-        let parts = [(Part::Before, Outcode::NEAR), (Part::Beyond, Outcode::FAR)];
+        let parts = [(DepthSlab::InFrontOfNear, Outcode::NEAR), (DepthSlab::BeyondFar, Outcode::FAR)];
         parts.into_iter().filter(move |(_, plane)| outside & plane != 0).map(|(part, _)| part)
     }
 }
 
 /// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on the corners of what is
 /// left in one part of it: a convex polygon, or nothing.
-pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: Part, mut emit: impl FnMut(&ClipCorner)) {
+pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: DepthSlab, mut emit: impl FnMut(&ClipCorner)) {
     let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; CLIPPED_CORNERS]>::new();
     for (k, vertex) in triangle.iter().enumerate() {
         polygon.set(k, vertex);
@@ -295,7 +295,7 @@ impl Polygon {
 
     /// Becomes the part of its triangle that is inside of the planes in `codes` (the outcodes of its vertices, united), or nothing.
     #[inline(never)]
-    pub fn clip(&mut self, codes: Outcode, part: Part) {
+    pub fn clip(&mut self, codes: Outcode, part: DepthSlab) {
         self.ring = Ring { len: 3, last: 2, free: 3 };
         for (k, corner) in self.corners.iter().enumerate() {
             corner.next.set(if k == 2 { 0 } else { k as u8 + 1 });
@@ -380,18 +380,18 @@ impl<'p> Iterator for Corners<'p> {
     }
 }
 
-impl Part {
+impl DepthSlab {
     /// Whether it is inside of a plane.
     pub(super) fn is_inside(self, plane: usize) -> bool {
-        !((plane == NEAR && self == Self::Before) || (plane == FAR && self == Self::Beyond))
+        !((plane == NEAR && self == Self::InFrontOfNear) || (plane == FAR && self == Self::BeyondFar))
     }
 
     /// Brings what is before or beyond to its plane.
     pub(super) fn clamp(self, [_, _, z, w]: &[Cell<i64>; 4]) {
         match self {
-            Self::Before => z.set(0),
-            Self::Between => {}
-            Self::Beyond => z.set(w.get()),
+            Self::InFrontOfNear => z.set(0),
+            Self::Inside => {}
+            Self::BeyondFar => z.set(w.get()),
         }
     }
 }
@@ -459,12 +459,12 @@ mod tests {
         let triangle = triangle.map(|[x, y, z, w]| ClipVertex { x, y, z, w });
         let codes = triangle.iter().fold(0, |codes, v| codes | Outcode::of(v).0);
         let mut corners = 0;
-        clip_triangle(triangle, Outcode(codes), Part::Between, |_| corners += 1);
+        clip_triangle(triangle, Outcode(codes), DepthSlab::Inside, |_| corners += 1);
         corners
     }
 
     /// Corners copied from polygon to polygon, plane by plane.
-    fn plainly_clipped(triangle: [ClipVertex; 3], codes: Outcode, part: Part) -> Vec<(ClipVertex, [i32; 3])> {
+    fn plainly_clipped(triangle: [ClipVertex; 3], codes: Outcode, part: DepthSlab) -> Vec<(ClipVertex, [i32; 3])> {
         let corner = |vertex: &ClipVertex, weights: [i32; 3]| {
             let corner = PolygonCorner::default();
             corner.set(vertex, 0);
@@ -494,9 +494,9 @@ mod tests {
         }
         for (vertex, _) in &mut polygon {
             match part {
-                Part::Before => vertex.z = 0,
-                Part::Between => {}
-                Part::Beyond => vertex.z = vertex.w,
+                DepthSlab::InFrontOfNear => vertex.z = 0,
+                DepthSlab::Inside => {}
+                DepthSlab::BeyondFar => vertex.z = vertex.w,
             }
         }
         polygon
@@ -516,7 +516,7 @@ mod tests {
             let mut vertex = || ClipVertex { x: next(54), y: next(54), z: next(w), w: next(w) + (1 << (w - 2)) };
             let triangle = [vertex(), vertex(), vertex()];
             let codes = Outcode(triangle.iter().fold(0, |codes, v| codes | Outcode::of(v).0));
-            for part in [Part::Before, Part::Between, Part::Beyond] {
+            for part in [DepthSlab::InFrontOfNear, DepthSlab::Inside, DepthSlab::BeyondFar] {
                 let mut found = Vec::new();
                 clip_triangle(triangle, codes, part, |corner| found.push((corner.vertex, corner.weights)));
                 assert_eq!(found, plainly_clipped(triangle, codes, part), "case {case}: {triangle:?}");
@@ -556,7 +556,7 @@ mod tests {
         let project = |v: &ClipVertex| [v.x, v.y].map(|c| c as f64 / v.w as f64 * 131_072.0);
         let [x, y] = project(&triangle[0]);
         let mut near = 0;
-        clip_triangle(triangle, Outcode(codes), Part::Between, |corner| {
+        clip_triangle(triangle, Outcode(codes), DepthSlab::Inside, |corner| {
             let v = project(&corner.vertex);
             near += u32::from((v[0] - x).hypot(v[1] - y) < 0.5);
         });

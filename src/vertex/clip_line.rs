@@ -1,12 +1,12 @@
 //! Clipping of lines: by the planes of [`clip_triangle`](crate::vertex::clip_triangle), in the same order, with the same cuts.
 
-use super::clip::{ClipCorner, ClipVertex, Outcode, PLANES, Part, PolygonCorner, crossing, distance};
+use super::clip::{ClipCorner, ClipVertex, DepthSlab, Outcode, PLANES, PolygonCorner, crossing, distance};
 
 /// Cuts a line by the planes in `codes` (the outcodes of its ends, united): the ends of what is left in one part of it, if
 /// anything is. Their third weight is 0.
 ///
 /// An end that is visible passes unchanged, bit by bit; AB is cut like BA.
-pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: Part) -> Option<[ClipCorner; 2]> {
+pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: DepthSlab) -> Option<[ClipCorner; 2]> {
     let (a, b) = (PolygonCorner::default(), PolygonCorner::default());
     a.set(&ends[0], 0);
     b.set(&ends[1], 1);
@@ -59,7 +59,7 @@ mod tests {
     fn what_is_left_is_inside_of_all_planes() {
         let mut left = 0;
         for line in ends(20_000) {
-            let Some(cut) = clip_line(line, codes(&line), Part::Between) else { continue };
+            let Some(cut) = clip_line(line, codes(&line), DepthSlab::Inside) else { continue };
             left += 1;
             for (end, original) in cut.iter().zip(&line) {
                 // The cuts' rounding: a few units of 2⁵⁰, and 65 times that at the guard band.
@@ -82,8 +82,8 @@ mod tests {
         for line in ends(20_000) {
             let [a, b] = line;
             let all = codes(&line);
-            let cut = clip_line(line, all, Part::Between);
-            let back = clip_line([b, a], all, Part::Between);
+            let cut = clip_line(line, all, DepthSlab::Inside);
+            let back = clip_line([b, a], all, DepthSlab::Inside);
             let turned = |corner: ClipCorner| {
                 let [a, b, c] = corner.weights;
                 ClipCorner { weights: [b, a, c], ..corner }
@@ -92,7 +92,7 @@ mod tests {
             // As an edge of a triangle whose third vertex is inside.
             let third = ClipVertex { x: 0, y: 0, z: ONE / 4, w: ONE / 2 };
             let mut corners = Vec::new();
-            clip_triangle([a, b, third], all, Part::Between, |corner| corners.push(*corner));
+            clip_triangle([a, b, third], all, DepthSlab::Inside, |corner| corners.push(*corner));
             if let Some([a, b]) = cut {
                 cut_lines += 1;
                 assert!(corners.contains(&a) && corners.contains(&b), "{line:?}");
@@ -106,7 +106,8 @@ mod tests {
         let v = |z, w| ClipVertex { x: 0, y: 0, z, w };
         let line = [v(-ONE / 4, ONE / 2), v(ONE, ONE / 2)];
         let all = codes(&line);
-        let parts = [Part::Before, Part::Between, Part::Beyond].map(|part| clip_line(line, all, part));
+        let parts =
+            [DepthSlab::InFrontOfNear, DepthSlab::Inside, DepthSlab::BeyondFar].map(|part| clip_line(line, all, part));
         let [Some(before), Some(between), Some(beyond)] = parts else { panic!("{parts:?}") };
         assert_eq!((before[0].vertex.z, before[1], between[0]), (0, between[0], before[1]));
         assert_eq!((between[1], beyond[1].vertex.z), (beyond[0], beyond[1].vertex.w));

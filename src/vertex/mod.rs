@@ -12,7 +12,8 @@ mod varyings;
 mod viewport;
 
 pub use clip::{
-    CLIPPED_CORNERS, ClipCorner, ClipVertex, DepthRange, Outcode, Part, Polygon, PolygonCorner, clip_triangle, weighted,
+    CLIPPED_CORNERS, ClipCorner, ClipVertex, DepthRange, DepthSlab, Outcode, Polygon, PolygonCorner, clip_triangle,
+    weighted,
 };
 pub use clip_distance::{DISTANCE_CORNERS, MAX_DISTANCES};
 pub use clip_line::clip_line;
@@ -20,8 +21,8 @@ pub use frustum::{Containment, Frustum, Plane};
 pub use painters_order::{Order, SortError, Sortable, far_to_near, painters_order};
 pub(crate) use project::small;
 pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
-pub use shader::{Corner, Face, Side, VertexShader};
-pub use transform::{Placed, Transform, View, place};
-pub(crate) use varyings::FEW;
+pub use shader::{Face, Side, VertexRef, VertexShader};
+pub use transform::{Projected, ScreenMatrix, Transform, projected};
+pub(crate) use varyings::MAX_IN_REGISTERS;
 pub use varyings::{Correction, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
 pub use viewport::{Viewport, ViewportError};

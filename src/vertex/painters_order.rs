@@ -5,7 +5,7 @@
 //! puts the eye at depth minus infinity.
 
 use super::project::ScreenVertex;
-use super::transform::{Placed, Transform};
+use super::transform::{Projected, Transform};
 use super::viewport::Viewport;
 use crate::math::Projective;
 use crate::mesh::Mesh;
@@ -179,12 +179,12 @@ pub fn painters_order(
     for (number, triangle) in triangles.iter_mut().enumerate() {
         let corners = mesh.triangle(number).unwrap_or_default();
         let mut seen = None;
-        let mut v = corners.map(|k| match transform.place(&mesh.data().positions, usize::from(k)) {
-            Placed::Screen(vertex) => {
+        let mut v = corners.map(|k| match transform.project_vertex(&mesh.data().positions, usize::from(k)) {
+            Projected::OnScreen(vertex) => {
                 seen = Some(vertex);
                 Some(vertex)
             }
-            Placed::Outside(_) => None,
+            Projected::NeedsClip(_) => None,
         });
         let instead = seen.unwrap_or(ScreenVertex::new(0, 0, u16::MAX));
         v.iter_mut().for_each(|v| *v = Some(v.unwrap_or(instead)));

@@ -8,12 +8,12 @@ use crate::mesh::{Mesh, Positions};
 /// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
 /// white (colours).
 #[derive(Clone, Copy, Debug)]
-pub struct Corner<'a> {
+pub struct VertexRef<'a> {
     mesh: &'a Mesh<'a>,
     index: usize,
 }
 
-impl<'a> Corner<'a> {
+impl<'a> VertexRef<'a> {
     pub(crate) const fn new(mesh: &'a Mesh<'a>, index: usize) -> Self {
         Self { mesh, index }
     }
@@ -90,14 +90,14 @@ impl<'a> Face<'a> {
     }
 
     /// The provoking vertex: the first of the triangle, which flat attributes come from.
-    pub fn provoking(&self) -> Corner<'a> {
-        Corner::new(self.mesh, usize::from(self.corners[0]))
+    pub fn provoking(&self) -> VertexRef<'a> {
+        VertexRef::new(self.mesh, usize::from(self.corners[0]))
     }
 
     /// The three vertices, the provoking one first.
-    pub fn corners(&self) -> [Corner<'a>; 3] {
+    pub fn corners(&self) -> [VertexRef<'a>; 3] {
         let [a, b, c] = self.corners;
-        let corner = |k: u16| Corner::new(self.mesh, usize::from(k));
+        let corner = |k: u16| VertexRef::new(self.mesh, usize::from(k));
         [corner(a), corner(b), corner(c)]
     }
 
@@ -196,16 +196,16 @@ pub trait VertexShader {
     const CULL_DISTANCES: usize = 0;
 
     /// The varyings at a vertex.
-    fn vertex(&self, vertex: &Corner<'_>) -> Self::Varyings;
+    fn vertex(&self, vertex: &VertexRef<'_>) -> Self::Varyings;
 
     /// Where the vertex is to be drawn, in object space; called only if [`DISPLACES`](Self::DISPLACES).
-    fn displace(&self, vertex: &Corner<'_>) -> Vec3 {
+    fn displace(&self, vertex: &VertexRef<'_>) -> Vec3 {
         vertex.position()
     }
 
     /// Clip distances, then cull distances, on any scale: linear in space, not negative inside. Called only if there are any,
     /// maybe more than once; they concern triangles, not lines and points.
-    fn distances(&self, vertex: &Corner<'_>) -> [i32; MAX_DISTANCES] {
+    fn distances(&self, vertex: &VertexRef<'_>) -> [i32; MAX_DISTANCES] {
         let _ = vertex;
         [0; MAX_DISTANCES]
     }

@@ -13,7 +13,7 @@ use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
 #[derive(Clone, Copy, Debug)]
-pub struct View {
+pub struct ScreenMatrix {
     /// Rows x, y, z, w; the largest entry has 45 bits.
     rows: [[i64; 4]; 4],
     /// Power of two that they are too large by, compared with the raw 32.32 of the matrix.
@@ -49,18 +49,18 @@ struct Row {
 
 /// Where a vertex is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Placed {
+pub enum Projected {
     /// On the screen, or at least within the guard band.
-    Screen(ScreenVertex),
+    OnScreen(ScreenVertex),
     /// Outside of the planes in its code.
-    Outside(Outcode),
+    NeedsClip(Outcode),
 }
 
 /// Outcodes, projection and snapping of a vertex in clip space.
-pub fn place(vertex: &ClipVertex) -> Placed {
+pub fn projected(vertex: &ClipVertex) -> Projected {
     let code = Outcode::of(vertex);
     let placed = if code.0 == 0 { project(vertex) } else { None };
-    placed.map_or(Placed::Outside(code), Placed::Screen)
+    placed.map_or(Projected::NeedsClip(code), Projected::OnScreen)
 }
 
 /// `value / 2^shift`, rounded to nearest; a negative shift multiplies. 0 for shifts above 62.
@@ -133,13 +133,13 @@ impl ShortBox {
     }
 }
 
-impl View {
+impl ScreenMatrix {
     /// Of nothing yet.
     pub const EMPTY: Self = Self { rows: [[0; 4]; 4], scale: 0 };
 
     /// Becomes the matrix that takes object space to clip space with a viewport folded in.
     #[inline(never)]
-    pub fn fold(&mut self, mvp: &Projective, viewport: &Viewport) {
+    pub fn set_from(&mut self, mvp: &Projective, viewport: &Viewport) {
         // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
         let shift = excess(mvp.rows().as_flattened(), 44).max(0);
         let cut = |entry: i64| if shift == 0 { entry } else { scale(entry, shift) };
@@ -344,9 +344,9 @@ impl Transform {
     /// move vertices.
     pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
         let mut transform = Self::default();
-        let mut view = View::EMPTY;
-        view.fold(mvp, viewport);
-        transform.fold(&view, mesh, displaced);
+        let mut view = ScreenMatrix::EMPTY;
+        view.set_from(mvp, viewport);
+        transform.set_from(&view, mesh, displaced);
         transform
     }
 
@@ -356,7 +356,7 @@ impl Transform {
     /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
     /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
-    pub fn fold(&mut self, view: &View, mesh: &Mesh<'_>, displaced: bool) {
+    pub fn set_from(&mut self, view: &ScreenMatrix, mesh: &Mesh<'_>, displaced: bool) {
         let numbers = Numbers::of(mesh, displaced);
         // One shift for all, so that the largest reachable value is just below 2⁵⁵.
         let shift = excess(&[view.rows.iter().fold(0, |reach, row| reach | numbers.reach(row))], 53);
@@ -429,17 +429,17 @@ impl Transform {
 
     /// Where a mesh vertex is on the screen, or which planes keep it off.
     #[inline]
-    pub fn place(&self, positions: &Positions<'_>, index: usize) -> Placed {
+    pub fn project_vertex(&self, positions: &Positions<'_>, index: usize) -> Projected {
         if let (Positions::Quantized { points, .. }, true) = (positions, self.short) {
-            return match self.place_short(points.get(index).copied().unwrap_or_default()) {
-                (Placed::Screen(placed), z) => Placed::Screen(self.with_depth(placed, i64::from(z) << 25)),
+            return match self.project_quantized(points.get(index).copied().unwrap_or_default()) {
+                (Projected::OnScreen(placed), z) => Projected::OnScreen(self.with_depth(placed, i64::from(z) << 25)),
                 (outside, _) => outside,
             };
         }
-        self.place_clip(&self.vertex(positions, index))
+        self.project_clip_vertex(&self.vertex(positions, index))
     }
 
-    /// The positions of a mesh if all that [`place`](Self::place) does with them is [`place_short`](Self::place_short).
+    /// The positions of a mesh if all that [`project_vertex`](Self::project_vertex) does with them is [`project_quantized`](Self::project_quantized).
     #[inline]
     pub(crate) fn short_points<'p>(&self, positions: &Positions<'p>) -> Option<&'p [[i16; 3]]> {
         match positions {
@@ -448,24 +448,24 @@ impl Transform {
         }
     }
 
-    /// [`place`](Self::place) by the short path, perspective depth for all depth scales; and z.
+    /// [`project_vertex`](Self::project_vertex) by the short path, perspective depth for all depth scales; and z.
     #[inline(always)]
-    pub(crate) fn place_short(&self, q: [i16; 3]) -> (Placed, i32) {
+    pub(crate) fn project_quantized(&self, q: [i16; 3]) -> (Projected, i32) {
         let [x, y, z, w] = &self.rows;
         let (w, z) = (w.apply_short(q), z.apply_short(q));
         // In the short path's range of w, only the near and the far plane are left to be outside of.
         let placed = if (z as u32) <= w as u32 {
-            Placed::Screen(project_short([x.apply_short(q), y.apply_short(q), z, w]))
+            Projected::OnScreen(project_short([x.apply_short(q), y.apply_short(q), z, w]))
         } else {
-            Placed::Outside(Outcode(if z < 0 { Outcode::NEAR } else { Outcode::FAR }))
+            Projected::NeedsClip(Outcode(if z < 0 { Outcode::NEAR } else { Outcode::FAR }))
         };
         (placed, z)
     }
 
     /// Where a vertex in clip space is on the screen, or which planes keep it off.
-    pub fn place_clip(&self, vertex: &ClipVertex) -> Placed {
-        match place(vertex) {
-            Placed::Screen(placed) => Placed::Screen(self.with_depth(placed, vertex.z)),
+    pub fn project_clip_vertex(&self, vertex: &ClipVertex) -> Projected {
+        match projected(vertex) {
+            Projected::OnScreen(placed) => Projected::OnScreen(self.with_depth(placed, vertex.z)),
             outside => outside,
         }
     }

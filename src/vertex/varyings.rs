@@ -68,18 +68,18 @@ impl<const N: usize> Varyings for [i32; N] {
 
 /// The most values that are kept in registers. More of them are changed where they are, by functions of their own: the loops
 /// around would otherwise hold copies of them, and of their changes, on the stack.
-pub(crate) const FEW: usize = 3;
+pub(crate) const MAX_IN_REGISTERS: usize = 3;
 
 /// Adds `changes`, modulo 2³².
 #[inline(always)]
 fn step<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
-    if N > FEW { step_apart(values, changes) } else { advance_here(values, changes, 1) }
+    if N > MAX_IN_REGISTERS { step_apart(values, changes) } else { advance_here(values, changes, 1) }
 }
 
 /// Adds `pixels` times `changes`, modulo 2³².
 #[inline(always)]
 fn advance<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
-    if N > FEW { advance_apart(values, changes, pixels) } else { advance_here(values, changes, pixels) }
+    if N > MAX_IN_REGISTERS { advance_apart(values, changes, pixels) } else { advance_here(values, changes, pixels) }
 }
 
 #[inline(never)]

@@ -12,7 +12,7 @@ use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::raster::{Line, PixelRect, square};
 use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
 use zstrip::target::FrameSlice;
-use zstrip::vertex::{Corner, Face, Perspective, VertexShader};
+use zstrip::vertex::{Face, Perspective, VertexRef, VertexShader};
 use zstrip::{Cull, State};
 
 /// Draws with zstrip; strips of `strip_rows` rows, and `records` words of records.
@@ -33,7 +33,7 @@ struct Reached<'a>(RefCell<&'a mut dyn FnMut(usize, u32, u32)>);
 impl VertexShader for Reached<'_> {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
@@ -62,7 +62,7 @@ struct Numbered;
 impl VertexShader for Numbered {
     type Varyings = [i32; 0];
 
-    fn vertex(&self, _: &Corner<'_>) -> [i32; 0] {
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
         []
     }
 
@@ -89,7 +89,7 @@ struct Coordinates<'a, const STEP: usize> {
 impl<const STEP: usize> VertexShader for Coordinates<'_, STEP> {
     type Varyings = Perspective<2, 3>;
 
-    fn vertex(&self, corner: &Corner<'_>) -> Perspective<2, 3> {
+    fn vertex(&self, corner: &VertexRef<'_>) -> Perspective<2, 3> {
         let k = corner.index();
         Perspective::new([self.triangle.u[k] << 20, self.triangle.t[k] << 20], [])
     }

@@ -210,7 +210,7 @@ pub fn snapped<const K: usize>(
         if all.0 == 0 {
             fan(vertices.iter().filter_map(placed).collect());
         } else {
-            for part in [zstrip::vertex::Part::Between].into_iter().chain(range.parts_beyond(all)) {
+            for part in [zstrip::vertex::DepthSlab::Inside].into_iter().chain(range.clamped_slabs(all)) {
                 let mut corners = Vec::new();
                 let varyings = vertices.map(|v| v.1);
                 clip_triangle(vertices.map(|v| v.0), all, part, |corner| {
