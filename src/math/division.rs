@@ -97,14 +97,12 @@ pub(crate) fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     #[test]
     fn bit_by_bit_is_division() {
-        let mut state = 3_u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 15
-        };
+        let mut rng = Rng::new(3);
+        let mut next = || rng.next_u32();
         let ends = [0, 1, 2, 3, 0x7FFF_FFFF, 0x8000_0000, 0x8000_0001, u32::MAX - 1, u32::MAX];
         let all = ends.into_iter().flat_map(|num| ends.map(|den| (num, den)));
         let random = core::iter::repeat_with(|| (next() >> (next() & 31), next() >> (next() & 31))).take(100_000);
@@ -116,11 +114,8 @@ mod tests {
 
     #[test]
     fn long_division_is_exact_modulo_2_to_64() {
-        let mut state = 5_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            state ^ state >> 29
-        };
+        let mut rng = Rng::new(5);
+        let mut next = || rng.next_u64();
         for case in 0..20_000 {
             let (high, low) = (next() as i64 >> (next() % 64), next() as u32);
             let den = (next() >> (13 + next() % 50)).max(1);
@@ -132,11 +127,8 @@ mod tests {
 
     #[test]
     fn long_division_is_division() {
-        let mut state = 9_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            state ^ state >> 31
-        };
+        let mut rng = Rng::new(9);
+        let mut next = || rng.next_u64();
         for _ in 0..20_000 {
             let den = NonZeroU32::new((next() >> (33 + next() % 30)) as u32 | 1).expect("odd");
             let num = (u64::from(den.get()) * (next() >> (32 + next() % 32))) + next() % u64::from(den.get());

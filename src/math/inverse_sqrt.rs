@@ -76,6 +76,7 @@ fn unit_vector_of_any_length(v: [i32; 3]) -> [i32; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
     use std::println;
 
     #[test]
@@ -92,12 +93,8 @@ mod tests {
 
     #[test]
     fn vectors_become_unit_vectors() {
-        let seed = 0x5eed_0001_u32;
-        let mut state = seed;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 16) as i32 - (1 << 15)
-        };
+        let mut rng = Rng::new(1);
+        let mut next = || rng.signed_bits(16) as i32;
         let (mut worst, mut worst_length) = (0.0_f64, 0.0_f64);
         for round in 0..200_000 {
             let shift = round % 4;
@@ -110,7 +107,7 @@ mod tests {
             for (u, c) in unit.into_iter().zip(v) {
                 let off = (f64::from(u) - 16_384.0 * f64::from(c) / length).abs();
                 worst = worst.max(off);
-                assert!(off < 1.5, "seed {seed:#x}, {v:?}: {unit:?}, off by {off}");
+                assert!(off < 1.5, "{v:?}: {unit:?}, off by {off}");
             }
             let exact = unit.iter().map(|&c| f64::from(c).powi(2)).sum::<f64>().sqrt();
             worst_length = worst_length.max((exact - 16_384.0).abs());

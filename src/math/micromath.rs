@@ -191,6 +191,7 @@ impl TryFrom<Quaternion> for Affine {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     const ULP: f64 = 1.0 / 65_536.0;
 
@@ -198,12 +199,10 @@ mod tests {
         Vec3::try_from(F32x3 { x, y, z })
     }
 
-    /// Numbers in -1..1 from a linear congruential generator.
-    fn numbers(mut seed: u32) -> impl FnMut() -> f32 {
-        move || {
-            seed = seed.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (seed >> 8) as f32 / (1 << 23) as f32 - 1.0
-        }
+    /// Returns a generator of numbers in -1..1.
+    fn numbers(seed: u64) -> impl FnMut() -> f32 {
+        let mut rng = Rng::new(seed);
+        move || 2.0 * rng.unit() as f32 - 1.0
     }
 
     #[test]

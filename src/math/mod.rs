@@ -13,6 +13,11 @@ mod inverse_sqrt;
 mod micromath;
 mod precision;
 mod projective;
+/// The tests' generator of random numbers.
+#[cfg(test)]
+#[path = "../../tests/reference/rng.rs"]
+#[allow(dead_code, reason = "the crate's own tests use only part of it")]
+pub(crate) mod random;
 mod reciprocal;
 mod root;
 mod vector;

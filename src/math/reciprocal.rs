@@ -329,14 +329,12 @@ impl CoarseDivisor {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     #[test]
     fn both_cores_divide_alike() {
-        let mut state = 1_u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 13
-        };
+        let mut rng = Rng::new(1);
+        let mut next = || rng.next_u32();
         for case in 0..300_000 {
             let x = if case % 3 == 0 { 1 << 31 | next() >> (8 + next() % 24) } else { 1 << 31 | next() };
             let divisor = Divisor::of_normalized(x);
@@ -350,11 +348,8 @@ mod tests {
     #[test]
     fn products_by_halves_are_products() {
         let ends = [i32::MIN, i32::MIN + 1, -0x1_0000, -0xFFFF, -1, 0, 1, 0xFFFF, 0x1_0000, 0x7FFF_0000, i32::MAX];
-        let mut state = 1_u32;
-        let mut next = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state ^ state >> 13) as i32
-        };
+        let mut rng = Rng::new(1);
+        let mut next = || rng.next_u32() as i32;
         let random: std::vec::Vec<_> = (0..2000).map(|_| next() >> (next() & 31)).collect();
         for (a, b) in ends.iter().chain(&random).flat_map(|a| ends.iter().chain(&random).map(move |b| (*a, *b))) {
             assert_eq!(product_by_halves(a, b), i64::from(a) * i64::from(b), "{a} {b}");
@@ -363,11 +358,8 @@ mod tests {
 
     #[test]
     fn divisors_are_within_their_bounds() {
-        let mut state = 1_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 15
-        };
+        let mut rng = Rng::new(1);
+        let mut random = || rng.next_u32();
         let (mut worst, mut worst_coarse) = (0_f64, 0_f64);
         let boundaries = (0..1 << 17).map(|k| (1 << 31) + (k << 14)).chain((0..1 << 16).map(|k| u32::MAX - (k << 15)));
         for x in boundaries.flat_map(|x: u32| [x, x.wrapping_sub(1) | 1 << 31, x >> 7, x >> 20]) {
@@ -445,11 +437,8 @@ mod tests {
     #[test]
     fn products_by_halves_are_the_same() {
         let corners = [0, 1, 0x7FFF, 0x8000, 0xFFFF, 0x1_0000, 0x7FFF_FFFF, 0x8000_0000, 0x8000_FFFF, u32::MAX];
-        let mut state = 1_u32;
-        let random = core::iter::repeat_with(|| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 15
-        });
+        let mut rng = Rng::new(1);
+        let random = core::iter::repeat_with(|| rng.next_u32());
         for a in corners.into_iter().chain(random.take(1000)) {
             for b in corners.into_iter().chain([a.rotate_left(7), !a]) {
                 assert_eq!(u64::from(mul_high_by_halves(a, b)), (u64::from(a) * u64::from(b)) >> 32, "{a} {b}");

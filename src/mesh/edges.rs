@@ -172,6 +172,7 @@ mod tests {
     use super::super::mesh::{MeshData, Positions, Topology};
     use super::*;
     use crate::math::Vec3;
+    use crate::math::random::Rng;
     use std::collections::BTreeSet;
     use std::vec;
     use std::vec::Vec;
@@ -184,11 +185,8 @@ mod tests {
 
     #[test]
     fn each_edge_is_found_once_in_any_room_that_holds_them() {
-        let mut state = 3_u32;
-        let mut next = |bound: u32| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            ((state >> 16) * bound) >> 16
-        };
+        let mut rng = Rng::new(3);
+        let mut next = |bound: u32| rng.below(bound.into()) as u32;
         for case in 0..200 {
             let vertices = 3 + next(57);
             let indices: Vec<u16> = (0..3 * next(100)).map(|_| next(vertices) as u16).collect();

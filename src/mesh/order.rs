@@ -57,26 +57,21 @@ pub fn sort_back_to_front(order: &mut [u16], depth: impl Fn(u16) -> i64) {
 mod tests {
     use super::super::bounds::{BoundingBox, BoundingSphere};
     use super::*;
+    use crate::math::random::Rng;
     use crate::math::{Affine, Angle16, Scalar, Vec3};
     use std::vec::Vec;
 
     #[test]
     fn draws_are_sorted_like_by_the_standard_library() {
-        let seed = 7_u32;
-        let mut state = seed;
+        let mut rng = Rng::new(7);
         for length in 0..40_u16 {
             for spread in [1, 4, 1000] {
-                let depths: Vec<i64> = (0..length)
-                    .map(|_| {
-                        state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                        i64::from(state >> 16) % spread
-                    })
-                    .collect();
+                let depths: Vec<i64> = (0..length).map(|_| rng.below(spread) as i64).collect();
                 let mut order: Vec<u16> = (0..length).rev().collect();
                 sort_back_to_front(&mut order, |k| depths[usize::from(k)]);
                 let mut expected: Vec<u16> = (0..length).collect();
                 expected.sort_by_key(|&k| (-depths[usize::from(k)], k));
-                assert_eq!(order, expected, "seed {seed}, {depths:?}");
+                assert_eq!(order, expected, "{depths:?}");
             }
         }
     }

@@ -71,14 +71,12 @@ impl Along {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
     use std::println;
 
     fn lines(count: usize) -> impl Iterator<Item = ([i32; 2], [i32; 2], i32, i32)> {
-        let mut state = 23_u64;
-        let mut next = move |limit: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((i128::from((state ^ state >> 29) as i64) * i128::from(limit)) >> 63) as i32
-        };
+        let mut rng = Rng::new(23);
+        let mut next = move |limit: i32| rng.between(-limit, limit);
         (0..count).map(move |k| {
             let reach = [300, 5000, 80_000, 1 << 20][k % 4];
             let mut point = || [next(reach), next(reach)];

@@ -33,14 +33,12 @@ pub(crate) fn unit(x: i32, y: i32) -> (i32, i32) {
 #[cfg(test)]
 mod tests {
     use super::unit;
+    use crate::math::random::Rng;
 
     #[test]
     fn unit_vectors_have_length_1_and_the_direction() {
-        let mut state = 5_u64;
-        let mut next = |limit: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((i128::from((state ^ state >> 29) as i64) * i128::from(limit)) >> 63) as i32
-        };
+        let mut rng = Rng::new(5);
+        let mut next = |limit: i32| rng.between(-limit, limit);
         let mut worst = 0_f64;
         for case in 0..100_000 {
             let limit = 1 << (1 + case % 25);

@@ -128,6 +128,7 @@ impl Edge {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     fn at((x, y): (i32, i32)) -> ScreenVertex {
         ScreenVertex::new(x, y, 0)
@@ -144,11 +145,8 @@ mod tests {
     /// Any size, any start; ends on pixel centres, where positions are whole pixels, as often as not.
     #[test]
     fn each_row_begins_at_the_exact_pixel() {
-        let mut state = 7_u64;
-        let mut next = |low: i32, high: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            low + (((state >> 32) * (high - low) as u64) >> 32) as i32
-        };
+        let mut rng = Rng::new(7);
+        let mut next = |low: i32, end: i32| rng.between(low, end - 1);
         let (mut rows, mut usual) = (0, 0);
         for case in 0..150_000 {
             let size = [3, 100, 600, 2000, 8192, 32_768, 200_000, (1 << 23) - 1][next(0, 8) as usize];

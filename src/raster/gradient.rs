@@ -254,14 +254,12 @@ fn minor(v: &[i64; 2], c: &[i32; 2]) -> i64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     #[test]
     fn both_cores_multiply_alike() {
-        let mut state = 1_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 15
-        };
+        let mut rng = Rng::new(1);
+        let mut random = || rng.next_u32();
         for case in 0..100_000 {
             let (a, b) = (random() as i32 >> (2 + case % 20), random() as i32 >> (2 + case % 17));
             let n = [random(), random() >> 1, u32::MAX, 0][case % 4] | 1 << 31;

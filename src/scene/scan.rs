@@ -249,6 +249,7 @@ impl<'m> Scan<'m> {
 mod tests {
     use super::super::state::{Cull, State, Winding};
     use super::*;
+    use crate::math::random::Rng;
     use crate::math::{Scalar, Vec3};
     use crate::mesh::{MeshData, Positions};
     use crate::target::{Layout, TriangleRecord};
@@ -259,12 +260,11 @@ mod tests {
     const STRIPS: usize = 15;
     const COUNT: usize = 600;
 
-    struct Random(u32);
+    struct Random(Rng);
 
     impl Random {
         fn below(&mut self, end: i32) -> i32 {
-            self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            ((u64::from(self.0 >> 4) * end as u64) >> 28) as i32
+            self.0.below(end as u64) as i32
         }
 
         /// Three vertices: tiny, small, large or huge, some of them not there.
@@ -287,7 +287,7 @@ mod tests {
     /// What a walk records, and what it counts, is what [`ScreenTriangle::passes_culling`] says of each triangle.
     #[test]
     fn walks_find_what_is_found_one_by_one() {
-        let mut random = Random(1);
+        let mut random = Random(Rng::new(1));
         let points = [[0; 3]; 3 * COUNT];
         let positions = Positions::Quantized { points: &points, scale: Scalar::ONE, offset: Vec3::ZERO };
         let indices: Vec<u16> = (0..3 * COUNT as u16).map(|k| k ^ 1).collect();

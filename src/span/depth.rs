@@ -322,15 +322,13 @@ fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u3
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     #[test]
     fn few_depths_are_tested_one_by_one() {
-        let mut state = 1_u32;
+        let mut rng = Rng::new(1);
         for case in 0..4000 {
-            let mut random = || {
-                state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-                state ^ state >> 15
-            };
+            let mut random = || rng.next_u32();
             let (length, z, dz_dx) = (case % (RUN + 1), random() >> 1, random() as i32 >> 12);
             let mut expected = [(); RUN].map(|()| if random() % 16 < 1 { 0 } else { u16::MAX });
             let mut found = expected;

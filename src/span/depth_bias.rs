@@ -53,6 +53,7 @@ impl DepthBias {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     /// The definition, in floating point, before it is kept in range.
     fn exact(bias: DepthBias, depths: Range<u16>, dx: i32, dy: i32) -> f64 {
@@ -63,11 +64,8 @@ mod tests {
 
     #[test]
     fn bias_is_the_rounded_definition_and_keeps_depths_in_range() {
-        let mut state = 11_u64;
-        let mut next = |bits: u32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state >> (64 - bits)) as i32
-        };
+        let mut rng = Rng::new(11);
+        let mut next = |bits: u32| (rng.next_u64() >> (64 - bits)) as i32;
         for case in 0..100_000 {
             let (a, b) = (next(16) as u16, next(16) as u16);
             let depths = a.min(b)..a.max(b);

@@ -474,6 +474,7 @@ mod tests {
     use super::super::depth::{AnyDepth, Compare, DepthState, LessWrite};
     use super::*;
     use crate::color::{Dithered, Rgb332, squeeze};
+    use crate::math::random::Rng;
     use crate::vertex::Side;
     use core::fmt::Debug;
     use embedded_graphics_core::pixelcolor::Rgb565;
@@ -515,11 +516,8 @@ mod tests {
         test: D,
         stored: impl Fn(u16) -> D::Stored,
     ) {
-        let mut state = 1_u32;
-        let mut random = |below: u32| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) % below
-        };
+        let mut rng = Rng::new(1);
+        let mut random = |end: u32| rng.below(end.into()) as u32;
         for case in 0..2000 {
             let length = if case % 50 == 0 { random(1600) } else { random(70) } as usize;
             let position = (random(300) as i32, random(300) as i32);
@@ -568,11 +566,8 @@ mod tests {
     /// Any lengths, any colours at both ends, some pixels hidden: the others are within 1 of 255 before their bits are cut.
     #[test]
     fn packed_channels_are_within_1_of_255() {
-        let mut state = 1_u32;
-        let mut random = |below: u32| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state >> 8) % below
-        };
+        let mut rng = Rng::new(1);
+        let mut random = |end: u32| rng.below(end.into()) as u32;
         for case in 0..3000 {
             let length = if case % 50 == 0 { 2 + random(3000) } else { 2 + random(120) } as usize;
             let ends = [0; 3].map(|_: i32| [random(256), random(256)].map(|c| squeeze((c << 8) as i32)));

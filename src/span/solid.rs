@@ -137,15 +137,13 @@ fn draw<R: Copy, D: DepthTest>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
     use crate::span::LessWrite;
 
     #[test]
     fn runs_in_two_are_those_pixel_by_pixel() {
-        let mut state = 1_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 15
-        };
+        let mut rng = Rng::new(1);
+        let mut random = || rng.next_u32();
         for case in 0..2000 {
             let (z, dz_dx) = (random() >> 1, random() as i32 >> 12);
             // All pass, all but a few, few.

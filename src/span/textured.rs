@@ -378,6 +378,7 @@ mod tests {
     use super::super::depth::{AnyDepth, Compare, DepthState, LessWrite};
     use super::super::perspective::Corrected;
     use super::*;
+    use crate::math::random::Rng;
     use crate::texture::Tile;
     use crate::vertex::{Perspective, Side};
     use embedded_graphics_core::pixelcolor::Rgb565;
@@ -410,11 +411,8 @@ mod tests {
 
     #[test]
     fn walks_are_where_divisors_are() {
-        let mut state = 1_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 15
-        };
+        let mut rng = Rng::new(1);
+        let mut random = || rng.next_u32();
         for case in 0..5000 {
             let way = (random() % 200) as i32;
             let q = [random(), random()].map(|q| ((q >> 1 >> (random() % 9)) | 1 << 22) as i32);
@@ -461,11 +459,8 @@ mod tests {
     fn runs_in_two_are_those_pixel_by_pixel() {
         let texels: [[u16; 8]; 4] =
             core::array::from_fn(|y| core::array::from_fn(|x| ((8 * y + x) as u16).wrapping_mul(0x0843)));
-        let mut state = 1_u32;
-        let mut random = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 15
-        };
+        let mut rng = Rng::new(1);
+        let mut random = || rng.next_u32();
         for case in 0..2000 {
             let (z, dz_dx) = (random() >> 1, random() as i32 >> 12);
             let (uv, duv) = ([random() as i32 >> 8; 2], [random() as i32 >> 8, random() as i32 >> 8]);

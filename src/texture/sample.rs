@@ -225,6 +225,7 @@ mod tests {
     use super::super::image::Image;
     use super::super::texel::{Keyed, PaletteTexel, Rgb565Texel, Rgb888Texel};
     use super::*;
+    use crate::math::random::Rng;
     use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
     use std::println;
     use std::vec::Vec;
@@ -249,12 +250,9 @@ mod tests {
         place as u32
     }
 
-    fn random(seed: u32) -> impl FnMut() -> u32 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            state ^ state >> 13
-        }
+    fn random(seed: u64) -> impl FnMut() -> u32 {
+        let mut rng = Rng::new(seed);
+        move || rng.next_u32()
     }
 
     fn nearest_agrees<W: Wrap>(mode: Mode) {

@@ -453,6 +453,7 @@ fn fraction(num: u64, den: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
     use std::vec::Vec;
 
     fn corners(triangle: [[i64; 4]; 3]) -> usize {
@@ -504,11 +505,8 @@ mod tests {
 
     #[test]
     fn corners_in_a_ring_are_those_of_polygon_after_polygon() {
-        let mut state = 11_u64;
-        let mut next = |bits: u32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state ^ state >> 29) as i64 >> (64 - bits)
-        };
+        let mut rng = Rng::new(11);
+        let mut next = |bits: u32| rng.signed_bits(bits);
         let mut most = 0;
         for case in 0..20_000 {
             // Some with small w, which cross most of the guard band's planes.

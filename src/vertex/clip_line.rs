@@ -33,6 +33,7 @@ pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: DepthSlab) -> Opti
 mod tests {
     use super::super::clip::clip_triangle;
     use super::*;
+    use crate::math::random::Rng;
     use std::vec::Vec;
 
     const ONE: i64 = 1 << 50;
@@ -43,11 +44,8 @@ mod tests {
 
     /// Random ends in all directions, with w of either sign.
     fn ends(count: usize) -> Vec<[ClipVertex; 2]> {
-        let mut state = 17_u64;
-        let mut next = |limit: i64| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((i128::from((state ^ state >> 29) as i64) * i128::from(limit)) >> 63) as i64
-        };
+        let mut rng = Rng::new(17);
+        let mut next = |limit: i64| rng.below(2 * limit as u64) as i64 - limit;
         let mut end = || {
             let w = next(ONE);
             ClipVertex { x: next(20 * ONE), y: next(20 * ONE), z: next(ONE), w }

@@ -207,17 +207,15 @@ fn sixteen_bits(fraction: u32) -> u16 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     /// The largest coordinate the rasterizer takes, in 24.8: just above 32,767 px.
     const LIMIT: i32 = (1 << 23) - 1;
 
     #[test]
     fn short_projection_is_the_same() {
-        let mut state = 3_u64;
-        let mut next = |bound: i32| {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((u128::from(state >> 16) * bound as u128) >> 48) as i32
-        };
+        let mut rng = Rng::new(3);
+        let mut next = |bound: i32| rng.below(bound as u64) as i32;
         for _ in 0..100_000 {
             let w = (1 << 26) + next((1 << 30) - (1 << 26));
             let w = if next(10) == 0 { 1 << (26 + next(4)) } else { w };

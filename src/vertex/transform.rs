@@ -492,14 +492,12 @@ impl Transform {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::random::Rng;
 
     #[test]
     fn short_rows_are_rounded_sums_of_products() {
-        let mut state = 1_u32;
-        let mut random = |bits: u32| {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            (state ^ state >> 15) as i32 >> (32 - bits)
-        };
+        let mut rng = Rng::new(1);
+        let mut random = |bits: u32| rng.signed_bits(bits) as i32;
         for _ in 0..100_000 {
             // Entries of 28 bits and a sign, the last with 15 fractional bits.
             let m = [random(29), random(29), random(29)];
@@ -521,11 +519,8 @@ mod tests {
 
     #[test]
     fn times_is_a_product_rounded_down() {
-        let mut state = 1_u64;
-        let mut next = || {
-            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            (state ^ state >> 29) as i64
-        };
+        let mut rng = Rng::new(1);
+        let mut next = || rng.next_u64() as i64;
         for _ in 0..200_000 {
             let (a, b) = (next() >> (18 + (next() & 31)), (next() >> (32 + (next() & 31))) as i32);
             for b in [b, i32::MIN, i32::MAX] {

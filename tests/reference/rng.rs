@@ -1,6 +1,7 @@
 //! A seeded random number generator: the same seed gives the same scenes on every machine.
 //!
-//! A test that fails prints [`Rng::seed`], and that number alone reproduces the failure.
+//! A test that panics prints the seed of each [`Rng`] in use, and that number alone reproduces the failure.
+//! The crate's own tests use this file as well.
 
 /// Splitmix64: one 64-bit counter, scrambled. Every seed is a good seed.
 ///
@@ -21,6 +22,20 @@ impl Rng {
     /// The seed this generator was made from, to be printed when a test fails.
     pub fn seed(&self) -> u64 {
         self.seed
+    }
+
+    /// Returns 32 random bits.
+    pub fn next_u32(&mut self) -> u32 {
+        (self.next_u64() >> 32) as u32
+    }
+
+    /// Returns a random integer of `bits` bits, one of them its sign.
+    ///
+    /// # Panics
+    /// If `bits` is not in 1..=64.
+    pub fn signed_bits(&mut self, bits: u32) -> i64 {
+        assert!((1..=64).contains(&bits), "{bits} bits");
+        self.next_u64() as i64 >> (64 - bits)
     }
 
     /// The next 64 random bits.
@@ -78,5 +93,14 @@ impl Rng {
     /// A number in `0.0..1.0` with 53 random bits, for the f64 references.
     pub fn unit(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1u64 << 53) as f64
+    }
+}
+
+/// Prints the seed if the test panics.
+impl Drop for Rng {
+    fn drop(&mut self) {
+        if std::thread::panicking() {
+            std::eprintln!("random numbers from seed {:#x}", self.seed);
+        }
     }
 }
