@@ -1,4 +1,8 @@
 //! Parts of the crate that its own tests, examples and measurements look at. They are no part of its interface: they change
 //! without notice.
 
-pub use crate::raster::*;
+pub use crate::raster::{Line, PixelRect, spans, square};
+pub use crate::vertex::clip::{ClipVertex, DepthSlab, Outcode, clip_triangle, weighted};
+pub use crate::vertex::frustum::{Containment, Frustum};
+pub use crate::vertex::project::{project, signed_area};
+pub use crate::vertex::transform::{Projected, Transform, projected};

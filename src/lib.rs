@@ -47,7 +47,7 @@
 //! | [`mesh`] | meshes, lines, points, their bounds and edges, and the order of draws |
 //! | [`light`] | lights and materials |
 //! | [`vertex`] | what a vertex shader sees and returns; transform, clip, project |
-//! | [`raster`] | screen primitives → spans, plane equations |
+//! | `raster` | screen primitives → spans, plane equations |
 //! | [`span`] | the [`Shader`](span::Shader) seam, the depth test, the loops over pixels |
 //! | [`shader`] | the ready-made shaders, ordinary users of that seam |
 //! | [`target`] | framebuffers, strips, sinks, packers, embedded-graphics targets, records |
@@ -90,7 +90,7 @@ pub mod frame;
 pub mod light;
 pub mod math;
 pub mod mesh;
-pub mod raster;
+mod raster;
 pub mod scene;
 pub mod shader;
 pub mod span;

@@ -11,7 +11,7 @@ use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::FramebufferRenderer;
-use zstrip::raster::{Line, PixelRect};
+use zstrip::internals::{Line, PixelRect};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::{FrameSlice, Framebuffer};
 use zstrip::vertex::{VertexRef, VertexShader};

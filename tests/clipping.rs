@@ -11,12 +11,13 @@ use reference::subject::Subject;
 use std::collections::BTreeSet;
 use support::{Soup, angle, strips, vector, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
+use zstrip::internals::{ClipVertex, Outcode, clip_triangle};
 use zstrip::light::Light;
 use zstrip::math::{Affine, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
-use zstrip::vertex::{ClipVertex, DepthRange, Outcode, Viewport, clip_triangle};
+use zstrip::vertex::{DepthRange, Viewport};
 use zstrip::{Cull, State, Winding};
 
 const RANGES: [DepthRange; 3] = [DepthRange::Clip, DepthRange::ClampFar, DepthRange::Clamp];
@@ -46,7 +47,7 @@ type Polygon = Vec<(ClipVertex, [i32; 3])>;
 fn clipped(triangle: &[(ClipVertex, [i32; 3]); 3], range: DepthRange) -> Vec<Polygon> {
     let codes = triangle.iter().fold(0, |codes, (v, _)| codes | Outcode::of(v).0);
     let mut polygons = Vec::new();
-    for part in [zstrip::vertex::DepthSlab::Inside].into_iter().chain(range.clamped_slabs(Outcode(codes))) {
+    for part in [zstrip::internals::DepthSlab::Inside].into_iter().chain(range.clamped_slabs(Outcode(codes))) {
         let mut polygon = Vec::new();
         clip_triangle(triangle.map(|v| v.0), Outcode(codes), part, |corner| {
             polygon.push((corner.vertex, corner.weights))

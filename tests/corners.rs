@@ -11,12 +11,13 @@ use reference::subject::Subject;
 use std::cell::Cell;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, Renderer};
+use zstrip::internals::{Projected, Transform};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, Mesh, MeshData, MeshError, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
-use zstrip::vertex::{DepthRange, Face, Projected, Transform, VertexRef, VertexShader, Viewport};
+use zstrip::vertex::{DepthRange, Face, VertexRef, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State};
 
 const SQUARE: [Vec3; 4] =

@@ -8,10 +8,11 @@ mod support;
 use reference::rng::Rng;
 use support::{apply, difference, matrix, on_screen, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::internals::{Containment, Frustum};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
-use zstrip::vertex::{Containment, Frustum, Viewport};
+use zstrip::vertex::Viewport;
 use zstrip::{Cull, State};
 
 /// A camera of any kind, wherever it stands, and how far it sees.

@@ -6,11 +6,12 @@ mod support;
 use reference::rng::Rng;
 use support::{strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::internals::{Projected, Transform};
 use zstrip::math::{Affine, Angle16, DepthPrecision, PrecisionError, ProjectionError, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::Flat;
 use zstrip::span::{DepthBias, DepthState};
-use zstrip::vertex::{DepthScale, Projected, Transform, Viewport};
+use zstrip::vertex::{DepthScale, Viewport};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 const SCREEN: (u16, u16) = (160, 120);

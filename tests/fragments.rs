@@ -7,12 +7,12 @@ use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{scalar, strips, whole};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
+use zstrip::internals::{PixelRect, Projected, Transform, signed_area, spans};
 use zstrip::math::{Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
-use zstrip::raster::{self, PixelRect};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Strip;
-use zstrip::vertex::{Face, Projected, Side, Transform, Varyings, VertexRef, VertexShader, Viewport, signed_area};
+use zstrip::vertex::{Face, Side, Varyings, VertexRef, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State, Winding};
 
 const SCREEN: (u16, u16) = (32, 32);
@@ -46,7 +46,7 @@ where
     }
 }
 
-/// Rows are walked in one way for few varyings, and in another for many: both cover what [`raster::spans`] says.
+/// Rows are walked in one way for few varyings, and in another for many: both cover what [`spans`] says.
 #[test]
 fn every_walk_covers_the_pixels_of_the_rasterizer() {
     let mut rng = Rng::new(77);
@@ -62,7 +62,7 @@ fn every_walk_covers_the_pixels_of_the_rasterizer() {
             Projected::NeedsClip(code) => panic!("{point:?} is outside: {code:?}"),
         });
         let mut expected = vec![0; 32 * 32];
-        raster::spans(&v, signed_area(&v[0], &v[1], &v[2]), &PixelRect { x: 0..32, y: 0..32 }, |y, x| {
+        spans(&v, signed_area(&v[0], &v[1], &v[2]), &PixelRect { x: 0..32, y: 0..32 }, |y, x| {
             x.for_each(|x| expected[(32 * y + x) as usize] = 1);
         });
         covered += expected.iter().filter(|pixel| **pixel == 1).count();

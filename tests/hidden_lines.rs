@@ -11,12 +11,12 @@ use std::cell::RefCell;
 use std::collections::BTreeSet;
 use support::whole;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::internals::{Line, PixelRect, Projected, Transform};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, Mesh, MeshData, Positions, Topology};
-use zstrip::raster::{Line, PixelRect};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::span::{DepthBias, DepthState, Fragment, Shader};
-use zstrip::vertex::{Face, Projected, ScreenVertex, Transform, VertexRef, VertexShader, Viewport};
+use zstrip::vertex::{Face, ScreenVertex, VertexRef, VertexShader, Viewport};
 use zstrip::{State, Thin};
 
 const SCREEN: (u16, u16) = (320, 240);

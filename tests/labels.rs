@@ -14,11 +14,12 @@ use reference::rng::Rng;
 use support::{Soup, angle, apply, difference, matrix, on_screen, rigid, scalar, strips, vector, whole};
 use zstrip::color::PixelFormat;
 use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
+use zstrip::internals::{Projected, Transform};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
-use zstrip::vertex::{DepthScale, Projected, ScreenVertex, Transform, Viewport};
+use zstrip::vertex::{DepthScale, ScreenVertex, Viewport};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 const SCREEN: (u16, u16) = (64, 48);
@@ -379,7 +380,7 @@ fn points_are_projected_to_where_vertices_would_be() {
         assert_eq!(
             found.is_some(),
             matches!(
-                zstrip::vertex::projected(&Transform::new(&mvp, &viewport, &mesh, false).point(point)),
+                zstrip::internals::projected(&Transform::new(&mvp, &viewport, &mesh, false).point(point)),
                 Projected::OnScreen(_)
             )
         );

@@ -4,7 +4,7 @@ mod reference;
 
 use reference::diamonds;
 use reference::rng::Rng;
-use zstrip::raster::{Line, PixelRect, square};
+use zstrip::internals::{Line, PixelRect, square};
 
 const EVERYWHERE: PixelRect = PixelRect { x: -40_000..40_000, y: -40_000..40_000 };
 

@@ -11,11 +11,12 @@ use reference::subject::Subject;
 use support::{apply, matrix, on_screen, position, rigid, scalar, vector, whole};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::internals::{Transform, project};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::Gouraud;
 use zstrip::span::DepthState;
-use zstrip::vertex::{Transform, Viewport, project};
+use zstrip::vertex::Viewport;
 use zstrip::{Cull, State};
 
 /// Largest errors seen, in 1/256 px and in steps of depth, and of how many vertices.

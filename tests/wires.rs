@@ -9,13 +9,13 @@ use std::collections::BTreeMap;
 use support::{difference, strips, whole};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::internals::{Line, PixelRect, Projected, Transform, square};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
-use zstrip::raster::{Line, PixelRect, square};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Framebuffer;
-use zstrip::vertex::{DepthRange, Face, Projected, ScreenVertex, Transform, VertexRef, VertexShader, Viewport};
+use zstrip::vertex::{DepthRange, Face, ScreenVertex, VertexRef, VertexShader, Viewport};
 use zstrip::{Dashed, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 
 const SCREEN: (u16, u16) = (160, 120);

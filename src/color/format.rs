@@ -20,7 +20,7 @@ pub trait PixelFormat {
     /// ones. [`pack`](Self::pack) leads back to the same pixel.
     fn unpack(raw: Self::Raw) -> [u8; 3];
 
-    /// The grey of a pixel: its [`luma`](crate::color::luma).
+    /// Returns the grey of a pixel: its luma by the weights of BT.601, 77, 150 and 29 of 256.
     #[inline(always)]
     fn luma(raw: Self::Raw) -> u8 {
         luma(Self::unpack(raw))
@@ -81,7 +81,7 @@ pub trait PixelFormat {
     const DITHER: Option<[u32; 3]> = None;
 
     /// What is added to packed channels, in the layout of [`from_packed`](Self::from_packed), at eight pixels from
-    /// `position` on, which is [repeated](crate::color::dither_word) every eight rows and columns of the screen.
+    /// `position` on, which is repeated every eight rows and columns of the screen.
     #[inline(always)]
     fn dither(position: (i32, i32)) -> &'static [u32; 8] {
         let _ = position;

@@ -289,7 +289,7 @@ three_bytes!(
     identity
 );
 
-/// 8-bit grey: the [`luma`] of the colour.
+/// 8-bit grey: the luma of the colour by the weights of BT.601.
 impl PixelFormat for Gray8 {
     type Raw = u8;
     type Color = Gray8;

@@ -26,14 +26,16 @@ pub use affine::Affine;
 pub use angle::Angle16;
 pub(crate) use division::{divide, divide_modulo, divided};
 pub use error::ProjectionError;
-pub use exponential::exp_negative;
+pub(crate) use exponential::exp_negative;
 pub use format::{Pixels, Scalar, Wide};
-pub use inverse_sqrt::{inverse_sqrt, unit_vector};
+pub(crate) use inverse_sqrt::unit_vector;
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
 pub use precision::{DepthPrecision, PrecisionError};
 pub use projective::Projective;
-pub use reciprocal::{CoarseDivisor, Divisor, ShortDivisor, mul_high, mul_high_apart, mul_high_signed, reciprocal};
-pub(crate) use reciprocal::{SMALL_CORE, byte_zeros, leading_zeros, leading_zeros_long, product};
-pub use root::isqrt;
+pub(crate) use reciprocal::{
+    CoarseDivisor, Divisor, SMALL_CORE, ShortDivisor, byte_zeros, leading_zeros, leading_zeros_long, mul_high,
+    mul_high_apart, mul_high_signed, product, reciprocal,
+};
+pub(crate) use root::isqrt;
 pub use vector::Vec3;

@@ -144,7 +144,7 @@ impl Line {
     /// the same as without the rectangle.
     ///
     /// ```
-    /// use zstrip::raster::{Line, PixelRect};
+    /// use zstrip::internals::{Line, PixelRect};
     /// let line = Line::new((128, 128), (896, 384)); // from pixel (0, 0) to (3, 1), centre to centre
     /// let (_, pixels) = line.pixels(&PixelRect { x: 0..8, y: 0..8 });
     /// assert_eq!(pixels.collect::<Vec<_>>(), [(0, 0), (1, 0), (2, 1)]);

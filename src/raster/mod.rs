@@ -12,9 +12,8 @@ mod triangle;
 
 pub use along::Along;
 pub(crate) use direction::unit;
-pub use edge::Edge;
 pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
 pub use perspective::{homogenize, widen};
 pub use point::square;
-pub use triangle::{Outline, PixelRect, Spans, first_centre, pixel_rect, spans};
+pub use triangle::{Outline, PixelRect, Spans, pixel_rect, spans};

@@ -5,7 +5,7 @@ use super::triangle::PixelRect;
 /// The pixels of a square: those whose centres are inside of it, or on its left or top side.
 ///
 /// ```
-/// use zstrip::raster::{PixelRect, square};
+/// use zstrip::internals::{PixelRect, square};
 /// assert_eq!(square((512, 512), 512), PixelRect { x: 1..3, y: 1..3 });
 /// assert!(square((512, 512), 0).is_empty());
 /// ```

@@ -61,8 +61,8 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
 /// exact: as if computed with infinite precision, with the top-left rule, for either winding.
 ///
 /// ```
-/// use zstrip::vertex::{ScreenVertex, signed_area};
-/// use zstrip::raster::{PixelRect, spans};
+/// use zstrip::vertex::ScreenVertex;
+/// use zstrip::internals::{PixelRect, signed_area, spans};
 /// let [a, b, c] = [[0, 0], [0, 2], [2, 0]].map(|[x, y]| ScreenVertex::new(x * 256, y * 256, 0));
 /// let mut found = Vec::new();
 /// spans(&[a, b, c], signed_area(&a, &b, &c), &PixelRect { x: 0..8, y: 0..8 }, |y, x| found.push((y, x)));

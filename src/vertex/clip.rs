@@ -256,7 +256,7 @@ pub enum DepthSlab {
 
 impl DepthRange {
     /// The depth planes that are not clipped at: what lies outside of them is drawn with its depth clamped.
-    pub const fn clamped(self) -> Outcode {
+    pub(crate) const fn clamped(self) -> Outcode {
         match self {
             Self::Clip => Outcode(0),
             Self::ClampFar => Outcode(Outcode::FAR),
@@ -265,6 +265,7 @@ impl DepthRange {
     }
 
     /// The parts to draw beside that between the planes, of a triangle whose vertices' outcodes are `codes`, united.
+    #[doc(hidden)]
     pub fn clamped_slabs(self, codes: Outcode) -> impl Iterator<Item = DepthSlab> {
         let outside = codes.0 & self.clamped().0;
         let parts = [(DepthSlab::InFrontOfNear, Outcode::NEAR), (DepthSlab::BeyondFar, Outcode::FAR)];

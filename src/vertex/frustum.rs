@@ -35,7 +35,7 @@ pub enum Containment {
 ///
 /// ```
 /// use zstrip::mesh::BoundingSphere;
-/// use zstrip::vertex::{Containment, Frustum};
+/// use zstrip::internals::{Containment, Frustum};
 /// use zstrip::math::{Angle16, Projective, Scalar, Vec3};
 /// let camera = Projective::perspective(Angle16::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(50))?;
 /// let frustum = Frustum::new(&camera);

@@ -1,28 +1,26 @@
 //! The vertex stage: what a vertex shader sees and returns; transform, clip, project.
 
-mod clip;
+pub(crate) mod clip;
 mod clip_distance;
 mod clip_line;
-mod frustum;
+pub(crate) mod frustum;
 mod painters_order;
-mod project;
+pub(crate) mod project;
 mod shader;
-mod transform;
+pub(crate) mod transform;
 mod varyings;
 mod viewport;
 
-pub use clip::{
-    CLIPPED_CORNERS, ClipCorner, ClipVertex, DepthRange, DepthSlab, Outcode, Polygon, PolygonCorner, clip_triangle,
-    weighted,
-};
-pub use clip_distance::{DISTANCE_CORNERS, MAX_DISTANCES};
-pub use clip_line::clip_line;
-pub use frustum::{Containment, Frustum, Plane};
+pub use clip::DepthRange;
+pub(crate) use clip::{CLIPPED_CORNERS, ClipVertex, DepthSlab, Outcode, Polygon, PolygonCorner, weighted};
+pub(crate) use clip_distance::DISTANCE_CORNERS;
+pub use clip_distance::MAX_DISTANCES;
+pub(crate) use clip_line::clip_line;
 pub use painters_order::{Order, SortError, Sortable, far_to_near, painters_order};
-pub(crate) use project::small;
-pub use project::{DepthScale, ScreenVertex, inverse_w, project, signed_area};
+pub use project::{DepthScale, ScreenVertex};
+pub(crate) use project::{inverse_w, signed_area, small};
 pub use shader::{Face, Side, VertexRef, VertexShader};
-pub use transform::{Projected, ScreenMatrix, Transform, projected};
-pub(crate) use varyings::MAX_IN_REGISTERS;
-pub use varyings::{Correction, Lane, Lanes, Perspective, PerspectiveClass, Varyings, WidePlane};
+pub(crate) use transform::{Projected, ScreenMatrix, Transform};
+pub(crate) use varyings::{Correction, Lane, MAX_IN_REGISTERS, PerspectiveClass, WidePlane};
+pub use varyings::{Perspective, Varyings};
 pub use viewport::{Viewport, ViewportError};

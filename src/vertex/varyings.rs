@@ -41,7 +41,7 @@ pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
         }
     }
 
-    /// Puts 1 / w, as [`inverse_w`](crate::vertex::inverse_w) gives it, into its place.
+    /// Puts 1 / w into its place.
     #[inline]
     fn set_inverse_w(&mut self, inverse_w: u32) {
         if let (true, [.., last]) = (Self::PERSPECTIVE > 0, self.as_mut()) {

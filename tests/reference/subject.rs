@@ -7,9 +7,9 @@ use super::conformance::{ClipTriangle, PerspectiveTriangle, Rasterizer, ScreenTr
 use std::cell::RefCell;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::frame::FramebufferRenderer;
+use zstrip::internals::{Line, PixelRect, square};
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
-use zstrip::raster::{Line, PixelRect, square};
 use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
 use zstrip::target::FrameSlice;
 use zstrip::vertex::{Face, Perspective, VertexRef, VertexShader};

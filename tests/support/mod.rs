@@ -6,12 +6,11 @@ use crate::reference::scenes::clip_soup;
 use zstrip::Scene;
 use zstrip::color::PixelFormat;
 use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
+use zstrip::internals::{ClipVertex, Outcode, Transform, clip_triangle, project, weighted};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, Positions};
 use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
-use zstrip::vertex::{
-    ClipVertex, DepthRange, Outcode, ScreenVertex, Transform, Viewport, clip_triangle, project, weighted,
-};
+use zstrip::vertex::{DepthRange, ScreenVertex, Viewport};
 
 /// Draws a frame into strips of `rows` rows with `records` words of records, and puts it together.
 ///
@@ -210,7 +209,7 @@ pub fn snapped<const K: usize>(
         if all.0 == 0 {
             fan(vertices.iter().filter_map(placed).collect());
         } else {
-            for part in [zstrip::vertex::DepthSlab::Inside].into_iter().chain(range.clamped_slabs(all)) {
+            for part in [zstrip::internals::DepthSlab::Inside].into_iter().chain(range.clamped_slabs(all)) {
                 let mut corners = Vec::new();
                 let varyings = vertices.map(|v| v.1);
                 clip_triangle(vertices.map(|v| v.0), all, part, |corner| {
