@@ -8,9 +8,9 @@ mod support;
 use reference::rng::Rng;
 use support::{apply, difference, matrix, on_screen, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::internals::{Containment, Frustum};
+use zstrip::internals::{Outcode, ScreenMatrix};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{BoundingBox, BoundingSphere, Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
+use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
 use zstrip::vertex::Viewport;
 use zstrip::{Cull, State};
@@ -34,14 +34,9 @@ fn to_f64(v: Vec3) -> [f64; 3] {
     v.to_bits().map(|c| f64::from(c) / 65_536.0)
 }
 
-/// Whether clip coordinates are seen, with a margin that is positive inside.
-fn depth_inside([x, y, z, w]: [f64; 4]) -> f64 {
-    [w + x, w - x, w + y, w - y, z, w - z].into_iter().fold(f64::INFINITY, f64::min)
-}
-
 /// Points of a box, among them its corners.
-fn points_in_box(rng: &mut Rng, aabb: &BoundingBox) -> Vec<[f64; 4]> {
-    let (center, half) = (to_f64(aabb.center), to_f64(aabb.half));
+fn points_in_box(rng: &mut Rng, bounds: &Bounds) -> Vec<[f64; 4]> {
+    let (center, half) = (to_f64(bounds.center), to_f64(bounds.half));
     let at = |part: [f64; 3]| {
         let [x, y, z] = [0, 1, 2].map(|k| center[k] + part[k] * half[k]);
         [x, y, z, 1.0]
@@ -52,151 +47,11 @@ fn points_in_box(rng: &mut Rng, aabb: &BoundingBox) -> Vec<[f64; 4]> {
     points
 }
 
-fn points_in_sphere(rng: &mut Rng, sphere: &BoundingSphere) -> Vec<[f64; 4]> {
-    let (center, radius) = (to_f64(sphere.center), sphere.radius.to_num::<f64>());
-    let mut points = vec![[center[0], center[1], center[2], 1.0]];
-    while points.len() < 32 {
-        let p = [(); 3].map(|()| 2.0 * rng.unit() - 1.0);
-        let length = p.iter().map(|c| c * c).sum::<f64>().sqrt();
-        // On the surface, half of them; the rest inside.
-        if length > 0.01 && length < 1.0 {
-            let s = radius / if rng.one_in(2) { length } else { 1.0 };
-            points.push([center[0] + s * p[0], center[1] + s * p[1], center[2] + s * p[2], 1.0]);
-        }
-    }
-    points
-}
-
+/// Draws boxes about points in front of a random camera, and asks for each whether it may be seen in a rectangle of the
+/// screen; compares with the places of the points of the box, in double precision.
 #[test]
-fn nothing_visible_is_culled_and_what_is_inside_is_visible() {
-    let (mut outside, mut inside, mut crossing) = (0, 0, 0);
-    for seed in 0..1500 {
-        let mut rng = Rng::new(seed);
-        let (camera, far) = random_camera(&mut rng);
-        let (frustum, m) = (Frustum::new(&camera), matrix(&camera));
-        for _ in 0..4 {
-            let center = vector(&mut rng, (2.0 * far).min(32_000.0));
-            let size = far * (rng.unit() * -8.0).exp2();
-            let half = [(); 3].map(|()| Scalar::from_num(size * rng.unit()));
-            let aabb = BoundingBox { center, half: Vec3::new(half[0], half[1], half[2]) };
-            let sphere = BoundingSphere { center, radius: Scalar::from_num(size) };
-            for (name, result, points) in [
-                ("box", frustum.aabb(&aabb), points_in_box(&mut rng, &aabb)),
-                ("sphere", frustum.sphere(&sphere), points_in_sphere(&mut rng, &sphere)),
-            ] {
-                for point in points {
-                    let depth = depth_inside(apply(&m, point));
-                    let case = format!("seed {seed}: {name} {result:?} {aabb:?}, point {point:?} has {depth}");
-                    match result {
-                        Containment::Outside => assert!(depth < 0.0, "{case}"),
-                        Containment::Inside => assert!(depth >= 0.0, "{case}"),
-                        Containment::Crossing => {}
-                    }
-                }
-                match result {
-                    Containment::Outside => outside += 1,
-                    Containment::Inside => inside += 1,
-                    Containment::Crossing => crossing += 1,
-                }
-            }
-        }
-    }
-    println!("{outside} outside, {inside} inside, {crossing} crossing");
-    assert!(outside > 3000 && inside > 150 && crossing > 500);
-}
-
-/// A matrix and a point at the ends of the range, where rounding of the planes weighs most: a point-sized object.
-#[test]
-fn rounding_of_the_planes_never_culls_a_visible_point() {
-    for seed in 0..3000 {
-        let mut rng = Rng::new(seed);
-        let (camera, _) = random_camera(&mut rng);
-        let shift = rng.below(20) as i64;
-        let camera = camera * Affine::scale(Scalar::from_bits((1 << 16) >> shift));
-        let point = [(); 3].map(|()| rng.pick(&[i32::MAX, i32::MIN, 1 << 30]).saturating_add(rng.any_magnitude(30)));
-        let sphere = BoundingSphere { center: Vec3::from_bits(point), radius: Scalar::ZERO };
-        let aabb = BoundingBox { center: sphere.center, half: Vec3::ZERO };
-        // In exact integers: 32.32 entries times 16.16 coordinates.
-        let rows = camera.to_rows().map(|row| {
-            let sum = |k: usize| i128::from(row[k]) * i128::from(point[k]);
-            sum(0) + sum(1) + sum(2) + (i128::from(row[3]) << 16)
-        });
-        let [x, y, z, w] = rows;
-        let depth = [w + x, w - x, w + y, w - y, z, w - z].into_iter().min().expect("six");
-        let frustum = Frustum::new(&camera);
-        for result in [frustum.sphere(&sphere), frustum.aabb(&aabb)] {
-            match result {
-                Containment::Outside => assert!(depth < 0, "seed {seed}: {point:?} is seen by {depth}, {camera:?}"),
-                Containment::Inside => assert!(depth >= 0, "seed {seed}: {point:?} is not seen by {depth}, {camera:?}"),
-                Containment::Crossing => {}
-            }
-        }
-    }
-}
-
-/// Points at the ends of the range that lie in front of the eye by next to nothing.
-#[test]
-fn points_just_inside_of_a_plane_are_not_culled() {
-    for seed in 0..3000 {
-        let mut rng = Rng::new(seed);
-        let point = [(); 3].map(|()| if rng.one_in(2) { i32::MAX } else { i32::MIN });
-        let normal = [(); 3].map(|()| i64::from(rng.between(i32::MIN, i32::MAX)) << rng.below(14));
-        let sum: i128 = (0..3).map(|k| i128::from(normal[k]) * i128::from(point[k])).sum();
-        // 16.16 times 32.32: w = (sum + offset 2¹⁶) / 2⁴⁸, rounded up.
-        let offset = (-sum).div_euclid(1 << 16) as i64 + 1;
-        let [a, b, c] = normal;
-        let camera = Projective::from_rows([[0; 4], [0; 4], [0; 4], [a, b, c, offset]]);
-        let sphere = BoundingSphere { center: Vec3::from_bits(point), radius: Scalar::ZERO };
-        let result = Frustum::new(&camera).sphere(&sphere);
-        assert_ne!(result, Containment::Outside, "seed {seed}: {point:?} {normal:?}");
-    }
-}
-
-/// Objects far outside of one plane are nearly all found to be so.
-#[test]
-fn culling_is_useful() {
-    let (mut candidates, mut culled, mut small, mut seen_inside) = (0, 0, 0, 0);
-    for seed in 0..2000 {
-        let mut rng = Rng::new(seed);
-        let (camera, far) = random_camera(&mut rng);
-        let (frustum, m) = (Frustum::new(&camera), matrix(&camera));
-        let size = far / 50.0;
-        let center = vector(&mut rng, (2.0 * far).min(32_000.0));
-        let sphere = BoundingSphere { center, radius: Scalar::from_num(size) };
-        let [x, y, z] = to_f64(center);
-        let clip = apply(&m, [x, y, z, 1.0]);
-        // Distances from the planes in multiples of the radius: the length of a plane's normal is that of its row.
-        let row = |i: usize, sign: f64| -> f64 {
-            let n = [0, 1, 2].map(|j| if i == 4 { m[2][j] } else { m[3][j] + sign * m[i][j] });
-            n.iter().map(|c| c * c).sum::<f64>().sqrt() * size
-        };
-        let [cx, cy, cz, cw] = clip;
-        let distances = [
-            (cw + cx) / row(0, 1.0),
-            (cw - cx) / row(0, -1.0),
-            (cw + cy) / row(1, 1.0),
-            (cw - cy) / row(1, -1.0),
-            cz / row(4, 0.0),
-            (cw - cz) / row(2, -1.0),
-        ];
-        let least = distances.into_iter().fold(f64::INFINITY, f64::min);
-        if least < -1.01 {
-            candidates += 1;
-            culled += usize::from(frustum.sphere(&sphere) == Containment::Outside);
-        }
-        if least > 1.01 {
-            small += 1;
-            seen_inside += usize::from(frustum.sphere(&sphere) == Containment::Inside);
-        }
-    }
-    println!("{culled} of {candidates} spheres outside are culled, {seen_inside} of {small} inside need no clipping");
-    assert!(candidates > 1000 && culled * 100 >= candidates * 99, "{culled} of {candidates}");
-    assert!(small > 30 && seen_inside * 100 >= small * 95, "{seen_inside} of {small}");
-}
-
-#[test]
-fn frustum_through_a_rectangle_sees_what_is_in_it() {
-    let (mut outside, mut inside) = (0, 0);
+fn boxes_are_culled_only_where_none_of_their_points_is_seen() {
+    let (mut culled, mut hidden, mut kept) = (0, 0, 0);
     for seed in 0..4000 {
         let mut rng = Rng::new(seed);
         let (camera, far) = random_camera(&mut rng);
@@ -207,35 +62,47 @@ fn frustum_through_a_rectangle_sees_what_is_in_it() {
             Viewport::new(corner[0] as i16, corner[1] as i16, size[0] as u16, size[1] as u16).expect("a viewport");
         let range = |rng: &mut Rng, start: i32, size: i32| {
             let low = start + rng.between(0, size - 1);
-            (low, low + rng.between(1, 400))
+            low..low + rng.between(1, 400)
         };
         let (x, y) = (range(&mut rng, corner[0], size[0]), range(&mut rng, corner[1], size[1]));
-        let frustum = Frustum::through(&camera, &viewport, x, y);
+        let extent = far * (rng.unit() * -8.0).exp2();
+        let half = [(); 3].map(|()| Scalar::from_num(extent * rng.unit()));
         let center = vector(&mut rng, far.min(32_000.0));
-        let point = BoundingSphere { center, radius: Scalar::ZERO };
-        let [px, py, pz] = to_f64(center);
-        let clip = apply(&m, [px, py, pz, 1.0]);
-        let [sx, sy, depth] = on_screen(&viewport, clip);
-        let within =
-            |v: f64, (low, high): (i32, i32), slack: f64| v >= f64::from(low) - slack && v <= f64::from(high) + slack;
-        let seen = |slack: f64| {
-            let range = within(sx, x, slack) && within(sy, y, slack);
-            range && clip[3] > 0.0 && (-slack..=1.0 + slack).contains(&depth)
-        };
-        match frustum.sphere(&point) {
-            Containment::Outside => {
-                outside += 1;
-                assert!(!seen(0.0), "seed {seed}: {center:?} is at ({sx}, {sy}) in {x:?} {y:?}");
+        let bounds = Bounds { center, half: Vec3::new(half[0], half[1], half[2]) };
+        let mut screen = ScreenMatrix::EMPTY;
+        screen.set_from(&camera, &viewport);
+        let sees = screen.sees(&bounds, &x, &y, Outcode(0));
+        let points: Vec<_> = points_in_box(&mut rng, &bounds).into_iter().map(|point| apply(&m, point)).collect();
+        for (point, clip) in points.iter().enumerate() {
+            let [sx, sy, depth] = on_screen(&viewport, *clip);
+            let within =
+                |v: f64, range: &std::ops::Range<i32>| (f64::from(range.start)..f64::from(range.end)).contains(&v);
+            if clip[3] > 0.0 && (0.0..=1.0).contains(&depth) && within(sx, &x) && within(sy, &y) {
+                assert!(sees, "seed {seed}: point {point} of {bounds:?} is at ({sx}, {sy}) in {x:?} {y:?}");
             }
-            Containment::Inside => {
-                inside += 1;
-                assert!(seen(1e-6), "seed {seed}: {center:?} is at ({sx}, {sy}) in {x:?} {y:?}");
-            }
-            Containment::Crossing => {}
         }
+        // Surely out of view: all points are outside of one plane, by a part of the distance to it.
+        let outside = |distance: &dyn Fn([f64; 4]) -> f64| {
+            points.iter().all(|clip| distance(*clip) < -0.02 * clip.iter().fold(0.0, |sum: f64, c| sum + c.abs()))
+        };
+        // On the screen (x / w + 1) / 2 · width + corner, so that a border is a plane of clip space.
+        let border = |k: usize, at: i32, sign: f64| {
+            let at = (f64::from(at - corner[k]) / f64::from(size[k]) * 2.0 - 1.0) * if k == 0 { 1.0 } else { -1.0 };
+            let sign = if k == 0 { sign } else { -sign };
+            outside(&move |clip| sign * (clip[k] - at * clip[3]))
+        };
+        let is_hidden = border(0, x.start, 1.0)
+            || border(0, x.end, -1.0)
+            || border(1, y.start, 1.0)
+            || border(1, y.end, -1.0)
+            || outside(&|clip| clip[2])
+            || outside(&|clip| clip[3] - clip[2]);
+        hidden += usize::from(is_hidden);
+        culled += usize::from(is_hidden && !sees);
+        kept += usize::from(sees);
     }
-    println!("{outside} points outside, {inside} inside");
-    assert!(outside > 3000 && inside > 20);
+    println!("{culled} of {hidden} boxes that are out of view are culled, {kept} of all are kept");
+    assert!(hidden > 2000 && culled * 100 >= hidden * 97 && kept > 200, "{culled} of {hidden}, {kept} kept");
 }
 
 #[test]
@@ -252,16 +119,12 @@ fn bounds_of_a_mesh_hold_all_of_it() {
         };
         for positions in [quantized, Positions::Exact(&points)] {
             let mesh = Mesh::new(MeshData::new(positions)).expect("a mesh");
-            let Bounds { aabb, sphere } = *mesh.bounds();
-            let (center, half) = (to_f64(aabb.center), to_f64(aabb.half));
-            let (middle, radius) = (to_f64(sphere.center), sphere.radius.to_num::<f64>());
+            let bounds = mesh.bounds();
+            let (center, half) = (to_f64(bounds.center), to_f64(bounds.half));
             for k in 0..12 {
                 let p = support::position(&positions, k);
-                let case = format!("seed {seed}: vertex {k} at {p:?}, {aabb:?} {sphere:?}");
+                let case = format!("seed {seed}: vertex {k} at {p:?}, {bounds:?}");
                 assert!((0..3).all(|i| (p[i] - center[i]).abs() <= half[i]), "{case}");
-                let distance = (0..3).map(|i| (p[i] - middle[i]).powi(2)).sum::<f64>().sqrt();
-                // A sphere at the edge of the number range may have the largest radius there is.
-                assert!(distance <= radius || sphere.radius == Scalar::MAX, "{case}");
             }
         }
     }

@@ -158,7 +158,7 @@ fn sampled_normals_are_lit_as_in_double_precision() {
                     * Affine::scale(Scalar::from_num(scale));
                 let corners = cube(random_vector(&mut rng, 5.0), 1.5);
                 let mesh = Mesh::new(MeshData::new(Positions::Exact(&corners))).expect("a mesh");
-                let middle = apply(&model, float(mesh.bounds().aabb.center), 1.0);
+                let middle = apply(&model, float(mesh.bounds().center), 1.0);
                 let mut directional = || DirectionalLight {
                     direction: fixed(random_vector(&mut rng, 9.0)),
                     color: random_color(&mut rng).map(|c| c / 2),
@@ -184,7 +184,7 @@ fn sampled_normals_are_lit_as_in_double_precision() {
                 let (lit, lit_far) =
                     (lighting.on(&material, &model, mesh.bounds()), distant.on(&material, &model, mesh.bounds()));
                 for _ in 0..200 {
-                    let p = fixed(plus(float(mesh.bounds().aabb.center), random_vector(&mut rng, 1.5)));
+                    let p = fixed(plus(float(mesh.bounds().center), random_vector(&mut rng, 1.5)));
                     let color = random_color(&mut rng);
                     let n = quantized(random_vector(&mut rng, 1.0));
                     let normal = unit(apply(&model, n.map(f64::from), 0.0));

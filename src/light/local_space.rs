@@ -50,7 +50,7 @@ impl LocalSpace {
 impl ToLocal {
     /// Of a mesh in `bounds`, for lights in the space that `model` leads to.
     pub(super) fn new(model: &Affine, bounds: &Bounds) -> Self {
-        let [x, y, z] = bounds.aabb.half.to_bits();
+        let [x, y, z] = bounds.half.to_bits();
         let reach = (x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs()).max(1);
         let [[xx, xy, xz, tx], [yx, yy, yz, ty], [zx, zy, zz, tz]] = model.to_rows();
         let columns = [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]];
@@ -59,7 +59,7 @@ impl ToLocal {
         let extra = (widest.leading_zeros().saturating_sub(15)).min(12);
         let longer = columns.map(|c| Vec3::from_bits([c[0] << extra, c[1] << extra, c[2] << extra]));
         Self {
-            local: LocalSpace { center: bounds.aabb.center.to_bits(), shift: reach.leading_zeros() as i8 - 3 },
+            local: LocalSpace { center: bounds.center.to_bits(), shift: reach.leading_zeros() as i8 - 3 },
             columns: longer.map(|c| c.normalized().map_or([0; 3], |unit| unit.to_bits())),
             scale: i64::from(longer[0].length().to_bits().max(1)),
             extra,

@@ -1,32 +1,16 @@
-//! Bounding boxes and spheres, and hierarchies of them.
+//! Bounding boxes, and hierarchies of them.
 
-use crate::math::{Scalar, Vec3};
+use crate::math::Vec3;
 
-/// An axis-aligned box by centre and half size; raw 16.16, the half size rounded up so that nothing sticks out.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BoundingBox {
-    /// Middle of the box.
-    pub center: Vec3,
-    /// Half its size an axis; never negative.
-    pub half: Vec3,
-}
-
-/// A sphere by centre and radius.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct BoundingSphere {
-    /// Centre.
-    pub center: Vec3,
-    /// Radius; never negative. `Scalar::MAX` stands for any that is larger, too: such a sphere culls nothing.
-    pub radius: Scalar,
-}
-
-/// What is known about where a mesh, or a part of it, lies: a box and a sphere, both hold all of it.
+/// Holds all of a mesh, or of a part of it: an axis-aligned box by centre and half size.
+///
+/// Raw 16.16; the half size is rounded up, so that nothing sticks out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bounds {
-    /// The box.
-    pub aabb: BoundingBox,
-    /// The sphere.
-    pub sphere: BoundingSphere,
+    /// Middle of the box.
+    pub center: Vec3,
+    /// Half the size of the box along each axis; never negative.
+    pub half: Vec3,
 }
 
 /// A node of a hierarchy of bounds, flattened in depth-first order.
@@ -54,7 +38,7 @@ pub struct BoundsNode {
 }
 
 /// The box between two corners, in 64-bit raw 16.16, its half size rounded up.
-pub(super) const fn bounding_box(min: [i64; 3], max: [i64; 3]) -> BoundingBox {
+pub(super) const fn bounding_box(min: [i64; 3], max: [i64; 3]) -> Bounds {
     let mut center = [0; 3];
     let mut half = [0; 3];
     let mut k = 0;
@@ -65,7 +49,7 @@ pub(super) const fn bounding_box(min: [i64; 3], max: [i64; 3]) -> BoundingBox {
         half[k] = clamp_bits(if up > down { up } else { down });
         k += 1;
     }
-    BoundingBox { center: Vec3::from_bits(center), half: Vec3::from_bits(half) }
+    Bounds { center: Vec3::from_bits(center), half: Vec3::from_bits(half) }
 }
 
 const fn clamp_bits(value: i64) -> i32 {
@@ -76,15 +60,4 @@ const fn clamp_bits(value: i64) -> i32 {
     } else {
         value as i32
     }
-}
-
-/// The sphere about `center` that reaches a squared distance, in 2⁻⁶², and one unit of 16.16 more, for positions that are
-/// rounded; a point for 0.
-pub(super) const fn sphere(center: Vec3, squared: u128) -> BoundingSphere {
-    let radius = match squared {
-        0 => 0,
-        _ => (squared.isqrt() >> 15) + 2,
-    };
-    let radius = if radius > i32::MAX as u128 { i32::MAX } else { radius as i32 };
-    BoundingSphere { center, radius: Scalar::from_bits(radius) }
 }

@@ -3,7 +3,7 @@
 //! After [`Mesh::new`] every index is in range and every attribute is as long as the positions, so that the frame path
 //! needs no error for a mesh.
 
-use super::bounds::{Bounds, BoundsNode, bounding_box, sphere};
+use super::bounds::{Bounds, BoundsNode, bounding_box};
 use crate::math::{Scalar, Vec3};
 use core::fmt;
 
@@ -286,7 +286,7 @@ impl<'a> Mesh<'a> {
         &self.data
     }
 
-    /// Box and sphere around all vertices, in object space; of homogeneous positions, without regard to w.
+    /// Returns the box around all vertices, in object space; w of homogeneous positions does not count.
     pub const fn bounds(&self) -> &Bounds {
         &self.bounds
     }
@@ -376,40 +376,32 @@ const fn unit_and_origin(positions: &Positions<'_>) -> (i64, [i64; 3]) {
     }
 }
 
-/// The first vertex that is not in the box, or not in the sphere, give or take the rounding of quantized positions.
+/// Returns the first vertex that is not in the box, give or take the rounding of quantized positions.
 const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) -> Option<usize> {
     let (unit, origin) = unit_and_origin(positions);
-    let (center, half) = (bounds.aabb.center.to_bits(), bounds.aabb.half.to_bits());
-    let (middle, radius) = (bounds.sphere.center.to_bits(), bounds.sphere.radius.to_bits());
-    let reach = if radius < 0 { 0 } else { radius as u128 + 2 };
+    let (center, half) = (bounds.center.to_bits(), bounds.half.to_bits());
     let mut k = 0;
     while k < vertices {
         let p = stored(positions, k);
-        let mut squared = 0;
         let mut axis = 0;
         while axis < 3 {
             let at = ((p[axis] * unit) >> 15) + origin[axis];
             if (at - center[axis] as i64).abs() > half[axis] as i64 + 1 {
                 return Some(k);
             }
-            let away = (at - middle[axis] as i64).unsigned_abs() as u128;
-            squared += away * away;
             axis += 1;
-        }
-        if radius != i32::MAX && squared > reach * reach {
-            return Some(k);
         }
         k += 1;
     }
     None
 }
 
-/// Box and sphere of all positions, both about the middle of the box.
+/// Finds the box of all positions.
 ///
 /// The compiler runs it for `static` meshes of many vertices, step by step: loops over them do little.
 const fn find_bounds(positions: &Positions<'_>, vertices: usize) -> Bounds {
     if vertices == 0 {
-        return Bounds { aabb: bounding_box([0; 3], [0; 3]), sphere: sphere(Vec3::ZERO, 0) };
+        return bounding_box([0; 3], [0; 3]);
     }
     let (unit, origin) = unit_and_origin(positions);
     let (mut min, mut max) = (stored(positions, 0), stored(positions, 0));
@@ -443,25 +435,5 @@ const fn find_bounds(positions: &Positions<'_>, vertices: usize) -> Bounds {
         max[axis] = ((max[axis] * unit + 0x7FFF) >> 15) + origin[axis];
         axis += 1;
     }
-    let aabb = bounding_box(min, max);
-    // From the middle, in 2⁻³¹: below 2⁴⁸.
-    let c = aabb.center.to_bits();
-    let unit = unit as i128;
-    let [a, b, c] = [
-        ((origin[0] - c[0] as i64) << 15) as i128,
-        ((origin[1] - c[1] as i64) << 15) as i128,
-        ((origin[2] - c[2] as i64) << 15) as i128,
-    ];
-    let mut farthest = 0;
-    let mut k = 0;
-    while k < vertices {
-        let [x, y, z] = stored(positions, k);
-        let (x, y, z) = (x as i128 * unit + a, y as i128 * unit + b, z as i128 * unit + c);
-        let squared = x * x + y * y + z * z;
-        if squared > farthest {
-            farthest = squared;
-        }
-        k += 1;
-    }
-    Bounds { aabb, sphere: sphere(aabb.center, farthest as u128) }
+    bounding_box(min, max)
 }

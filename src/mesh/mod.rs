@@ -6,7 +6,7 @@ mod lines;
 mod mesh;
 mod order;
 
-pub use bounds::{BoundingBox, BoundingSphere, Bounds, BoundsNode};
+pub use bounds::{Bounds, BoundsNode};
 pub use edges::{EdgesError, edges};
 pub use lines::{Joined, Lines, Points};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};

@@ -5,7 +5,7 @@ use crate::math::Projective;
 
 /// How far away the middle of `bounds` is, as `mvp` sees it: w of its centre, 32.32, saturated.
 pub fn view_depth(mvp: &Projective, bounds: &Bounds) -> i64 {
-    let [x, y, z] = bounds.sphere.center.to_bits();
+    let [x, y, z] = bounds.center.to_bits();
     let row = mvp.to_rows()[3];
     // Entries of 32.32 by coordinates of 16.16, the upper half of the entry and the lower one.
     let times = |entry: i64, c: i32| {
@@ -55,7 +55,6 @@ pub fn sort_back_to_front(order: &mut [u16], depth: impl Fn(u16) -> i64) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::bounds::{BoundingBox, BoundingSphere};
     use super::*;
     use crate::math::random::Rng;
     use crate::math::{Affine, Angle16, Scalar, Vec3};
@@ -81,10 +80,7 @@ mod tests {
         let camera =
             Projective::perspective(Angle16::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(100)).unwrap();
         let center = Vec3::from_milli(300, -200, 500);
-        let bounds = Bounds {
-            aabb: BoundingBox { center, half: Vec3::ZERO },
-            sphere: BoundingSphere { center, radius: Scalar::ONE },
-        };
+        let bounds = Bounds { center, half: Vec3::ZERO };
         for distance in [-20, 0, 3, 90] {
             let mvp = camera * Affine::translation(Vec3::from_ints(1, 2, -distance));
             let exact = i64::from(distance) * (1 << 32) - (i64::from(center.z.to_bits()) << 16);

@@ -105,7 +105,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let planes = state.range.clamped();
         let mut view = ScreenMatrix::EMPTY;
         view.set_from(mvp, &self.viewport);
-        let culled = bounded && !view.sees(&vertices.bounds().aabb, &x, &y, planes);
+        let culled = bounded && !view.sees(vertices.bounds(), &x, &y, planes);
         self.stats.culled = self.stats.culled.wrapping_add(u32::from(culled));
         if recording {
             let count = if culled { 0 } else { vertices.vertex_count() };

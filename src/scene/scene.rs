@@ -88,7 +88,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// Whether something may be seen in the band.
     fn sees(&self, view: &ScreenMatrix, bounds: &Bounds, range: DepthRange) -> bool {
         let rect = self.clip_rect(&self.band);
-        view.sees(&bounds.aabb, &rect.x, &rect.y, range.clamped())
+        view.sees(bounds, &rect.x, &rect.y, range.clamped())
     }
 
     /// Which of 32 nodes of a hierarchy can be seen, from `next` on, a bit each, the lowest for the first; `next` moves on behind
@@ -201,7 +201,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 /// A word that differs, almost surely, between draws that would not leave the same records.
 #[inline(never)]
 pub(super) fn fingerprint(state: &State, mesh: &Mesh<'_>, mvp: &Projective, viewport: &Viewport, stride: usize) -> u32 {
-    let ([ax, ay, az], [bx, by, bz]) = (mesh.bounds().aabb.center.to_bits(), mesh.bounds().aabb.half.to_bits());
+    let ([ax, ay, az], [bx, by, bz]) = (mesh.bounds().center.to_bits(), mesh.bounds().half.to_bits());
     let rest = [
         viewport.x() as u32 ^ (viewport.y() as u32) << 16,
         u32::from(viewport.width()) | u32::from(viewport.height()) << 16,

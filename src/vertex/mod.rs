@@ -3,7 +3,6 @@
 pub(crate) mod clip;
 mod clip_distance;
 mod clip_line;
-pub(crate) mod frustum;
 mod painters_order;
 pub(crate) mod project;
 mod shader;

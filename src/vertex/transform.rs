@@ -8,7 +8,7 @@ use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::viewport::Viewport;
 use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long, product};
-use crate::mesh::{BoundingBox, Mesh, Positions};
+use crate::mesh::{Bounds, Mesh, Positions};
 use core::ops::Range;
 
 /// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
@@ -103,8 +103,8 @@ struct ShortBox {
 }
 
 impl ShortBox {
-    fn new(aabb: &BoundingBox) -> Self {
-        let mut sides = [aabb.center.to_bits(), aabb.half.to_bits()];
+    fn new(bounds: &Bounds) -> Self {
+        let mut sides = [bounds.center.to_bits(), bounds.half.to_bits()];
         let reach = sides.as_flattened().iter().fold(0, |all, c| all | c.unsigned_abs());
         let shift = 50_u32.saturating_sub(leading_zeros_long(reach.into())).max(2);
         // What the entries may be off by takes part in each plane: 2 units times the coordinates and 1, halved.
@@ -173,14 +173,14 @@ impl ScreenMatrix {
     /// by a shift of at least 17, and the box to 14 bits, by a shift of at least 2. So entries are off by less than 2 units,
     /// coordinates by less than 1. Products are below 2²⁹; all is counted in halves, so that their sum fits.
     #[inline(never)]
-    pub fn sees(&self, aabb: &BoundingBox, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
-        let aabb = ShortBox::new(aabb);
+    pub fn sees(&self, bounds: &Bounds, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
+        let short = ShortBox::new(bounds);
         let [.., w] = &self.rows;
         // Depth is as a coordinate of 512 px, and of the others no plane is left out.
         let axes = [(columns, 0), (lines, 0), (&(0..512), clamped.0)];
         self.rows.iter().zip(axes).all(|(row, (range, clamped))| {
-            (clamped & Outcode::FAR != 0 || aabb.reaches(row, -512, w, range.end))
-                && (clamped & Outcode::NEAR != 0 || aabb.reaches(row, 512, w, -range.start))
+            (clamped & Outcode::FAR != 0 || short.reaches(row, -512, w, range.end))
+                && (clamped & Outcode::NEAR != 0 || short.reaches(row, 512, w, -range.start))
         })
     }
 
@@ -189,10 +189,10 @@ impl ScreenMatrix {
     /// # Format
     /// Entries below 2⁴⁵: six products of at most 2⁶⁰.
     #[inline(never)]
-    fn least_w(&self, aabb: &BoundingBox) -> i64 {
+    fn least_w(&self, bounds: &Bounds) -> i64 {
         let [.., row] = &self.rows;
         let [.., mut least] = *row;
-        let (center, half) = (aabb.center.to_bits(), aabb.half.to_bits());
+        let (center, half) = (bounds.center.to_bits(), bounds.half.to_bits());
         for ((entry, center), half) in row.iter().zip(&center).zip(&half) {
             if *entry != 0 {
                 least += times(*entry, *center) - times(entry.abs(), *half);
@@ -360,7 +360,7 @@ impl Transform {
         let numbers = Numbers::of(mesh, displaced);
         // One shift for all, so that the largest reachable value is just below 2⁵⁵.
         let shift = excess(&[view.rows.iter().fold(0, |reach, row| reach | numbers.reach(row))], 53);
-        let least_w = view.least_w(&mesh.bounds().aabb);
+        let least_w = view.least_w(mesh.bounds());
         self.short = numbers.factor.is_some() && scale(least_w, shift) >= Self::SHORT_W;
         (self.scale, self.uniform) = (view.scale - shift, None);
         for (row, from) in self.rows.iter_mut().zip(&view.rows) {
