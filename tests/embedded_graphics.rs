@@ -16,7 +16,7 @@ use reference::rng::Rng;
 use support::strips;
 use zstrip::color::{Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::frame::{FramebufferRenderer, Renderer};
-use zstrip::span::{DepthState, NoDepth};
+use zstrip::span::{DepthOff, DepthState};
 use zstrip::target::{FrameSlice, Overlay, StripPixels};
 
 const WIDTH: usize = 96;
@@ -41,7 +41,7 @@ impl<D: DrawTarget<Error = core::convert::Infallible>> Put<D::Color> for AsItIs<
     }
 }
 
-struct Cut<'t, 'c, F>(&'t mut Overlay<'c, F, NoDepth>);
+struct Cut<'t, 'c, F>(&'t mut Overlay<'c, F, DepthOff>);
 
 impl<F: zstrip::Framebuffer> Put<<F::Format as PixelFormat>::Color> for Cut<'_, '_, F> {
     fn put<T: Drawable<Color = <F::Format as PixelFormat>::Color> + Dimensions>(&mut self, drawable: &T) {

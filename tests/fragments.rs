@@ -104,7 +104,7 @@ impl VertexShader for Chequers {
 impl Shader<Rgb565> for Chequers {
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         let (x, y) = fragment.position;
-        self.0.borrow_mut().push((x, y, fragment.depth, fragment.side, fragment.face));
+        self.0.borrow_mut().push((x, y, fragment.depth, fragment.side, fragment.flat));
         ((x + y) % 2 == 0).then_some(1)
     }
 }

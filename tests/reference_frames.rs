@@ -122,7 +122,7 @@ impl VertexShader for Ids {
 
 impl Shader<Rgb888> for Ids {
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<[u8; 3]> {
-        let [_, r, g, b] = fragment.face.to_be_bytes();
+        let [_, r, g, b] = fragment.flat.to_be_bytes();
         Some([r, g, b])
     }
 }

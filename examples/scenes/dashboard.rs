@@ -9,11 +9,11 @@ use embedded_graphics::primitives::*;
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBuilder};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle16;
-use zstrip::span::NoDepth;
+use zstrip::span::DepthOff;
 use zstrip::target::Overlay;
 use zstrip::{Framebuffer, Scene};
 
-type On<'c, F> = Overlay<'c, F, NoDepth>;
+type On<'c, F> = Overlay<'c, F, DepthOff>;
 
 const BACK: Rgb565 = Rgb565::new(1, 3, 3);
 const BAR: Rgb565 = Rgb565::new(3, 9, 8);

@@ -210,7 +210,7 @@ impl<P: PixelFormat> Shader<P> for FaceColors {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
         Shader::<P>::span(&self.0, face, span, test);
     }
 }
@@ -234,7 +234,7 @@ impl VertexShader for OwnFlat {
 impl<P: PixelFormat> Shader<P> for OwnFlat {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
-        let [_, r, g, b] = fragment.face.to_be_bytes();
+        let [_, r, g, b] = fragment.flat.to_be_bytes();
         Some(P::pack([r, g, b]))
     }
 }

@@ -14,7 +14,7 @@
 use crate::math::{
     SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed, reciprocal,
 };
-use crate::vertex::{ScreenVertex, WidePlane};
+use crate::vertex::{Plane64, ScreenVertex};
 
 /// What all plane equations of a triangle share.
 #[derive(Clone, Copy, Debug)]
@@ -149,7 +149,7 @@ impl Gradients {
     #[inline(always)]
     fn steep(&self, v0: i32, numerators: &[i64; 2], scale: u32) -> PlaneEquation {
         // Bits cut from what was rounded down leave what is rounded down.
-        let mut plane = WidePlane::ZERO;
+        let mut plane = Plane64::ZERO;
         self.exact(v0, numerators, &mut plane);
         let cut = |value: i64| (value >> (32 - scale)) as u32;
         PlaneEquation { dx: cut(plane.dx) as i32, dy: cut(plane.dy) as i32, base: cut(plane.base) }
@@ -191,7 +191,7 @@ impl Gradients {
     ///
     /// # Format
     /// The difference to the origin is Σ n to, of up to 84 bits, from two halves of each n.
-    fn exact(&self, v0: i32, &[a, b]: &[i64; 2], plane: &mut WidePlane) {
+    fn exact(&self, v0: i32, &[a, b]: &[i64; 2], plane: &mut Plane64) {
         let (x, y) = (i64::from(self.to.0), i64::from(self.to.1));
         let low = i64::from(a as u32) * x + i64::from(b as u32) * y;
         let high = (a >> 32) * x + (b >> 32) * y + (low >> 32);
@@ -209,7 +209,7 @@ impl Gradients {
     /// Makes `plane` the plane through the values at the three vertices with 32 fractional bits, modulo 2⁶⁴, by long division; each
     /// of its three numbers is rounded down before it is carried from the origin to the screen's corner.
     #[inline(never)]
-    pub fn plane_wide(&self, values: [i32; 3], plane: &mut WidePlane) {
+    pub fn plane_wide(&self, values: [i32; 3], plane: &mut Plane64) {
         self.exact(values[0], &self.numerators(values), plane);
         let (x, y) = (i64::from(self.origin.0), i64::from(self.origin.1));
         plane.base = plane.base.wrapping_sub(plane.dx.wrapping_mul(x)).wrapping_sub(plane.dy.wrapping_mul(y));

@@ -11,7 +11,7 @@
 
 use super::gradient::Gradients;
 use crate::math::mul_high_signed;
-use crate::vertex::{Correction, Lane, PerspectiveClass, ScreenVertex, Varyings, WidePlane};
+use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64, ScreenVertex, Varyings};
 
 /// Puts d q (or d, where perspective is too weak to be seen) and q in the place of perspective-correct varyings and 1 / w;
 /// `screen` is the screen's size.
@@ -20,30 +20,35 @@ pub fn homogenize<V: Varyings>(
     varyings: &mut [V; 3],
     v: &[ScreenVertex; 3],
     screen: (u16, u16),
-    correction: &mut V::Correction,
+    perspective: &mut V::PerspectiveSetup,
 ) {
-    if let Some((class, _, lanes)) = correction.lanes() {
+    if let Some((class, _, planes)) = perspective.parts_mut() {
         let [a, b, c] = varyings;
-        *class = convert([a.as_mut(), b.as_mut(), c.as_mut()], lanes, reach(v, screen));
+        *class = convert([a.as_mut(), b.as_mut(), c.as_mut()], planes, reach(v, screen));
     }
 }
 
 /// The planes of d q and q in 64 bits, where 32 are too few.
 #[inline]
-pub fn widen<C: Correction>(gradients: &Gradients, values: &[&[i32]; 3], correction: &mut C) {
-    if let Some((PerspectiveClass::Wide, wide_w, lanes)) = correction.lanes() {
-        planes(gradients, values, wide_w, lanes);
+pub fn widen<C: PerspectiveSetup>(gradients: &Gradients, values: &[&[i32]; 3], perspective: &mut C) {
+    if let Some((PerspectiveClass::Planes64, inverse_w64, planes)) = perspective.parts_mut() {
+        planes_in_64_bits(gradients, values, inverse_w64, planes);
     }
 }
 
 #[inline(never)]
-fn planes(gradients: &Gradients, values: &[&[i32]; 3], wide_w: &mut WidePlane, lanes: &mut [Lane]) {
+fn planes_in_64_bits(
+    gradients: &Gradients,
+    values: &[&[i32]; 3],
+    inverse_w64: &mut Plane64,
+    planes: &mut [PerspectivePlane],
+) {
     let [a, b, c] = *values;
-    for (((lane, a), b), c) in lanes.iter_mut().zip(a).zip(b).zip(c) {
-        gradients.plane_wide([*a, *b, *c], &mut lane.plane);
+    for (((plane, a), b), c) in planes.iter_mut().zip(a).zip(b).zip(c) {
+        gradients.plane_wide([*a, *b, *c], &mut plane.wide);
     }
     if let ([.., a], [.., b], [.., c]) = (a, b, c) {
-        gradients.plane_wide([*a, *b, *c], wide_w);
+        gradients.plane_wide([*a, *b, *c], inverse_w64);
     }
 }
 
@@ -57,10 +62,10 @@ fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
 
 /// # Format
 /// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](crate::raster::Gradients)); so are q and d q, which
-/// makes h, of 28 bits, wrong by some 2³¹ (reach + 64) / q. [`Narrow`](PerspectiveClass::Narrow) keeps that below 2¹⁵
+/// makes h, of 28 bits, wrong by some 2³¹ (reach + 64) / q. [`Planes32`](PerspectiveClass::Planes32) keeps that below 2¹⁵
 /// units, 2⁻¹³ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter of that, 2⁻¹⁶.
 #[inline(never)]
-fn convert(values: [&mut [i32]; 3], lanes: &mut [Lane], reach: u32) -> PerspectiveClass {
+fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], reach: u32) -> PerspectiveClass {
     let [a, b, c] = values;
     let ([.., wa], [.., wb], [.., wc]) = (&mut *a, &mut *b, &mut *c) else {
         return PerspectiveClass::Affine;
@@ -71,15 +76,15 @@ fn convert(values: [&mut [i32]; 3], lanes: &mut [Lane], reach: u32) -> Perspecti
     let (least, most) = (qa.min(qb).min(qc), qa.max(qb).max(qc));
     let class = match () {
         () if most - least < most >> 14 => PerspectiveClass::Affine,
-        () if (reach + 64).saturating_mul(most >> 14) <= least => PerspectiveClass::Narrow,
-        () => PerspectiveClass::Wide,
+        () if (reach + 64).saturating_mul(most >> 14) <= least => PerspectiveClass::Planes32,
+        () => PerspectiveClass::Planes64,
     };
-    for (((lane, a), b), c) in lanes.iter_mut().zip(a).zip(b).zip(c) {
-        lane.base = *a;
+    for (((plane, a), b), c) in planes.iter_mut().zip(a).zip(b).zip(c) {
+        plane.base = *a;
         let (db, dc) = (b.wrapping_sub(*a), c.wrapping_sub(*a));
         let zeros = db.unsigned_abs().max(dc.unsigned_abs()).leading_zeros();
-        lane.shift = zeros.saturating_sub(4);
-        (*a, *b, *c) = (0, db << lane.shift, dc << lane.shift);
+        plane.shift = zeros.saturating_sub(4);
+        (*a, *b, *c) = (0, db << plane.shift, dc << plane.shift);
         if class != PerspectiveClass::Affine {
             (*b, *c) = (mul_high_signed(*b, qb << 1), mul_high_signed(*c, qc << 1));
         }

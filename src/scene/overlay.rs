@@ -4,7 +4,7 @@ use super::scene::Scene;
 use super::state::State;
 use crate::math::{Projective, Vec3};
 use crate::mesh::{Mesh, MeshData, Positions};
-use crate::span::{AnyDepth, DepthState, DepthTest, LessWrite, NoDepth};
+use crate::span::{DepthDyn, DepthLess, DepthOff, DepthState, DepthTest};
 use crate::target::{Framebuffer, Overlay};
 use crate::vertex::{Projected, ScreenVertex, Transform};
 
@@ -17,20 +17,20 @@ impl<F: Framebuffer> Scene<'_, F> {
     ///
     /// Drawing on it takes its turn among the draws of meshes. Like them it must be the same each time the closure is called,
     /// though nothing checks that; it is not counted in [`Stats`](crate::target::Stats).
-    pub fn overlay(&mut self) -> Overlay<'_, F, NoDepth> {
-        self.target_at(0, NoDepth)
+    pub fn overlay(&mut self) -> Overlay<'_, F, DepthOff> {
+        self.target_at(0, DepthOff)
     }
 
     /// The same at a depth: pixels are drawn where that is nearer than what is there, and leave it.
     ///
     /// [`project`](Self::project) tells the depth of a point. Without a depth buffer this is an overlay.
-    pub fn at_depth(&mut self, z: u16) -> Overlay<'_, F, LessWrite> {
-        self.target_at(z, LessWrite)
+    pub fn at_depth(&mut self, z: u16) -> Overlay<'_, F, DepthLess> {
+        self.target_at(z, DepthLess)
     }
 
     /// The same with a depth test of one's own.
-    pub fn at_depth_with(&mut self, z: u16, state: DepthState) -> Overlay<'_, F, AnyDepth> {
-        self.target_at(z, AnyDepth::new(state))
+    pub fn at_depth_with(&mut self, z: u16, state: DepthState) -> Overlay<'_, F, DepthDyn> {
+        self.target_at(z, DepthDyn::new(state))
     }
 
     fn target_at<D: DepthTest>(&mut self, z: u16, test: D) -> Overlay<'_, F, D> {

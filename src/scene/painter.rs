@@ -4,10 +4,10 @@ use super::scene::{Scene, Target};
 use super::state::State;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
 use crate::span::{
-    AnyDepth, DepthBias, DepthState, DepthTest, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader, Steps, TriangleSpan,
+    DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragments, MAX_SPAN, Shader, Steps, TriangleSpan,
 };
 use crate::target::Framebuffer;
-use crate::vertex::{Correction, MAX_IN_REGISTERS, ScreenVertex, Varyings, signed_area};
+use crate::vertex::{MAX_IN_REGISTERS, PerspectiveSetup, ScreenVertex, Varyings, signed_area};
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](crate::scene::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -61,14 +61,14 @@ fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
     set_up: &SetUp<'_, S::Varyings>,
 ) {
-    painter.spans(set_up, LessWrite);
+    painter.spans(set_up, DepthLess);
 }
 
 fn spans_over<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
     set_up: &SetUp<'_, S::Varyings>,
 ) {
-    painter.spans(set_up, NoDepth);
+    painter.spans(set_up, DepthOff);
 }
 
 fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
@@ -76,9 +76,9 @@ fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
     set_up: &SetUp<'_, S::Varyings>,
 ) {
     match painter.test() {
-        DepthState::LESS => painter.spans(set_up, LessWrite),
-        DepthState::OFF => painter.spans(set_up, NoDepth),
-        other => painter.spans(set_up, AnyDepth::new(other)),
+        DepthState::LESS => painter.spans(set_up, DepthLess),
+        DepthState::OFF => painter.spans(set_up, DepthOff),
+        other => painter.spans(set_up, DepthDyn::new(other)),
     }
 }
 
@@ -121,7 +121,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 words: [0; 3],
                 side,
                 level: 0,
-                correction: <S::Varyings as Varyings>::Correction::NONE,
+                perspective: <S::Varyings as Varyings>::PerspectiveSetup::NONE,
             },
         };
         self.set_up(&mut set_up, varyings);
@@ -142,10 +142,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             let gradients = Gradients::new(v, *area, self.screen);
             *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
             if S::Varyings::PERSPECTIVE > 0 {
-                homogenize(varyings, v, self.screen, &mut steps.correction);
+                homogenize(varyings, v, self.screen, &mut steps.perspective);
             }
             let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
-            widen(&gradients, &values, &mut steps.correction);
+            widen(&gradients, &values, &mut steps.perspective);
             let Steps { corner, d_dx, d_dy, .. } = &mut *steps;
             let planes = corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut());
             for (k, ((corner, dx), dy)) in planes.enumerate() {
@@ -250,7 +250,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         set_up: &'a SetUp<'_, S::Varyings>,
         spans: &Spans<'_>,
         nothing: &'a mut [(); MAX_SPAN],
-    ) -> Fragments<'a, F::Format, S::Varyings, D::Stored> {
+    ) -> Fragments<'a, F::Format, S::Varyings, D::Depth> {
         let (y, x) = (spans.y, &spans.x);
         let SetUp { depth: plane, steps, .. } = set_up;
         let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);

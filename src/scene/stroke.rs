@@ -4,7 +4,7 @@ use super::painter::{Painter, RasterHooks};
 use crate::color::PixelFormat;
 use crate::raster::{Along, Line, LinePixels, PixelRect, unit};
 use crate::span::{
-    AnyDepth, Compare, Corrected, DepthState, DepthTest, Fragment, Fragments, LessWrite, MAX_SPAN, NoDepth, Shader,
+    Compare, Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Fragments, MAX_SPAN, Shader,
     Steps,
 };
 use crate::target::Framebuffer;
@@ -210,13 +210,13 @@ fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     let depths = &mut *target.depth;
     match test {
         DepthState { compare: Compare::Less, write: true } => {
-            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, LessWrite);
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, DepthLess);
         }
         DepthState::OFF => {
-            run.draw::<F::Format, S, _, DASHED>(colors, &mut [(); usize::MAX], width, first_row, shader, NoDepth);
+            run.draw::<F::Format, S, _, DASHED>(colors, &mut [(); usize::MAX], width, first_row, shader, DepthOff);
         }
         other => {
-            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, AnyDepth::new(other));
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, DepthDyn::new(other));
         }
     }
 }
@@ -227,7 +227,7 @@ impl<V: Varyings> Run<'_, V> {
     fn draw<P: PixelFormat, S: Shader<P, Varyings = V>, D: DepthTest, const DASHED: bool>(
         &self,
         colors: &mut [P::Raw],
-        depths: &mut [D::Stored],
+        depths: &mut [D::Depth],
         width: usize,
         first_row: i32,
         shader: &S,
@@ -271,7 +271,7 @@ impl<V: Varyings> Run<'_, V> {
     ) {
         let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
         let Self { pixels, mut z, mut values, mut pattern, face, steps } = *self;
-        let test = AnyDepth::new(painter.test());
+        let test = DepthDyn::new(painter.test());
         for (x, y) in pixels {
             if !DASHED || pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
@@ -457,7 +457,7 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings, D::Stored>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings, D::Depth>, test: D) {
         let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
         let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
         let (x, y) = (position.0 - origin.0, position.1 - origin.1);
@@ -477,7 +477,7 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
             let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
             let depth = (z >> 16) as u16;
             if across > 0 && along > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
-                let fragment = Fragment { face, varyings: &varyings, position, depth, side, level };
+                let fragment = Fragment { flat: face, varyings: &varyings, position, depth, side, level };
                 if let Some(value) = self.shader.fragment(&fragment) {
                     test.write(depth, stored);
                     *color = mix::<P>(*color, value, (across * along) >> 8);
@@ -530,15 +530,15 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
         let (varyings, steps, position) = (values, &steps, (rect.x.start, y));
         if test == DepthState::OFF {
             let depth = nothing.get_mut(..color.len()).unwrap_or_default();
-            painter.shader.span(face, Fragments { color, depth, z, varyings, steps, position }, NoDepth);
+            painter.shader.span(face, Fragments { color, depth, z, varyings, steps, position }, DepthOff);
             continue;
         }
         let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
         let span = Fragments { color, depth, z, varyings, steps, position };
         match test {
-            DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, LessWrite),
-            other => painter.shader.span(face, span, AnyDepth::new(other)),
+            DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, DepthLess),
+            other => painter.shader.span(face, span, DepthDyn::new(other)),
         }
     }
 }

@@ -24,7 +24,7 @@ impl<P: PixelFormat> Shader<P> for DepthOnly {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, _: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
+    fn span<D: DepthTest>(&self, _: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
         if !D::ENABLED {
             return;
         }

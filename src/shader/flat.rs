@@ -61,11 +61,11 @@ impl VertexShader for Flat {
 impl<P: PixelFormat> Shader<P> for Flat {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
-        Some(P::pack_at(unpacked(fragment.face), fragment.position))
+        Some(P::pack_at(unpacked(fragment.flat), fragment.position))
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
         flat_span(face, span, test);
     }
 }

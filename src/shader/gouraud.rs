@@ -111,7 +111,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Depth>, test: D) {
         if P::PACKED {
             packed_fragments(span, test);
         } else if P::IS_LUMA {
@@ -123,7 +123,7 @@ impl<P: PixelFormat> Shader<P> for Gouraud {
     }
 
     #[inline(always)]
-    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
         if P::PACKED {
             packed_span(span, test);
         } else {

@@ -94,11 +94,11 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerFace, D, P> {
 impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Shaded<PerFace, D, P> {
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<Format::Raw> {
-        Some(Format::pack_at(unpacked(fragment.face), fragment.position))
+        Some(Format::pack_at(unpacked(fragment.flat), fragment.position))
     }
 
     #[inline]
-    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 0], T::Stored>, test: T) {
+    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 0], T::Depth>, test: T) {
         flat_span(face, span, test);
     }
 }
@@ -149,7 +149,7 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     }
 
     #[inline]
-    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 3], T::Stored>, test: T) {
+    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 3], T::Depth>, test: T) {
         if Format::PACKED {
             packed_fragments(span, test);
         } else {
@@ -158,7 +158,7 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     }
 
     #[inline(always)]
-    fn triangle_span<T: DepthTest>(&self, face: u32, span: TriangleSpan<'_, Format, [i32; 3], T::Stored>, test: T) {
+    fn triangle_span<T: DepthTest>(&self, face: u32, span: TriangleSpan<'_, Format, [i32; 3], T::Depth>, test: T) {
         if Format::PACKED {
             packed_span(span, test);
         } else {
@@ -239,7 +239,7 @@ impl<Format: PixelFormat, const D: usize> Shader<Format> for Shaded<PerFragment,
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<Format::Raw> {
         let [x, y, z] = *fragment.varyings;
         let turned = self.material.is_two_sided() && fragment.side == Side::Back;
-        let [red, green, blue, _] = fragment.face.to_le_bytes();
+        let [red, green, blue, _] = fragment.flat.to_le_bytes();
         let [r, g, b] = self.material.far(&fragment_normal(x, y, z, turned), [red, green, blue]);
         Some(Format::pack_at([round(r), round(g), round(b)], fragment.position))
     }
@@ -284,7 +284,7 @@ impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Sha
     fn fragment(&self, fragment: &Fragment<'_, [i32; 6]>) -> Option<Format::Raw> {
         let [x, y, z, px, py, pz] = *fragment.varyings;
         let turned = self.material.is_two_sided() && fragment.side == Side::Back;
-        let [red, green, blue, _] = fragment.face.to_le_bytes();
+        let [red, green, blue, _] = fragment.flat.to_le_bytes();
         let normal = fragment_normal(x, y, z, turned);
         let [r, g, b] = self.material.near_here(&normal, &[px >> 14, py >> 14, pz >> 14], [red, green, blue]);
         Some(Format::pack_at([round(r), round(g), round(b)], fragment.position))

@@ -4,7 +4,7 @@ use crate::color::PixelFormat;
 use crate::light::{Light, Lit};
 use crate::span::{DepthTest, Fragment, Fragments, STEP, Shader, fragments, texture_span};
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
-use crate::vertex::{Correction, Perspective, PerspectiveClass, VertexRef, VertexShader};
+use crate::vertex::{Perspective, PerspectiveClass, PerspectiveSetup, VertexRef, VertexShader};
 use core::marker::PhantomData;
 
 /// The colours of a texture, perspective-correct: divided every 16 pixels and at both ends of a span.
@@ -123,10 +123,12 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>, D::Stored>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>, D::Depth>, test: D) {
         match self.level(span.steps.level) {
             _ if P::ALPHA || P::DITHER.is_some() => fragments(self, face, span, test),
-            Some(texture) if W::REPEATS && F::NEAREST && span.steps.correction.class() != PerspectiveClass::Wide => {
+            Some(texture)
+                if W::REPEATS && F::NEAREST && span.steps.perspective.class() != PerspectiveClass::Planes64 =>
+            {
                 texture_span(texture, span, test);
             }
             _ => fragments(self, face, span, test),

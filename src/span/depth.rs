@@ -60,7 +60,7 @@ pub trait DepthTest: Copy {
 
     /// What there is of a pixel's depth: `u16`, or nothing where depth plays no part, so that the same loops do without a
     /// depth buffer.
-    type Stored: Copy;
+    type Depth: Copy;
 
     /// What is stored of as many pixels from `start` on, or of fewer at the end of `depths`. `nothing` is for tests that
     /// need none.
@@ -69,20 +69,20 @@ pub trait DepthTest: Copy {
         nothing: &'d mut [(); MAX_SPAN],
         start: usize,
         length: usize,
-    ) -> &'d mut [Self::Stored];
+    ) -> &'d mut [Self::Depth];
 
     /// What is stored of all pixels. `nothing` is for tests that need none.
-    fn whole<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [Self::Stored];
+    fn whole<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [Self::Depth];
 
     /// Compares `z` with the stored depth.
-    fn passes(self, z: u16, stored: Self::Stored) -> bool;
+    fn passes(self, z: u16, stored: Self::Depth) -> bool;
 
     /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
-    fn write(self, z: u16, stored: &mut Self::Stored);
+    fn write(self, z: u16, stored: &mut Self::Depth);
 
     /// The same test as a value, and depths as numbers, where depth plays a part: for long loops, of which three copies cost
     /// more than the test does.
-    fn any(self, stored: &mut [Self::Stored]) -> Option<(AnyDepth, &mut [u16])>;
+    fn any(self, stored: &mut [Self::Depth]) -> Option<(DepthDyn, &mut [u16])>;
 }
 
 /// Depths from `start` on, `length` of them or as many as there are.
@@ -95,12 +95,12 @@ fn part(depths: &mut [u16], start: usize, length: usize) -> &mut [u16] {
 
 /// [`DepthState::LESS`].
 #[derive(Clone, Copy, Debug)]
-pub struct LessWrite;
+pub struct DepthLess;
 
-impl DepthTest for LessWrite {
+impl DepthTest for DepthLess {
     const ENABLED: bool = true;
 
-    type Stored = u16;
+    type Depth = u16;
 
     #[inline(always)]
     fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
@@ -123,19 +123,19 @@ impl DepthTest for LessWrite {
     }
 
     #[inline(always)]
-    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
-        Some((AnyDepth::new(DepthState::LESS), stored))
+    fn any(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
+        Some((DepthDyn::new(DepthState::LESS), stored))
     }
 }
 
 /// [`DepthState::OFF`].
 #[derive(Clone, Copy, Debug)]
-pub struct NoDepth;
+pub struct DepthOff;
 
-impl DepthTest for NoDepth {
+impl DepthTest for DepthOff {
     const ENABLED: bool = false;
 
-    type Stored = ();
+    type Depth = ();
 
     #[inline(always)]
     fn stored<'d>(_: &'d mut [u16], nothing: &'d mut [(); MAX_SPAN], _: usize, length: usize) -> &'d mut [()] {
@@ -156,7 +156,7 @@ impl DepthTest for NoDepth {
     fn write(self, _: u16, (): &mut ()) {}
 
     #[inline(always)]
-    fn any(self, _: &mut [()]) -> Option<(AnyDepth, &mut [u16])> {
+    fn any(self, _: &mut [()]) -> Option<(DepthDyn, &mut [u16])> {
         None
     }
 }
@@ -166,13 +166,13 @@ impl DepthTest for NoDepth {
 /// # Format
 /// Differences are in -65,535..=65,535. Modulo 2³² even all numbers but 0 are a range.
 #[derive(Clone, Copy, Debug)]
-pub struct AnyDepth {
+pub struct DepthDyn {
     lowest: i32,
     count: u32,
     write: bool,
 }
 
-impl AnyDepth {
+impl DepthDyn {
     /// From its description.
     pub const fn new(state: DepthState) -> Self {
         let (lowest, count) = match state.compare {
@@ -189,10 +189,10 @@ impl AnyDepth {
     }
 }
 
-impl DepthTest for AnyDepth {
+impl DepthTest for DepthDyn {
     const ENABLED: bool = true;
 
-    type Stored = u16;
+    type Depth = u16;
 
     #[inline(always)]
     fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
@@ -218,7 +218,7 @@ impl DepthTest for AnyDepth {
     }
 
     #[inline(always)]
-    fn any(self, stored: &mut [u16]) -> Option<(AnyDepth, &mut [u16])> {
+    fn any(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
         Some((self, stored))
     }
 }
@@ -231,7 +231,7 @@ pub(crate) const RUN: usize = 16;
 /// Most runs pass, or fail, as a whole. Where all pass, two loops, this one and another for colours, are shorter than one for
 /// both, as each has all of its values in registers.
 #[inline(always)]
-pub(crate) fn passing<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], z: u32, dz_dx: i32) -> usize {
+pub(crate) fn passing<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
     if !D::ENABLED {
         RUN
     } else if SMALL_CORE {
@@ -243,12 +243,12 @@ pub(crate) fn passing<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], z: u
 
 /// Out of line, where its registers are its own.
 #[inline(never)]
-fn passing_apart<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], z: u32, dz_dx: i32) -> usize {
+fn passing_apart<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
     passing_here(test, depths, z, dz_dx)
 }
 
 #[inline(always)]
-fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], mut z: u32, dz_dx: i32) -> usize {
+fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], mut z: u32, dz_dx: i32) -> usize {
     // Spelled out: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! test {
         ($($count:literal $depth:ident)*) => {
@@ -270,8 +270,8 @@ fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Stored; RUN], mut z: u32
 
 /// [`passing`] for up to a run: how many are left.
 #[inline(always)]
-pub(crate) fn left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
-    match <&mut [D::Stored; RUN]>::try_from(&mut *depths) {
+pub(crate) fn left<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
+    match <&mut [D::Depth; RUN]>::try_from(&mut *depths) {
         Ok(run) => RUN - passing(test, run, z, dz_dx),
         Err(_) => few_left(test, depths, z, dz_dx),
     }
@@ -279,13 +279,13 @@ pub(crate) fn left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_d
 
 /// [`left`] of fewer depths than a run has.
 #[inline(always)]
-pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Stored], z: u32, dz_dx: i32) -> usize {
+pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
     if D::ENABLED { few_left_apart(test, depths, z, dz_dx) } else { 0 }
 }
 
 /// Out of line, where its registers are its own.
 #[inline(never)]
-fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Stored], mut z: u32, dz_dx: i32) -> usize {
+fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Depth], mut z: u32, dz_dx: i32) -> usize {
     // Spelled out: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! test {
         ($($left:literal $depth:ident)*) => {
@@ -340,7 +340,7 @@ mod tests {
                 }
                 (*depth, left) = (near, left - 1);
             }
-            assert_eq!(super::left(LessWrite, &mut found[..length], z, dz_dx), left, "{case}");
+            assert_eq!(super::left(DepthLess, &mut found[..length], z, dz_dx), left, "{case}");
             assert_eq!(found, expected, "{case}");
         }
     }
@@ -353,11 +353,11 @@ mod tests {
             let expected = [false, z < stored, z == stored, z <= stored, z > stored, z != stored, z >= stored, true];
             let compares = [Never, Less, Equal, LessEqual, Greater, NotEqual, GreaterEqual, Always];
             for (compare, expected) in compares.into_iter().zip(expected) {
-                let test = AnyDepth::new(DepthState { compare, write: false });
+                let test = DepthDyn::new(DepthState { compare, write: false });
                 assert_eq!(test.passes(z, stored), expected, "{z} {compare:?} {stored}");
             }
-            let less = LessWrite.any(&mut []).map(|(test, _)| test.passes(z, stored));
-            assert_eq!(less, Some(LessWrite.passes(z, stored)));
+            let less = DepthLess.any(&mut []).map(|(test, _)| test.passes(z, stored));
+            assert_eq!(less, Some(DepthLess.passes(z, stored)));
         }
     }
 }

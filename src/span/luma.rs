@@ -21,7 +21,7 @@ pub(crate) const fn weighted([r, g, b]: [i32; 3]) -> u32 {
 /// The planes of the channels are exact modulo 2³² but for what rounding their gradients takes, and so is their sum: the
 /// luma is as near to the exact one as the channels are, below 2⁻³ of 255, and rounded to nearest.
 #[inline(never)]
-pub(crate) fn luma_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, step: u32, test: D) {
+pub(crate) fn luma_span<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Depth>, step: u32, test: D) {
     let Fragments { color, depth, mut z, varyings, steps, .. } = span;
     let dz_dx = steps.dz_dx;
     let mut luma = weighted(varyings);

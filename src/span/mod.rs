@@ -10,7 +10,7 @@ mod solid;
 mod span;
 mod textured;
 
-pub use depth::{AnyDepth, Compare, DepthState, DepthTest, LessWrite, MAX_SPAN, NoDepth};
+pub use depth::{Compare, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, MAX_SPAN};
 pub use depth_bias::DepthBias;
 pub(crate) use luma::{luma_span, weighted};
 pub(crate) use packed::{packed_fragments, packed_span, prepare};

@@ -10,7 +10,7 @@
 //! Most spans of a mesh are short, so what is once a span counts: of a triangle's span nothing is passed on but where it is, and
 //! channels are worked out where registers are free.
 
-use super::depth::{DepthTest, NoDepth, few_left, passing};
+use super::depth::{DepthOff, DepthTest, few_left, passing};
 use super::span::{Fragments, Steps, TriangleSpan};
 use crate::color::{PixelFormat, pack, spread, spread_step, word};
 use crate::math::SMALL_CORE;
@@ -90,13 +90,13 @@ const LONG: usize = 512;
 /// off by at most 1/2, and by 1/16 from the records (1/8 for red, whose word is finer): in all, within 1 of 255 before the
 /// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(always)]
-pub(crate) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+pub(crate) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
     drawn::<P, D, SMALL_CORE>(span, test);
 }
 
 /// [`packed_span`] of anything.
 #[inline(always)]
-pub(crate) fn packed_fragments<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Stored>, test: D) {
+pub(crate) fn packed_fragments<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Depth>, test: D) {
     let Fragments { color, depth, z, varyings, steps, position } = span;
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
         // A line's pixel.
@@ -114,7 +114,7 @@ pub(crate) fn packed_fragments<P: PixelFormat, D: DepthTest>(span: Fragments<'_,
 /// Draws a span; less than a run of it in one loop, or in two: first depths and then colours, each with all of its values, and its
 /// parameters, in registers, even if they are few.
 #[inline(always)]
-fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
     let TriangleSpan { color, depth, z, steps, position } = span;
     let (x, y) = position;
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
@@ -147,7 +147,7 @@ fn word_at<P: PixelFormat>(steps: &Steps<[i32; 3]>, x: i32, y: i32) -> u32 {
 #[inline(never)]
 fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     test: D,
-    depth: &mut [D::Stored],
+    depth: &mut [D::Depth],
     z: u32,
     steps: &Steps<[i32; 3]>,
     mut color: &mut [P::Raw],
@@ -204,7 +204,7 @@ fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
 #[inline(never)]
 fn few_at<P: PixelFormat, D: DepthTest>(
     test: D,
-    depth: &mut [D::Stored],
+    depth: &mut [D::Depth],
     z: u32,
     steps: &Steps<[i32; 3]>,
     color: &mut [P::Raw],
@@ -222,7 +222,7 @@ fn few_at<P: PixelFormat, D: DepthTest>(
 #[inline(never)]
 fn few<P: PixelFormat, D: DepthTest>(
     test: D,
-    depth: &mut [D::Stored],
+    depth: &mut [D::Depth],
     z: u32,
     steps: &Steps<[i32; 3]>,
     color: &mut [P::Raw],
@@ -239,7 +239,7 @@ fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], steps: &Steps<[i32; 3]>, 
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
     let word = word(spread(P::DITHER, steps.at((x, y))));
-    Pen::new(0, word, steps).few::<P, NoDepth>(NoDepth, steps, P::dither((x, y)), color, nothing);
+    Pen::new(0, word, steps).few::<P, DepthOff>(DepthOff, steps, P::dither((x, y)), color, nothing);
 }
 
 /// The same, from a word on.
@@ -247,7 +247,7 @@ fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], steps: &Steps<[i32; 3]>, 
 fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
-    Pen::new(0, word, steps).few::<P, NoDepth>(NoDepth, steps, addends, color, nothing);
+    Pen::new(0, word, steps).few::<P, DepthOff>(DepthOff, steps, addends, color, nothing);
 }
 
 /// Draws less than a run, from a pixel on, of which the depths have been tested but for the last ones.
@@ -256,7 +256,7 @@ fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i3
 #[inline(never)]
 fn some_at<P: PixelFormat, D: DepthTest>(
     test: D,
-    depths: &mut [D::Stored],
+    depths: &mut [D::Depth],
     z: u32,
     steps: &Steps<[i32; 3]>,
     colors: &mut [P::Raw],
@@ -273,7 +273,7 @@ fn some_at<P: PixelFormat, D: DepthTest>(
 #[inline(never)]
 fn some<P: PixelFormat, D: DepthTest>(
     test: D,
-    depths: &mut [D::Stored],
+    depths: &mut [D::Depth],
     z: u32,
     steps: &Steps<[i32; 3]>,
     colors: &mut [P::Raw],
@@ -288,7 +288,7 @@ fn some<P: PixelFormat, D: DepthTest>(
 #[inline(always)]
 fn some_here<P: PixelFormat, D: DepthTest>(
     test: D,
-    depths: &mut [D::Stored],
+    depths: &mut [D::Depth],
     z: u32,
     steps: &Steps<[i32; 3]>,
     colors: &mut [P::Raw],
@@ -327,7 +327,7 @@ fn some_here<P: PixelFormat, D: DepthTest>(
 
 /// Whether none of the depths passes: where the first one does not, that is usual.
 #[inline(always)]
-fn all_hidden<D: DepthTest>(test: D, depths: &[D::Stored], mut z: u32, dz_dx: i32) -> bool {
+fn all_hidden<D: DepthTest>(test: D, depths: &[D::Depth], mut z: u32, dz_dx: i32) -> bool {
     for depth in depths {
         if test.passes((z >> 16) as u16, *depth) {
             return false;
@@ -342,7 +342,7 @@ fn all_hidden<D: DepthTest>(test: D, depths: &[D::Stored], mut z: u32, dz_dx: i3
 #[inline(never)]
 fn long_span<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     test: D,
-    depth: &mut [D::Stored],
+    depth: &mut [D::Depth],
     mut z: u32,
     steps: &Steps<[i32; 3]>,
     color: &mut [P::Raw],
@@ -385,14 +385,14 @@ impl Pen {
         test: D,
         position: (i32, i32),
         color: &mut P::Raw,
-        depth: &mut D::Stored,
+        depth: &mut D::Depth,
     ) {
         self.draw::<P, D>(test, P::dither(position)[0], color, depth);
     }
 
     /// Draws a pixel and steps to the next one.
     #[inline(always)]
-    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, addend: u32, color: &mut P::Raw, depth: &mut D::Stored) {
+    fn draw<P: PixelFormat, D: DepthTest>(&mut self, test: D, addend: u32, color: &mut P::Raw, depth: &mut D::Depth) {
         let z = (self.z >> 16) as u16;
         if !D::ENABLED || test.passes(z, *depth) {
             test.write(z, depth);
@@ -431,7 +431,7 @@ impl Pen {
         steps: &Steps<[i32; 3]>,
         addends: &[u32; 8],
         mut color: &mut [P::Raw],
-        mut depth: &mut [D::Stored],
+        mut depth: &mut [D::Depth],
     ) {
         // Spelled out: at `opt-level = "s"` a loop would stay a loop.
         macro_rules! draw {
@@ -471,7 +471,7 @@ impl Pen {
 
 #[cfg(test)]
 mod tests {
-    use super::super::depth::{AnyDepth, Compare, DepthState, LessWrite};
+    use super::super::depth::{Compare, DepthDyn, DepthLess, DepthState};
     use super::*;
     use crate::color::{Dithered, Rgb332, squeeze};
     use crate::math::random::Rng;
@@ -480,7 +480,7 @@ mod tests {
     use embedded_graphics_core::pixelcolor::Rgb565;
 
     /// [`packed_span`], pixel by pixel.
-    fn plain<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Stored>, test: D) {
+    fn plain<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
         let TriangleSpan { color, depth, mut z, steps, position: (x, y) } = span;
         let ([step, correction, middle], addends) = (steps.words, P::dither((x, y)));
         let run = core::array::from_fn(|k| spread_step(P::DITHER, k, steps.d_dx[k]) * RUN as i32 + LOW_HALVES[k]);
@@ -512,9 +512,9 @@ mod tests {
     }
 
     /// Spans of all lengths over depths of which all, some or none pass, in a format and by a test.
-    fn compare<P: PixelFormat<Raw: PartialEq + Debug>, D: DepthTest<Stored: PartialEq + Debug>>(
+    fn compare<P: PixelFormat<Raw: PartialEq + Debug>, D: DepthTest<Depth: PartialEq + Debug>>(
         test: D,
-        stored: impl Fn(u16) -> D::Stored,
+        stored: impl Fn(u16) -> D::Depth,
     ) {
         let mut rng = Rng::new(1);
         let mut random = |end: u32| rng.below(end.into()) as u32;
@@ -533,7 +533,7 @@ mod tests {
             let steps = &steps;
             assert_eq!(steps.at(position), varyings);
             let (z, far) = (20_000 << 16, random(3));
-            let depth: std::vec::Vec<D::Stored> = (0..length)
+            let depth: std::vec::Vec<D::Depth> = (0..length)
                 .map(|k| stored(if far == 0 || far == 1 && random(8) > 0 { 60_000 - k as u16 % 9 } else { 100 }))
                 .collect();
             let color = std::vec![P::pack([1, 2, 3]); length];
@@ -555,12 +555,12 @@ mod tests {
 
     #[test]
     fn spans_are_those_pixel_by_pixel() {
-        compare::<Rgb565, _>(LessWrite, |depth| depth);
-        compare::<Dithered<Rgb565>, _>(LessWrite, |depth| depth);
-        compare::<Rgb332, _>(LessWrite, |depth| depth);
-        compare::<Rgb565, _>(NoDepth, |_| ());
-        compare::<Dithered<Rgb332>, _>(NoDepth, |_| ());
-        compare::<Rgb565, _>(AnyDepth::new(DepthState { compare: Compare::Greater, write: false }), |depth| depth);
+        compare::<Rgb565, _>(DepthLess, |depth| depth);
+        compare::<Dithered<Rgb565>, _>(DepthLess, |depth| depth);
+        compare::<Rgb332, _>(DepthLess, |depth| depth);
+        compare::<Rgb565, _>(DepthOff, |_| ());
+        compare::<Dithered<Rgb332>, _>(DepthOff, |_| ());
+        compare::<Rgb565, _>(DepthDyn::new(DepthState { compare: Compare::Greater, write: false }), |depth| depth);
     }
 
     /// Any lengths, any colours at both ends, some pixels hidden: the others are within 1 of 255 before their bits are cut.
@@ -582,7 +582,7 @@ mod tests {
             let mut color = std::vec![0x1234; length];
             let span =
                 Fragments { color: &mut color, depth: &mut depth, z: 200 << 16, varyings, steps, position: (0, 0) };
-            packed_fragments::<Rgb565, _>(span, LessWrite);
+            packed_fragments::<Rgb565, _>(span, DepthLess);
             for (x, (&pixel, &depth)) in color.iter().zip(&depth).enumerate() {
                 if x / hidden % 3 == 2 {
                     assert_eq!((pixel, depth), (0x1234, 100), "{case}: {x}");

@@ -10,7 +10,7 @@
 
 use super::span::Steps;
 use crate::math::{Divisor, mul_high_signed};
-use crate::vertex::{Correction, Lane, PerspectiveClass, Varyings};
+use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Varyings};
 
 /// Perspective-correct varyings at a pixel, and a way to the next ones.
 #[derive(Clone, Copy, Debug)]
@@ -48,30 +48,30 @@ impl<'a, V: Varyings> Corrected<'a, V> {
 /// Puts the varyings at a pixel in the place of what is linear.
 #[inline(never)]
 pub(super) fn correct_at<V: Varyings>(steps: &Steps<V>, position: (i32, i32), varyings: &mut V) {
-    let (lanes, values) = (steps.correction.varyings(), varyings.as_mut());
-    match steps.correction.class() {
-        PerspectiveClass::Affine => correct(values, lanes, |h, _| h),
-        PerspectiveClass::Narrow => {
+    let (planes, values) = (steps.perspective.planes(), varyings.as_mut());
+    match steps.perspective.class() {
+        PerspectiveClass::Affine => correct(values, planes, |h, _| h),
+        PerspectiveClass::Planes32 => {
             let [.., q] = *values else { return };
             let q = Divisor::new(q as u32);
-            correct(values, lanes, |dq, _| q.divide(dq));
+            correct(values, planes, |dq, _| q.divide(dq));
         }
-        PerspectiveClass::Wide => {
-            let q = steps.correction.wide_w().at(position) as u64;
+        PerspectiveClass::Planes64 => {
+            let q = steps.perspective.inverse_w64().at(position) as u64;
             let shift = q.leading_zeros() & 63;
             let q = Divisor::new(((q << shift) >> 32) as u32);
-            correct(values, lanes, |_, lane| q.divide_shifted(((lane.plane.at(position) << shift) >> 32) as i32));
+            correct(values, planes, |_, plane| q.divide_shifted(((plane.wide.at(position) << shift) >> 32) as i32));
         }
     }
 }
 
 /// Replaces each value by what it says of the varying: h, from `quotient`, scaled back.
 #[inline]
-fn correct(values: &mut [i32], lanes: &[Lane], quotient: impl Fn(i32, &Lane) -> i32) {
-    for (value, lane) in values.iter_mut().zip(lanes) {
-        let h = quotient(*value, lane);
+fn correct(values: &mut [i32], planes: &[PerspectivePlane], quotient: impl Fn(i32, &PerspectivePlane) -> i32) {
+    for (value, plane) in values.iter_mut().zip(planes) {
+        let h = quotient(*value, plane);
         // To nearest; the shift is at most 30.
-        *value = lane.base.wrapping_add(h.wrapping_add((1 << lane.shift) >> 1) >> lane.shift);
+        *value = plane.base.wrapping_add(h.wrapping_add((1 << plane.shift) >> 1) >> plane.shift);
     }
 }
 

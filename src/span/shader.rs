@@ -1,6 +1,6 @@
 //! The fragment stage's seam, and the loops over the pixels of a span.
 
-use super::depth::{AnyDepth, DepthState, DepthTest};
+use super::depth::{DepthDyn, DepthState, DepthTest};
 use super::perspective::{correct_at, nth};
 use super::span::{Fragment, Fragments, Steps, TriangleSpan};
 use crate::color::PixelFormat;
@@ -54,13 +54,13 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// Called for shaders of up to three varyings; spans of others come to [`span`](Self::span). One shader's goes with its
     /// [`prepare`](Self::prepare) and [`level`](Self::level): who hands one on hands on all.
     #[inline(always)]
-    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, Self::Varyings, D::Stored>, test: D) {
+    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, Self::Varyings, D::Depth>, test: D) {
         self.span(face, span.fragments(), test);
     }
 
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings, D::Stored>, test: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings, D::Depth>, test: D) {
         fragments(self, face, span, test);
     }
 }
@@ -73,7 +73,7 @@ const CHUNK: usize = 16;
 pub(crate) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    span: Fragments<'_, P, S::Varyings, D::Stored>,
+    span: Fragments<'_, P, S::Varyings, D::Depth>,
     test: D,
 ) {
     if S::Varyings::PERSPECTIVE > 0 {
@@ -87,12 +87,12 @@ pub(crate) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
 fn uncorrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    mut span: Fragments<'_, P, S::Varyings, D::Stored>,
+    mut span: Fragments<'_, P, S::Varyings, D::Depth>,
     test: D,
 ) {
     // Varyings stay where they are.
     let Fragments { ref mut color, ref mut depth, z, ref mut varyings, steps, position } = span;
-    let mut pixels = Pixels { face, z, varyings, steps, position, test: AnyDepth::new(DepthState::OFF) };
+    let mut pixels = Pixels { face, z, varyings, steps, position, test: DepthDyn::new(DepthState::OFF) };
     if !D::ENABLED {
         return fragments_without_depth(shader, color, &mut pixels);
     }
@@ -122,7 +122,7 @@ struct Pixels<'a, V: Varyings> {
     varyings: &'a mut V,
     steps: &'a Steps<V>,
     position: (i32, i32),
-    test: AnyDepth,
+    test: DepthDyn,
 }
 
 /// Draws a span fragment by fragment, in the one loop that a shader is compiled into.
@@ -157,7 +157,7 @@ fn paint_pixels<P: PixelFormat, S: Shader<P> + ?Sized>(
         let depth = (*z >> 16) as u16;
         if test.passes(depth, *stored) {
             let (side, level) = (steps.side, steps.level);
-            let fragment = Fragment { face: *face, varyings: &**varyings, position: *position, depth, side, level };
+            let fragment = Fragment { flat: *face, varyings: &**varyings, position: *position, depth, side, level };
             if shader.paint(&fragment, color) {
                 test.write(depth, stored);
             }
@@ -173,7 +173,7 @@ fn paint_pixels<P: PixelFormat, S: Shader<P> + ?Sized>(
 fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
     face: u32,
-    mut span: Fragments<'_, P, S::Varyings, D::Stored>,
+    mut span: Fragments<'_, P, S::Varyings, D::Depth>,
     test: D,
 ) {
     const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };
@@ -189,7 +189,7 @@ fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
 /// Pixels between two that are divided.
 struct Run<'a, 's, P: PixelFormat, V: Varyings, D: DepthTest> {
     /// What is left of the span. Varyings are what is linear, at the end of the run.
-    span: &'a mut Fragments<'s, P, V, D::Stored>,
+    span: &'a mut Fragments<'s, P, V, D::Depth>,
     face: u32,
     varyings: V,
     change: V,
@@ -227,7 +227,7 @@ impl<P: PixelFormat, V: Varyings, D: DepthTest> Run<'_, '_, P, V, D> {
             let depth = (span.z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
                 let (position, side, level) = (span.position, span.steps.side, span.steps.level);
-                let fragment = Fragment { face: *face, varyings: &*varyings, position, depth, side, level };
+                let fragment = Fragment { flat: *face, varyings: &*varyings, position, depth, side, level };
                 if shader.paint(&fragment, color) {
                     test.write(depth, stored);
                 }

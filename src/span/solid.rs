@@ -12,7 +12,7 @@ const LONG: usize = 9;
 
 /// Draws a span in the colour of a face's word.
 #[inline]
-pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0], D::Stored>, test: D) {
+pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
     if P::DITHER.is_some() {
         return dithered_span(unpacked(face), span, test);
     }
@@ -38,7 +38,7 @@ pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments
 /// A span of one colour, in a dithered format.
 pub(crate) fn dithered_span<P: PixelFormat, D: DepthTest>(
     rgb: [u8; 3],
-    span: Fragments<'_, P, [i32; 0], D::Stored>,
+    span: Fragments<'_, P, [i32; 0], D::Depth>,
     test: D,
 ) {
     let Fragments { color, depth, z, steps, position, .. } = span;
@@ -53,7 +53,7 @@ pub(crate) fn dithered_span<P: PixelFormat, D: DepthTest>(
 #[inline(never)]
 fn tested_span<R: Copy, D: DepthTest>(
     mut color: &mut [R],
-    depth: &mut [D::Stored],
+    depth: &mut [D::Depth],
     mut z: u32,
     mut dz_dx: i32,
     value: R,
@@ -94,7 +94,7 @@ fn run<R: Copy, D: DepthTest>(
     dz_dx: i32,
     value: R,
     colors: &mut [R; RUN],
-    depths: &mut [D::Stored; RUN],
+    depths: &mut [D::Depth; RUN],
 ) {
     let passed = passing(test, depths, *z, dz_dx);
     if passed == RUN {
@@ -122,7 +122,7 @@ fn draw<R: Copy, D: DepthTest>(
     dz_dx: i32,
     value: R,
     color: &mut R,
-    depth: &mut D::Stored,
+    depth: &mut D::Depth,
 ) -> bool {
     let near = (*z >> 16) as u16;
     let passes = test.passes(near, *depth);
@@ -138,7 +138,7 @@ fn draw<R: Copy, D: DepthTest>(
 mod tests {
     use super::*;
     use crate::math::random::Rng;
-    use crate::span::LessWrite;
+    use crate::span::DepthLess;
 
     #[test]
     fn runs_in_two_are_those_pixel_by_pixel() {
@@ -151,9 +151,9 @@ mod tests {
             let depths: [u16; RUN] = core::array::from_fn(|_| if random() % 16 < far { 0 } else { u16::MAX });
             let (mut expected, mut found) = (([0_u16; RUN], depths, z), ([0_u16; RUN], depths, z));
             for (color, depth) in expected.0.iter_mut().zip(&mut expected.1) {
-                draw(LessWrite, &mut expected.2, dz_dx, 7, color, depth);
+                draw(DepthLess, &mut expected.2, dz_dx, 7, color, depth);
             }
-            run(LessWrite, &mut found.2, dz_dx, 7, &mut found.0, &mut found.1);
+            run(DepthLess, &mut found.2, dz_dx, 7, &mut found.0, &mut found.1);
             assert_eq!(found, expected, "{case}");
         }
     }

@@ -1,13 +1,13 @@
 //! A span of pixels, and what is interpolated along it.
 
 use crate::color::PixelFormat;
-use crate::vertex::{Correction, Side, Varyings};
+use crate::vertex::{PerspectiveSetup, Side, Varyings};
 
 /// A fragment that passed the depth test: what the fragment stage sees of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Fragment<'a, V> {
     /// The triangle's word, from [`VertexShader::face`](crate::vertex::VertexShader::face).
-    pub face: u32,
+    pub flat: u32,
     /// Varyings at the pixel's centre.
     pub varyings: &'a V,
     /// The pixel, from the screen's top left corner.
@@ -25,7 +25,7 @@ pub struct Fragment<'a, V> {
 pub struct Fragments<'a, P: PixelFormat, V: Varyings, Z> {
     /// Colours, to be written where the depth test passes.
     pub color: &'a mut [P::Raw],
-    /// Stored depths, as many ([`DepthTest::Stored`](crate::span::DepthTest::Stored)).
+    /// Stored depths, as many ([`DepthTest::Depth`](crate::span::DepthTest::Depth)).
     pub depth: &'a mut [Z],
     /// Depth at the first pixel, 16.16, with the half that rounds it already added.
     pub z: u32,
@@ -49,7 +49,7 @@ pub struct Steps<V: Varyings> {
     /// Change of the varyings a pixel, modulo 2³².
     pub d_dx: V,
     /// What to make of perspective-correct ones.
-    pub correction: V::Correction,
+    pub perspective: V::PerspectiveSetup,
     /// What [`Shader::prepare`](crate::span::Shader::prepare) made of them.
     pub words: [u32; 3],
     /// Which side of the triangle is seen.
@@ -63,7 +63,7 @@ impl<V: Varyings> Steps<V> {
     #[inline]
     pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 3], side: Side) -> Self {
         let (corner, d_dy) = (V::ZERO, V::ZERO);
-        Self { dz_dx, corner, d_dy, d_dx, correction: V::Correction::NONE, words, side, level: 0 }
+        Self { dz_dx, corner, d_dy, d_dx, perspective: V::PerspectiveSetup::NONE, words, side, level: 0 }
     }
 
     /// Varyings of a triangle at a pixel. Other spans come with theirs.
@@ -81,7 +81,7 @@ impl<V: Varyings> Steps<V> {
 pub struct TriangleSpan<'a, P: PixelFormat, V: Varyings, Z> {
     /// Colours, to be written where the depth test passes.
     pub color: &'a mut [P::Raw],
-    /// Stored depths, as many ([`DepthTest::Stored`](crate::span::DepthTest::Stored)).
+    /// Stored depths, as many ([`DepthTest::Depth`](crate::span::DepthTest::Depth)).
     pub depth: &'a mut [Z],
     /// Depth at the first pixel, 16.16, with the half that rounds it already added.
     pub z: u32,

@@ -13,17 +13,17 @@ use super::span::{Fragments, Steps};
 use crate::color::PixelFormat;
 use crate::math::{CoarseDivisor, SMALL_CORE};
 use crate::texture::Texture;
-use crate::vertex::{Correction, Lane, PerspectiveClass, Varyings};
+use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Varyings};
 
 /// Pixels from one division to the next.
 pub(crate) const STEP: usize = RUN;
 
 /// Draws a span of a texture that repeats; the first two varyings are u and v, 16.16. Not for triangles whose perspective
-/// is [`Wide`](PerspectiveClass::Wide).
+/// is [`Planes64`](PerspectiveClass::Planes64).
 #[inline(never)]
 pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings>(
     texture: &T,
-    span: Fragments<'_, P, V, D::Stored>,
+    span: Fragments<'_, P, V, D::Depth>,
     test: D,
 ) {
     let Fragments { color, depth, z, varyings, steps, .. } = span;
@@ -122,7 +122,7 @@ impl Pen {
         test: D,
         walk: &mut Walk,
         colors: &mut [P::Raw; STEP],
-        depths: &mut [D::Stored; STEP],
+        depths: &mut [D::Depth; STEP],
     ) {
         let passed = passing(test, depths, self.z, self.dz_dx);
         let (vu, step) = walk.run();
@@ -142,7 +142,7 @@ impl Pen {
         texture: &T,
         test: D,
         colors: &mut [P::Raw; STEP],
-        depths: &mut [D::Stored; STEP],
+        depths: &mut [D::Depth; STEP],
     ) {
         // Spelled out: at `opt-level = "s"` a loop would stay a loop.
         macro_rules! draw {
@@ -162,7 +162,7 @@ impl Pen {
         texture: &T,
         test: D,
         mut colors: &mut [P::Raw],
-        mut depths: &mut [D::Stored],
+        mut depths: &mut [D::Depth],
     ) {
         while !SMALL_CORE && colors.len() >= 2 {
             let Some(([a, b], rest)) = core::mem::take(&mut colors).split_first_chunk_mut::<2>() else { return };
@@ -184,7 +184,7 @@ impl Pen {
         texture: &T,
         test: D,
         colors: &mut [P::Raw],
-        depths: &mut [D::Stored],
+        depths: &mut [D::Depth],
     ) {
         let left = left(test, depths, self.z, self.dz_dx);
         if left == 0 {
@@ -203,7 +203,7 @@ impl Pen {
         test: D,
         passed: usize,
         colors: &mut [P::Raw],
-        depths: &mut [D::Stored],
+        depths: &mut [D::Depth],
     ) {
         let Some((first, colors)) = colors.split_at_mut_checked(passed) else { return };
         let Some(depths) = depths.get_mut(passed..) else { return };
@@ -219,7 +219,7 @@ impl Pen {
         texture: &T,
         test: D,
         color: &mut P::Raw,
-        stored: &mut D::Stored,
+        stored: &mut D::Depth,
     ) {
         let (depth, vu) = ((self.z >> 16) as u16, self.vu);
         self.z = self.z.wrapping_add_signed(self.dz_dx);
@@ -275,13 +275,13 @@ impl Walk {
         } else {
             shift = most.leading_zeros();
         }
-        if steps.correction.class() == PerspectiveClass::Affine {
+        if steps.perspective.class() == PerspectiveClass::Affine {
             (q, dq, shift) = (0, 0, 0);
         }
         let shift = shift & 31;
         let at = [q, value(at, 0), value(at, 1)];
         let step = [dq, value(step, 0), value(step, 1)];
-        let lanes = steps.correction.varyings();
+        let planes = steps.perspective.planes();
         let along = |k: usize| {
             let (at, step) = (value(&at, k) << shift, value(&step, k) << shift);
             (at.wrapping_sub(step << 4), step << 4, at.wrapping_add(step.wrapping_mul(way)))
@@ -291,8 +291,8 @@ impl Walk {
             at: [q.0, u.0, v.0],
             step: [q.1, u.1, v.1],
             uv: (0, 0),
-            u: Scale::new(lanes.first()),
-            v: Scale::new(lanes.get(1)),
+            u: Scale::new(planes.first()),
+            v: Scale::new(planes.get(1)),
             end: [q.2, u.2, v.2],
             dz_dx: steps.dz_dx,
         }
@@ -348,8 +348,8 @@ struct Scale {
 
 impl Scale {
     #[inline(always)]
-    fn new(lane: Option<&Lane>) -> Self {
-        let (base, shift) = lane.map_or((0, 0), |lane| (lane.base, lane.shift & 31));
+    fn new(plane: Option<&PerspectivePlane>) -> Self {
+        let (base, shift) = plane.map_or((0, 0), |plane| (plane.base, plane.shift & 31));
         if SMALL_CORE {
             Self { half: (1 << shift) >> 1, by: shift as i32, base }
         } else {
@@ -375,7 +375,7 @@ impl Scale {
 
 #[cfg(test)]
 mod tests {
-    use super::super::depth::{AnyDepth, Compare, DepthState, LessWrite};
+    use super::super::depth::{Compare, DepthDyn, DepthLess, DepthState};
     use super::super::perspective::Corrected;
     use super::*;
     use crate::math::random::Rng;
@@ -402,9 +402,9 @@ mod tests {
             }
             let (mut expected, mut found) = (([0_u16; STEP], depths), ([0_u16; STEP], depths));
             let (colors, depths) = (&mut expected.0[..length], &mut expected.1[..length]);
-            pen().rest::<Rgb565, _, _>(tile, LessWrite, colors, depths);
+            pen().rest::<Rgb565, _, _>(tile, DepthLess, colors, depths);
             let (colors, depths) = (&mut found.0[..length], &mut found.1[..length]);
-            pen().few_in_two::<Rgb565, _, _>(tile, LessWrite, colors, depths);
+            pen().few_in_two::<Rgb565, _, _>(tile, DepthLess, colors, depths);
             assert_eq!(found, expected, "{length} {hidden}");
         }
     }
@@ -425,10 +425,10 @@ mod tests {
             let changes = [per_pixel(ends[0][0], ends[0][1]), per_pixel(ends[1][0], ends[1][1]), per_pixel(q[0], q[1])];
             steps.d_dx.as_mut().copy_from_slice(&changes);
             let affine = case % 8 == 0;
-            if let Some((class, _, lanes)) = steps.correction.lanes() {
-                *class = if affine { PerspectiveClass::Affine } else { PerspectiveClass::Narrow };
-                for lane in lanes {
-                    (lane.base, lane.shift) = (random() as i32 >> 4, random() % 29);
+            if let Some((class, _, planes)) = steps.perspective.parts_mut() {
+                *class = if affine { PerspectiveClass::Affine } else { PerspectiveClass::Planes32 };
+                for plane in planes {
+                    (plane.base, plane.shift) = (random() as i32 >> 4, random() % 29);
                 }
             }
             let mut exact = Corrected::new(corner, &steps, (0, 0));
@@ -436,9 +436,9 @@ mod tests {
             walk.run();
             let check = |walk: &Walk, exact: &Corrected<'_, Perspective<2, 3>>| {
                 let (found, expected) = ([walk.uv.0, walk.uv.1], exact.varyings().corrected());
-                for ((found, expected), lane) in found.iter().zip(expected).zip(steps.correction.varyings()) {
-                    let quotient = i64::from(expected - lane.base).abs();
-                    let bound = if affine { 0 } else { (quotient >> 18) + (200 >> lane.shift) + 1 };
+                for ((found, expected), plane) in found.iter().zip(expected).zip(steps.perspective.planes()) {
+                    let quotient = i64::from(expected - plane.base).abs();
+                    let bound = if affine { 0 } else { (quotient >> 18) + (200 >> plane.shift) + 1 };
                     let off = (i64::from(*found) - i64::from(expected)).abs();
                     assert!(off <= bound, "{case}: {off} units, not {bound}");
                 }
@@ -475,10 +475,10 @@ mod tests {
                 if !in_two {
                     (pen.vu, pen.step) = walk.run();
                 }
-                let any = AnyDepth::new(DepthState { compare: Compare::Greater, write: false });
+                let any = DepthDyn::new(DepthState { compare: Compare::Greater, write: false });
                 match (in_two, greater) {
-                    (false, false) => pen.run::<Rgb565, _, _>(tile, LessWrite, colors_mut, depths_mut),
-                    (true, false) => pen.run_in_two::<Rgb565, _, _>(tile, LessWrite, &mut walk, colors_mut, depths_mut),
+                    (false, false) => pen.run::<Rgb565, _, _>(tile, DepthLess, colors_mut, depths_mut),
+                    (true, false) => pen.run_in_two::<Rgb565, _, _>(tile, DepthLess, &mut walk, colors_mut, depths_mut),
                     (false, true) => pen.run::<Rgb565, _, _>(tile, any, colors_mut, depths_mut),
                     (true, true) => pen.run_in_two::<Rgb565, _, _>(tile, any, &mut walk, colors_mut, depths_mut),
                 }

@@ -166,14 +166,14 @@ fn depths<'r, D: DepthTest>(
     row: i32,
     width: u16,
     columns: &Range<i32>,
-) -> &'r mut [D::Stored] {
+) -> &'r mut [D::Depth] {
     let start = (row as usize).wrapping_mul(usize::from(width)).wrapping_add(columns.start as usize);
     D::stored(depth, nothing, start, (columns.end - columns.start) as usize)
 }
 
 /// Tests a depth against the stored one, and leaves it if it passes.
 #[inline(always)]
-fn passes<D: DepthTest>(test: D, z: u16, stored: &mut D::Stored) -> bool {
+fn passes<D: DepthTest>(test: D, z: u16, stored: &mut D::Depth) -> bool {
     let passes = test.passes(z, *stored);
     if passes {
         test.write(z, stored);

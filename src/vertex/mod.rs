@@ -20,6 +20,6 @@ pub use project::{DepthScale, ScreenVertex};
 pub(crate) use project::{inverse_w, signed_area, small};
 pub use shader::{Face, Side, VertexRef, VertexShader};
 pub(crate) use transform::{Projected, ScreenMatrix, Transform};
-pub(crate) use varyings::{Correction, Lane, MAX_IN_REGISTERS, PerspectiveClass, WidePlane};
+pub(crate) use varyings::{MAX_IN_REGISTERS, PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64};
 pub use varyings::{Perspective, Varyings};
 pub use viewport::{Viewport, ViewportError};

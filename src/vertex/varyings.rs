@@ -5,7 +5,7 @@
 //! linear in space:          v = Σ bᵢ vᵢ/wᵢ  /  Σ bᵢ/wᵢ
 //! ```
 //! Plain arrays are interpolated the first way. [`Perspective`] divides a part of itself; what it takes to do so is kept
-//! in its [`Correction`], which for arrays is nothing at all.
+//! in its [`PerspectiveSetup`], which for arrays is nothing at all.
 
 use core::fmt::Debug;
 
@@ -23,7 +23,7 @@ pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
     /// 1 / w there.
     const PERSPECTIVE: usize = 0;
     /// What the fragment stage must know of a triangle to correct them.
-    type Correction: Correction;
+    type PerspectiveSetup: PerspectiveSetup;
 
     /// Adds `change`, modulo 2³².
     #[inline]
@@ -53,7 +53,7 @@ pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
 impl<const N: usize> Varyings for [i32; N] {
     const LEN: usize = N;
     const ZERO: Self = [0; N];
-    type Correction = ();
+    type PerspectiveSetup = ();
 
     #[inline(always)]
     fn step(&mut self, change: &Self) {
@@ -195,28 +195,28 @@ impl<const P: usize, const N: usize> Varyings for Perspective<P, N> {
     const LEN: usize = N;
     const ZERO: Self = Self([0; N]);
     const PERSPECTIVE: usize = P;
-    type Correction = Lanes<P>;
+    type PerspectiveSetup = PerspectivePlanes<P>;
 }
 
-/// What is known of a triangle's perspective, once a triangle.
-pub trait Correction: Copy + Debug {
-    /// Of a triangle without perspective.
+/// Perspective of a triangle, as far as its fragments need it to correct varyings: worked out once per triangle.
+pub trait PerspectiveSetup: Copy + Debug {
+    /// Perspective of a triangle whose varyings are linear on the screen.
     const NONE: Self;
 
-    /// How much there is to correct.
+    /// Returns how much there is to correct.
     fn class(&self) -> PerspectiveClass;
 
-    /// 1 / w, and what belongs to each perspective-correct varying.
-    fn lanes(&mut self) -> Option<(&mut PerspectiveClass, &mut WidePlane, &mut [Lane])>;
+    /// Returns the class, the plane of 1 / w in 64 bits, and the planes of perspective-correct varyings; `None` if there are none.
+    fn parts_mut(&mut self) -> Option<(&mut PerspectiveClass, &mut Plane64, &mut [PerspectivePlane])>;
 
-    /// What belongs to each perspective-correct varying.
-    fn varyings(&self) -> &[Lane];
+    /// Returns the planes of perspective-correct varyings.
+    fn planes(&self) -> &[PerspectivePlane];
 
-    /// 1 / w, where it is [`Wide`](PerspectiveClass::Wide).
-    fn wide_w(&self) -> WidePlane;
+    /// Returns the plane of 1 / w, of use where the class is [`Planes64`](PerspectiveClass::Planes64).
+    fn inverse_w64(&self) -> Plane64;
 }
 
-impl Correction for () {
+impl PerspectiveSetup for () {
     const NONE: Self = ();
 
     #[inline(always)]
@@ -225,18 +225,18 @@ impl Correction for () {
     }
 
     #[inline(always)]
-    fn lanes(&mut self) -> Option<(&mut PerspectiveClass, &mut WidePlane, &mut [Lane])> {
+    fn parts_mut(&mut self) -> Option<(&mut PerspectiveClass, &mut Plane64, &mut [PerspectivePlane])> {
         None
     }
 
     #[inline(always)]
-    fn varyings(&self) -> &[Lane] {
+    fn planes(&self) -> &[PerspectivePlane] {
         &[]
     }
 
     #[inline(always)]
-    fn wide_w(&self) -> WidePlane {
-        WidePlane::ZERO
+    fn inverse_w64(&self) -> Plane64 {
+        Plane64::ZERO
     }
 }
 
@@ -246,15 +246,15 @@ pub enum PerspectiveClass {
     /// So little that varyings are linear on the screen.
     #[default]
     Affine,
-    /// So much that they have to be divided, from planes in 32 bits.
-    Narrow,
-    /// Far more; from planes in 64 bits.
-    Wide,
+    /// Varyings have to be divided; planes in 32 bits are exact enough for that.
+    Planes32,
+    /// Varyings have to be divided, and that takes planes in 64 bits.
+    Planes64,
 }
 
 /// A plane with 32 fractional bits more than others have, modulo 2⁶⁴: value at the screen's corner and changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct WidePlane {
+pub struct Plane64 {
     /// The value at the pixel in the screen's top left corner.
     pub base: i64,
     /// Change from one pixel to the next on the right.
@@ -263,7 +263,7 @@ pub struct WidePlane {
     pub dy: i64,
 }
 
-impl WidePlane {
+impl Plane64 {
     /// Zero everywhere.
     pub const ZERO: Self = Self { base: 0, dx: 0, dy: 0 };
 
@@ -273,30 +273,30 @@ impl WidePlane {
     }
 }
 
-/// What belongs to a perspective-correct varying: it is `base` + (h >> `shift`), h being interpolated.
+/// A perspective-correct varying on a triangle: it is `base` + (h >> `shift`), h being interpolated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Lane {
+pub struct PerspectivePlane {
     /// The value at the first vertex.
     pub base: i32,
     /// By how much differences from it are scaled up, so that the largest is in 2²⁷..2²⁸.
     pub shift: u32,
-    /// h / w, where it is [`Wide`](PerspectiveClass::Wide).
-    pub plane: WidePlane,
+    /// h / w, where it is [`Planes64`](PerspectiveClass::Planes64).
+    pub wide: Plane64,
 }
 
-/// The [`Correction`] of `P` varyings.
+/// The [`PerspectiveSetup`] of `P` varyings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Lanes<const P: usize> {
+pub struct PerspectivePlanes<const P: usize> {
     class: PerspectiveClass,
-    wide_w: WidePlane,
-    varyings: [Lane; P],
+    inverse_w64: Plane64,
+    planes: [PerspectivePlane; P],
 }
 
-impl<const P: usize> Correction for Lanes<P> {
+impl<const P: usize> PerspectiveSetup for PerspectivePlanes<P> {
     const NONE: Self = Self {
         class: PerspectiveClass::Affine,
-        wide_w: WidePlane::ZERO,
-        varyings: [Lane { base: 0, shift: 0, plane: WidePlane::ZERO }; P],
+        inverse_w64: Plane64::ZERO,
+        planes: [PerspectivePlane { base: 0, shift: 0, wide: Plane64::ZERO }; P],
     };
 
     #[inline]
@@ -305,17 +305,17 @@ impl<const P: usize> Correction for Lanes<P> {
     }
 
     #[inline]
-    fn lanes(&mut self) -> Option<(&mut PerspectiveClass, &mut WidePlane, &mut [Lane])> {
-        Some((&mut self.class, &mut self.wide_w, &mut self.varyings))
+    fn parts_mut(&mut self) -> Option<(&mut PerspectiveClass, &mut Plane64, &mut [PerspectivePlane])> {
+        Some((&mut self.class, &mut self.inverse_w64, &mut self.planes))
     }
 
     #[inline]
-    fn varyings(&self) -> &[Lane] {
-        &self.varyings
+    fn planes(&self) -> &[PerspectivePlane] {
+        &self.planes
     }
 
     #[inline]
-    fn wide_w(&self) -> WidePlane {
-        self.wide_w
+    fn inverse_w64(&self) -> Plane64 {
+        self.inverse_w64
     }
 }

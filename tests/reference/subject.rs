@@ -47,7 +47,7 @@ impl Shader<Rgb565> for Reached<'_> {
         Some(1)
     }
 
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0], D::Stored>, _: D) {
+    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0], D::Depth>, _: D) {
         let (x, y) = span.position;
         for (k, color) in span.color.iter_mut().enumerate() {
             *color = 1;
@@ -73,7 +73,7 @@ impl VertexShader for Numbered {
 
 impl Shader<Rgb565> for Numbered {
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
-        Some(fragment.face as u16)
+        Some(fragment.flat as u16)
     }
 }
 
