@@ -10,6 +10,7 @@ use reference::scenes::{ClipKind, clip_triangle as random_triangle};
 use reference::subject::Subject;
 use std::collections::BTreeSet;
 use support::{Soup, angle, strips, vector, whole};
+use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::internals::{ClipVertex, Outcode, clip_triangle};
 use zstrip::light::Light;
@@ -337,7 +338,9 @@ fn extreme_positions_and_matrices_never_panic() {
             .to_object(&Affine::rotation_x(angle(&mut rng)));
         let corner = [(); 2].map(|()| rng.pick(&[-8192_i16, 8192, 0, 3]));
         let size = [(); 2].map(|()| rng.pick(&[1_u16, 4096, 20]));
-        let viewport = Viewport::new(corner[0], corner[1], size[0], size[1]).expect("a viewport");
+        let viewport =
+            Viewport::new(Point::new(corner[0].into(), corner[1].into()), Size::new(size[0].into(), size[1].into()))
+                .expect("a viewport");
         for positions in [
             Positions::Exact(&exact),
             Positions::Homogeneous(&homogeneous),

@@ -9,6 +9,7 @@ use reference::rng::Rng;
 use reference::scenes::depth_soup;
 use reference::subject::Subject;
 use std::cell::Cell;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, Renderer};
 use zstrip::internals::{Projected, Transform};
@@ -218,8 +219,8 @@ fn given_bounds_must_hold_the_vertices() {
     let good = *square().bounds();
     let with = |bounds| Mesh::new(MeshData { bounds: Some(bounds), ..quad(&SQUARE) }).map(|_| ());
     assert_eq!(with(good), Ok(()));
-    assert_eq!(with(Bounds { half: Vec3::from_milli(1, 1, 1), ..good }), Err(MeshError::Bounds(0)));
-    assert_eq!(with(Bounds { half: -good.half, ..good }), Err(MeshError::Bounds(0)));
+    assert_eq!(with(Bounds { half: Vec3::from_milli(1, 1, 1), ..good }), Err(MeshError::Bounds { vertex: 0 }));
+    assert_eq!(with(Bounds { half: -good.half, ..good }), Err(MeshError::Bounds { vertex: 0 }));
 }
 
 #[test]
@@ -257,7 +258,7 @@ fn short_path_is_not_taken_where_rounding_leaves_its_range() {
     let points = [[-32_768; 3], [32_766; 3], [-32_768, 32_766, -32_768]];
     let positions = Positions::Quantized { points: &points, scale: Scalar::ONE, offset: Vec3::ZERO };
     let mesh = Mesh::new(MeshData::new(positions)).expect("a mesh");
-    let viewport = Viewport::full(4096, 4096).expect("a viewport");
+    let viewport = Viewport::full(Size::new(4096, 4096)).expect("a viewport");
     let mut short = 0;
     for nudge in -3000..3000_i64 {
         let w = [1_431_655_800, 858_993_514, 613_566_821, 7_199_183_431 + 40 * nudge];

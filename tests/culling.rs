@@ -7,6 +7,7 @@ mod support;
 
 use reference::rng::Rng;
 use support::{apply, difference, matrix, on_screen, rigid, scalar, strips, vector};
+use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Outcode, ScreenMatrix};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -59,7 +60,8 @@ fn boxes_are_culled_only_where_none_of_their_points_is_seen() {
         let size = [(); 2].map(|()| rng.between(1, 640));
         let corner = [(); 2].map(|()| rng.between(-100, 100));
         let viewport =
-            Viewport::new(corner[0] as i16, corner[1] as i16, size[0] as u16, size[1] as u16).expect("a viewport");
+            Viewport::new(Point::new(corner[0] as i32, corner[1] as i32), Size::new(size[0] as u32, size[1] as u32))
+                .expect("a viewport");
         let range = |rng: &mut Rng, start: i32, size: i32| {
             let low = start + rng.between(0, size - 1);
             low..low + rng.between(1, 400)

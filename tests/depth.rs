@@ -5,6 +5,7 @@ mod support;
 
 use reference::rng::Rng;
 use support::{strips, whole};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Projected, Transform};
 use zstrip::math::{Affine, Angle16, DepthPrecision, PrecisionError, ProjectionError, Projective, Scalar, Vec3};
@@ -220,13 +221,13 @@ fn near_plane_for_a_bin_is_the_smallest() {
 #[test]
 fn precision_that_cannot_be_is_refused() {
     let (one, ten) = (Scalar::ONE, Scalar::from_num(10));
-    assert_eq!(DepthPrecision::new(-one, ten), Err(ProjectionError::NearNotPositive(-65_536)));
-    assert_eq!(DepthPrecision::new(ten, one), Err(ProjectionError::NearNotBeforeFar(655_360, 65_536)));
-    assert_eq!(DepthPrecision::near_for(one, ten, one), Err(PrecisionError::Distance(655_360)));
-    assert_eq!(DepthPrecision::near_for(ten, one, Scalar::ZERO), Err(PrecisionError::Bin(0)));
+    assert_eq!(DepthPrecision::new(-one, ten), Err(ProjectionError::NearNotPositive { near: -one }));
+    assert_eq!(DepthPrecision::new(ten, one), Err(ProjectionError::NearNotBeforeFar { near: ten, far: one }));
+    assert_eq!(DepthPrecision::near_for(one, ten, one), Err(PrecisionError::Distance { distance: ten, far: one }));
+    assert_eq!(DepthPrecision::near_for(ten, one, Scalar::ZERO), Err(PrecisionError::Bin { bin: Scalar::ZERO }));
     let fine = DepthPrecision::near_for(Scalar::from_num(30_000), ten, Scalar::DELTA);
-    assert!(matches!(fine, Err(PrecisionError::TooFine(near)) if near > 655_360), "{fine:?}");
-    assert_eq!(PrecisionError::Bin(0).to_string(), "a step of depth cannot be 0 in size");
+    assert!(matches!(fine, Err(PrecisionError::TooFine { near, .. }) if near > ten), "{fine:?}");
+    assert_eq!(PrecisionError::Bin { bin: Scalar::ZERO }.to_string(), "a step of depth of 0, must be above 0");
 }
 
 /// Vertices of random meshes through random cameras, against 65,535 z / far in floating point.
@@ -247,7 +248,7 @@ fn uniform_depth_of_vertices_is_within_half_a_step() {
         let points: Vec<_> = (0..30).map(|_| [(); 3].map(|()| rng.between(-32_768, 32_767) as i16)).collect();
         let positions = Positions::Quantized { points: &points, scale: Scalar::ONE, offset: Vec3::ZERO };
         let mesh = Mesh::new(MeshData::new(positions)).expect("a mesh");
-        let viewport = Viewport::full(320, 240).expect("a viewport");
+        let viewport = Viewport::full(Size::new(320, 240)).expect("a viewport");
         let mut transform = Transform::new(&mvp, &viewport, &mesh, false);
         transform.set_depth_scale(DepthScale::Uniform { far });
         short += u32::from(transform.is_short());

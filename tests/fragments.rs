@@ -6,6 +6,7 @@ mod support;
 use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{scalar, strips, whole};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::internals::{PixelRect, Projected, Transform, signed_area, spans};
 use zstrip::math::{Projective, Scalar, Vec3};
@@ -50,7 +51,7 @@ where
 #[test]
 fn every_walk_covers_the_pixels_of_the_rasterizer() {
     let mut rng = Rng::new(77);
-    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     let mut covered = 0;
     for case in 0..400 {
         let reach = [1.2, 0.3, 5.0][case % 3];

@@ -10,6 +10,7 @@ use scenes::{torus, wires};
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 use support::whole;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Line, PixelRect, Projected, Transform};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -82,7 +83,7 @@ const AROUND: [[i64; 2]; 13] = [
 
 #[test]
 fn visible_edges_have_no_gaps_and_hidden_ones_do_not_shine_through() {
-    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     let screen = PixelRect { x: 0..i32::from(SCREEN.0), y: 0..i32::from(SCREEN.1) };
     let (mut visible, mut hidden, mut unsure) = (0, 0, 0);
     for turn in [Angle16(1234), Angle16(20_000), Angle16(50_000)] {

@@ -11,6 +11,7 @@ use support::{difference, strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::embedded_graphics_core::Pixel;
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
+use zstrip::embedded_graphics_core::geometry::Point;
 use zstrip::embedded_graphics_core::geometry::{OriginDimensions, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, GrayColor, PixelColor, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
@@ -47,27 +48,30 @@ fn wrong_meshes_are_refused_with_the_offending_number() {
     assert_eq!(past, Index { at: 4, index: 4, vertices: 4 });
     assert!(past.to_string().contains("index 4 at position 4"), "{past}");
     assert_eq!(with(&[65_535, 0, 0], Topology::Fan), Index { at: 0, index: 65_535, vertices: 4 });
-    assert_eq!(with(&[0, 1], Topology::Triangles), Incomplete(2));
-    assert_eq!(with(&[0, 1], Topology::Strip), Incomplete(2));
-    assert_eq!(with(&[0], Topology::Fan), Incomplete(1));
-    assert_eq!(with(&[0, 1, 2, 3, 0], Topology::Quads), Incomplete(5));
-    assert_eq!(told(Mesh::new(data(&four))), Incomplete(4));
+    assert_eq!(with(&[0, 1], Topology::Triangles), Incomplete { indices: 2, unit: 3 });
+    assert_eq!(with(&[0, 1], Topology::Strip), Incomplete { indices: 2, unit: 3 });
+    assert_eq!(with(&[0], Topology::Fan), Incomplete { indices: 1, unit: 3 });
+    assert_eq!(with(&[0, 1, 2, 3, 0], Topology::Quads), Incomplete { indices: 5, unit: 4 });
+    assert_eq!(told(Mesh::new(data(&four))), Incomplete { indices: 4, unit: 3 });
 
     let many = vec![Vec3::ZERO; 65_536];
-    assert_eq!(told(Mesh::new(data(&many))), TooManyVertices(65_536));
+    assert_eq!(told(Mesh::new(data(&many))), TooManyVertices { vertices: 65_536 });
     let long = vec![0; 65_538];
     let strip = MeshData { indices: Some(&long), topology: Topology::Strip, ..data(&four) };
-    assert_eq!(told(Mesh::new(strip)), TooManyTriangles(65_536));
+    assert_eq!(told(Mesh::new(strip)), TooManyTriangles { triangles: 65_536 });
 
     let three = data(&TRIANGLE);
-    assert_eq!(told(Mesh::new(MeshData { normals: Some(&[[0; 3]; 2]), ..three })), Normals(2));
-    assert_eq!(told(Mesh::new(MeshData { face_normals: Some(&[[0; 3]; 2]), ..three })), FaceNormals(2));
-    assert_eq!(told(Mesh::new(MeshData { colors: Some(&[[0; 3]; 4]), ..three })), Colors(4));
-    assert_eq!(told(Mesh::new(MeshData { uvs: Some(&[]), ..three })), Uvs(0));
+    assert_eq!(told(Mesh::new(MeshData { normals: Some(&[[0; 3]; 2]), ..three })), Normals { normals: 2, vertices: 3 });
+    assert_eq!(
+        told(Mesh::new(MeshData { face_normals: Some(&[[0; 3]; 2]), ..three })),
+        FaceNormals { face_normals: 2, triangles: 1 }
+    );
+    assert_eq!(told(Mesh::new(MeshData { colors: Some(&[[0; 3]; 4]), ..three })), Colors { colors: 4, vertices: 3 });
+    assert_eq!(told(Mesh::new(MeshData { uvs: Some(&[]), ..three })), Uvs { uvs: 0, vertices: 3 });
     for bits in [0, -1, i32::MIN] {
         let points = [[0; 3]; 3];
         let quantized = Positions::Quantized { points: &points, scale: Scalar::from_bits(bits), offset: Vec3::ZERO };
-        assert_eq!(told(Mesh::new(MeshData::new(quantized))), Scale(bits));
+        assert_eq!(told(Mesh::new(MeshData::new(quantized))), Scale { scale: Scalar::from_bits(bits) });
     }
 }
 
@@ -84,7 +88,7 @@ fn wrong_hierarchies_are_refused_with_the_offending_node() {
         ([node(2, 65_535, 65_535), node(2, 0, 1)], 0),
     ] {
         let mesh = Mesh::new(MeshData { hierarchy: Some(&nodes), ..data(&TRIANGLE) });
-        assert_eq!(told(mesh), MeshError::Hierarchy(wrong), "{nodes:?}");
+        assert_eq!(told(mesh), MeshError::Hierarchy { node: wrong, nodes: 2 }, "{nodes:?}");
     }
     let nodes = [node(2, 0, 0), node(2, 0, 1)];
     let good = MeshData { hierarchy: Some(&nodes), ..data(&TRIANGLE) };
@@ -93,13 +97,15 @@ fn wrong_hierarchies_are_refused_with_the_offending_node() {
 
 #[test]
 fn wrong_viewports_and_screens_are_refused_with_their_size() {
-    assert_eq!(told(Viewport::new(0, 0, 0, 9)), ViewportError::Empty(0, 9));
-    assert_eq!(told(Viewport::full(9, 0)), ViewportError::Empty(9, 0));
-    assert_eq!(told(Viewport::full(4097, 1)), ViewportError::TooLarge(4097, 1));
-    assert_eq!(told(Viewport::full(1, 65_535)), ViewportError::TooLarge(1, 65_535));
-    assert_eq!(told(Viewport::new(8193, 0, 1, 1)), ViewportError::TooFar(8193, 0));
-    assert_eq!(told(Viewport::new(0, i16::MIN, 1, 1)), ViewportError::TooFar(0, i16::MIN));
-    assert!(Viewport::new(-8192, 8192, 4096, 4096).is_ok());
+    let large = |w, h| ViewportError::TooLarge { size: Size::new(w, h) };
+    let at = |x, y, w, h| Viewport::new(Point::new(x, y), Size::new(w, h));
+    assert_eq!(told(at(0, 0, 0, 9)), ViewportError::Empty { size: Size::new(0, 9) });
+    assert_eq!(told(Viewport::full(Size::new(9, 0))), ViewportError::Empty { size: Size::new(9, 0) });
+    assert_eq!(told(Viewport::full(Size::new(4097, 1))), large(4097, 1));
+    assert_eq!(told(Viewport::full(Size::new(1, u32::MAX))), large(1, u32::MAX));
+    assert_eq!(told(at(8193, 0, 1, 1)), ViewportError::TooFar { top_left: Point::new(8193, 0) });
+    assert_eq!(told(at(0, i32::MIN, 1, 1)), ViewportError::TooFar { top_left: Point::new(0, i32::MIN) });
+    assert!(at(-8192, 8192, 4096, 4096).is_ok());
 
     let build = |screen, color: usize, depth: usize| {
         let (mut color, mut depth) = (vec![0; color], vec![0; depth]);
@@ -109,10 +115,13 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
     assert_eq!(told(build((320, 240), 319, 320)), RendererError::ColorTooShort(319, 320));
     assert_eq!(told(build((320, 240), 320, 319)), RendererError::DepthTooShort(319, 320));
     assert_eq!(told(build((320, 240), 0, 0)), RendererError::ColorTooShort(0, 320));
-    let empty = RendererError::Screen(ViewportError::Empty(0, 240));
+    let empty = RendererError::Screen(ViewportError::Empty { size: Size::new(0, 240) });
     assert_eq!(told(build((0, 240), 100, 100)), empty);
-    assert_eq!(told(build((320, 0), 400, 400)), RendererError::Screen(ViewportError::Empty(320, 0)));
-    let large = RendererError::Screen(ViewportError::TooLarge(5000, 1));
+    assert_eq!(
+        told(build((320, 0), 400, 400)),
+        RendererError::Screen(ViewportError::Empty { size: Size::new(320, 0) })
+    );
+    let large = RendererError::Screen(ViewportError::TooLarge { size: Size::new(5000, 1) });
     assert_eq!(told(build((5000, 1), 5000, 5000)), large);
     // The smaller buffer decides, and no strip is higher than the screen.
     assert_eq!(build((320, 240), 320 * 16, 320 * 9 + 319), Ok(9));
@@ -153,18 +162,18 @@ fn wrong_cameras_are_refused_with_the_offending_numbers() {
     let right = Angle16::from_degrees(90);
     let perspective = |angle, aspect, near, far| told(Projective::perspective(angle, aspect, near, far));
     use ProjectionError::*;
-    assert_eq!(perspective(right, (4, 3), Scalar::ZERO, one), NearNotPositive(0));
-    assert_eq!(perspective(right, (4, 3), -one, one), NearNotPositive(-65_536));
-    assert_eq!(perspective(right, (4, 3), two, one), NearNotBeforeFar(131_072, 65_536));
-    assert_eq!(perspective(right, (4, 3), one, one), NearNotBeforeFar(65_536, 65_536));
-    assert_eq!(perspective(Angle16(0), (4, 3), one, two), FieldOfView(Angle16(0)));
-    assert_eq!(perspective(Angle16(0x8000), (4, 3), one, two), FieldOfView(Angle16(0x8000)));
-    assert_eq!(perspective(right, (0, 3), one, two), Aspect(0, 3));
-    assert_eq!(perspective(right, (4, 0), one, two), Aspect(4, 0));
+    assert_eq!(perspective(right, (4, 3), Scalar::ZERO, one), NearNotPositive { near: Scalar::ZERO });
+    assert_eq!(perspective(right, (4, 3), -one, one), NearNotPositive { near: -one });
+    assert_eq!(perspective(right, (4, 3), two, one), NearNotBeforeFar { near: two, far: one });
+    assert_eq!(perspective(right, (4, 3), one, one), NearNotBeforeFar { near: one, far: one });
+    assert_eq!(perspective(Angle16(0), (4, 3), one, two), FieldOfView { angle: Angle16(0) });
+    assert_eq!(perspective(Angle16(0x8000), (4, 3), one, two), FieldOfView { angle: Angle16(0x8000) });
+    assert_eq!(perspective(right, (0, 3), one, two), Aspect { width: 0, height: 3 });
+    assert_eq!(perspective(right, (4, 0), one, two), Aspect { width: 4, height: 0 });
     let box_of = |x, y, z| told(Projective::orthographic(x, y, z));
-    assert_eq!(box_of((one, one), (one, two), (one, two)), EmptyBox(65_536, 65_536));
-    assert_eq!(box_of((one, two), (two, two), (one, two)), EmptyBox(131_072, 131_072));
-    assert_eq!(box_of((one, two), (one, two), (two, one)), NearNotBeforeFar(131_072, 65_536));
+    assert_eq!(box_of((one, one), (one, two), (one, two)), EmptyBox { low: one, high: one });
+    assert_eq!(box_of((one, two), (two, two), (one, two)), EmptyBox { low: two, high: two });
+    assert_eq!(box_of((one, two), (one, two), (two, one)), NearNotBeforeFar { near: two, far: one });
     for (eye, target, up) in
         [(Vec3::X, Vec3::X, Vec3::Y), (Vec3::X, Vec3::Y, Vec3::ZERO), (Vec3::Y, Vec3::ZERO, Vec3::Y)]
     {

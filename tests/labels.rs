@@ -363,8 +363,8 @@ fn points_are_projected_to_where_vertices_would_be() {
         )
         .expect("a camera");
         let mvp = camera * (Affine::translation(Vec3::from_ints(0, 0, -10)) * rigid(&mut rng, 4.0));
-        let viewport =
-            Viewport::new(rng.between(-50, 50) as i16, 9, rng.between(1, 300) as u16, 200).expect("a viewport");
+        let viewport = Viewport::new(Point::new(rng.between(-50, 50), 9), Size::new(rng.between(1, 300) as u32, 200))
+            .expect("a viewport");
         let point = vector(&mut rng, 15.0);
         let found = projected(point, &mvp, viewport);
 
@@ -411,7 +411,7 @@ fn points_have_the_depth_of_vertices_on_either_scale() {
     let camera =
         Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -4));
-    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     for depth_scale in [DepthScale::Perspective, DepthScale::Uniform { far: Scalar::ONE * 9 }] {
         let state = State { depth_scale, ..State::DEFAULT };
         let mut depths = Vec::new();

@@ -7,6 +7,7 @@ mod support;
 
 use reference::rng::Rng;
 use support::whole;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
@@ -32,7 +33,7 @@ fn items_are_sorted_from_far_to_near() {
 
 /// Draws a mesh with a depth buffer, and sorted without one: pixels that differ, pixels drawn, and the order.
 fn compare(mesh: &Mesh<'_>, mvp: &Projective) -> (usize, usize, Order) {
-    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     let mut memory = vec![Sortable::default(); mesh.triangle_count()];
     let mut indices = vec![0; 3 * mesh.triangle_count()];
     let order = painters_order(mesh, mvp, &viewport, &mut memory, &mut indices).expect("room for all");
@@ -120,13 +121,16 @@ fn rings_and_intersections_are_counted() {
 fn what_cannot_be_sorted_is_refused() {
     let mesh = &scenes::polygons::CYCLE;
     let count = mesh.triangle_count();
-    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     let sort = |mesh: &Mesh<'_>, places: usize, indices: usize| {
         let (mut memory, mut indices) = (vec![Sortable::default(); places], vec![0; indices]);
         painters_order(mesh, &Projective::IDENTITY, &viewport, &mut memory, &mut indices)
     };
-    assert_eq!(sort(mesh, count - 1, 3 * count), Err(SortError::TooShort(count - 1, count)));
-    assert_eq!(sort(mesh, count, 3 * count - 1), Err(SortError::IndicesTooShort(3 * count - 1, 3 * count)));
+    assert_eq!(sort(mesh, count - 1, 3 * count), Err(SortError::TooShort { found: count - 1, expected: count }));
+    assert_eq!(
+        sort(mesh, count, 3 * count - 1),
+        Err(SortError::IndicesTooShort { found: 3 * count - 1, expected: 3 * count })
+    );
     let normals = vec![[0, 0, 1]; count];
     let with_normals = Mesh::new(MeshData { face_normals: Some(&normals), ..*mesh.data() }).expect("a mesh");
     assert_eq!(sort(&with_normals, count, 3 * count), Err(SortError::FaceNormals));

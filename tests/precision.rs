@@ -10,6 +10,7 @@ use reference::scenes::{screen_triangle, sliver};
 use reference::subject::Subject;
 use support::{apply, matrix, on_screen, position, rigid, scalar, vector, whole};
 use zstrip::color::PixelFormat;
+use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Transform, project};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -57,7 +58,7 @@ impl Cloud {
 fn random_viewport(rng: &mut Rng) -> Viewport {
     let [width, height] = [(); 2].map(|()| rng.between(1, 1024) as u16);
     let [x, y] = [(); 2].map(|()| if rng.one_in(2) { 0 } else { rng.between(-600, 600) as i16 });
-    Viewport::new(x, y, width, height).expect("a viewport")
+    Viewport::new(Point::new(x.into(), y.into()), Size::new(width.into(), height.into())).expect("a viewport")
 }
 
 /// A mesh of just vertices.
@@ -117,7 +118,7 @@ fn objects(
         let mut rng = Rng::new(seed);
         let case = format!("{name}, seed {seed}");
         let viewport = random_viewport(&mut rng);
-        let size = (viewport.width(), viewport.height());
+        let size = (viewport.size().width as u16, viewport.size().height as u16);
         // Sizes over several powers of two, in the object and through the model matrix.
         let extent = (rng.unit() * 10.0 - 4.0).exp2();
         let factor = if rng.one_in(2) { 1.0 } else { (rng.unit() * 6.0 - 3.0).exp2() };

@@ -14,6 +14,7 @@ use reference::rng::Rng;
 use reference::snapped::{self, Shading, SnappedVertex};
 use scenes::{polygons, soup, torus};
 use support::{apply, matrix, position, whole};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 use zstrip::light::{Light, NORMAL_ONE};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -160,7 +161,7 @@ fn colors(mesh: &Mesh<'_>, index: usize) -> [i32; 3] {
 
 /// Triangles on the screen as the crate snaps them, with their ids and sides to drop.
 fn snapped_parts(size: (u16, u16), parts: &[Part]) -> Vec<([SnappedVertex; 3], u32, ReferenceCull)> {
-    let viewport = Viewport::full(size.0, size.1).expect("a viewport");
+    let viewport = Viewport::full(Size::new(size.0.into(), size.1.into())).expect("a viewport");
     let mut triangles = Vec::new();
     for part in parts {
         let all = support::snapped(part.mesh, &part.mvp, &viewport, DepthRange::Clip, |k| colors(part.mesh, k));

@@ -9,6 +9,7 @@ use proptest::prelude::*;
 use reference::rng::Rng;
 use support::{Soup, difference, strips, unrecorded_strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
+use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -87,7 +88,7 @@ where
     let (width, height) = scene.screen();
     scene.set_viewport(part);
     scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
-    scene.set_viewport(Viewport::full(width, height).expect("the screen is a viewport"));
+    scene.set_viewport(Viewport::full(Size::new(width.into(), height.into())).expect("the screen is a viewport"));
     let turned = Projective::from(Affine::rotation_z(Angle16(9999)));
     scene.draw_with(BOTH_SIDES, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
     scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
@@ -126,7 +127,8 @@ fn check_soup(seed: u64) {
     let state = random_state(&mut rng);
     let corner = [(); 2].map(|()| rng.between(-30, 60) as i16);
     let size = [(); 2].map(|()| rng.between(1, 100) as u16);
-    let part = Viewport::new(corner[0], corner[1], size[0], size[1]).expect("a viewport");
+    let part = Viewport::new(Point::new(corner[0].into(), corner[1].into()), Size::new(size[0].into(), size[1].into()))
+        .expect("a viewport");
     let height = usize::from(screen.1);
     let (expected, _) = strips::<Rgb565>(screen, height, 20_000, Rgb565::BLUE, |s| draw_soup(s, &mesh, state, part));
     let rows = rng.between(1, i32::from(screen.1)) as usize;
@@ -185,7 +187,7 @@ fn framebuffer_and_strips_hold_the_same_pixels() {
         let (width, height) = (rng.between(1, 80) as u16, rng.between(1, 60) as u16);
         let soup = Soup::new(&mut rng, 12);
         let mesh = soup.mesh();
-        let part = Viewport::full(width, height).expect("a viewport");
+        let part = Viewport::full(Size::new(width.into(), height.into())).expect("a viewport");
         let state = random_state(&mut rng);
         let (expected, _) =
             strips::<Rgb888>((width, height), 5, 700, Rgb888::GREEN, |s| draw_soup(s, &mesh, state, part));
@@ -246,7 +248,7 @@ fn framebuffer_of_ones_own_gets_the_rows_it_hands_out() {
     let mut rng = Rng::new(77);
     let soup = Soup::new(&mut rng, 20);
     let mesh = soup.mesh();
-    let part = Viewport::full(32, 24).expect("a viewport");
+    let part = Viewport::full(Size::new(32, 24)).expect("a viewport");
     let (expected, _) =
         strips::<Rgb565Be>((32, 24), 24, 5000, Rgb565::BLACK, |s| draw_soup(s, &mesh, BOTH_SIDES, part));
     let mut frame = Mirrored { rows: vec![[1; 32]; 24] };

@@ -8,6 +8,7 @@ use std::cell::RefCell;
 use std::collections::BTreeMap;
 use support::{difference, strips, whole};
 use zstrip::color::PixelFormat;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Line, PixelRect, Projected, Transform, square};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -128,7 +129,7 @@ fn camera() -> Projective {
 }
 
 fn placed(lines: &Lines<'_>, mvp: &Projective) -> Vec<ScreenVertex> {
-    let viewport = Viewport::full(SCREEN.0, SCREEN.1).expect("a viewport");
+    let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     let transform = Transform::new(mvp, &viewport, lines.vertices(), false);
     let place = |k| match transform.project_vertex(&lines.vertices().data().positions, k) {
         Projected::OnScreen(v) => v,

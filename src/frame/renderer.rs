@@ -113,7 +113,7 @@ impl<'b> Engine<'b> {
         depth: Option<&'b mut [u16]>,
         records: &'b mut [u32],
     ) -> Result<Self, RendererError> {
-        let viewport = Viewport::full(screen.0, screen.1).map_err(RendererError::Screen)?;
+        let viewport = Viewport::full(Size::new(screen.0.into(), screen.1.into())).map_err(RendererError::Screen)?;
         if let Some(depth) = &depth {
             rows = rows.min(whole_rows(depth.len(), screen.0));
             if rows == 0 {

@@ -1,6 +1,8 @@
 //! Binary angles and the integer sine.
 
 use super::format::Scalar;
+use core::fmt;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// An angle in binary units: 65,536 make one turn, and arithmetic wraps as angles do.
 ///
@@ -12,8 +14,9 @@ use super::format::Scalar;
 /// assert_eq!(Angle16::from_degrees(90), Angle16(0x4000));
 /// assert_eq!(Angle16::from_degrees(90).sin(), Scalar::ONE);
 /// assert_eq!(Angle16(0xC000) + Angle16(0x8000), Angle16(0x4000));
+/// assert_eq!(Angle16(0x4000).to_string(), "90°");
 /// ```
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Angle16(pub u16);
 
@@ -26,10 +29,30 @@ impl Angle16 {
     /// No rotation.
     pub const ZERO: Self = Self(0);
 
-    /// From whole degrees, rounded to the nearest unit; any number of turns.
+    /// Returns the angle of whole degrees, of any number of turns, rounded to the nearest unit.
+    #[must_use]
     pub const fn from_degrees(degrees: i32) -> Self {
         let reduced = degrees.rem_euclid(360) as u32;
         Self(((reduced * 65_536 + 180) / 360) as u16)
+    }
+
+    /// Returns the angle of degrees with a fraction, of any number of turns, rounded to the nearest unit, halves up.
+    ///
+    /// ```
+    /// use zstrip::math::{Angle16, Scalar};
+    /// assert_eq!(Angle16::from_degrees_fixed(Scalar::from_num(22.5)), Angle16(0x1000));
+    /// ```
+    #[must_use]
+    pub const fn from_degrees_fixed(degrees: Scalar) -> Self {
+        // In 2⁻¹⁶ degrees, 360 make a unit.
+        let reduced = degrees.to_bits().rem_euclid(360 << 16) as u32;
+        Self(((reduced + 180) / 360) as u16)
+    }
+
+    /// Returns the degrees, exactly: 0 or more, below 360.
+    #[must_use]
+    pub const fn to_degrees(self) -> Scalar {
+        Scalar::from_bits(self.0 as i32 * 360)
     }
 
     /// Sine, exact at quarter turns.
@@ -71,23 +94,70 @@ impl Angle16 {
     }
 }
 
-impl core::ops::Add for Angle16 {
+impl Add for Angle16 {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         Self(self.0.wrapping_add(other.0))
     }
 }
 
-impl core::ops::Sub for Angle16 {
+impl AddAssign for Angle16 {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl Sub for Angle16 {
     type Output = Self;
     fn sub(self, other: Self) -> Self {
         Self(self.0.wrapping_sub(other.0))
     }
 }
 
-impl core::ops::Neg for Angle16 {
+impl SubAssign for Angle16 {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl Neg for Angle16 {
     type Output = Self;
     fn neg(self) -> Self {
         Self(self.0.wrapping_neg())
+    }
+}
+
+impl Mul<i32> for Angle16 {
+    type Output = Self;
+    /// Turns `times` as far; whole turns are lost.
+    fn mul(self, times: i32) -> Self {
+        Self(self.0.wrapping_mul(times as u16))
+    }
+}
+
+impl Div<i32> for Angle16 {
+    type Output = Self;
+    /// Divides the angle, counted from 0 to 360 degrees, and rounds towards 0; a negative divisor turns back.
+    ///
+    /// # Panics
+    /// When the divisor is 0, as in any division of integers.
+    fn div(self, divisor: i32) -> Self {
+        let part = Self((u32::from(self.0) / divisor.unsigned_abs()) as u16);
+        if divisor < 0 { -part } else { part }
+    }
+}
+
+/// Degrees, such as `90°` or `0.0055°`; a precision is that of a [`Scalar`].
+impl fmt::Display for Angle16 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        fmt::Display::fmt(&self.to_degrees(), f)?;
+        f.write_str("°")
+    }
+}
+
+/// Units and degrees: `Angle16(16384 = 90°)`.
+impl fmt::Debug for Angle16 {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "Angle16({} = {self})", self.0)
     }
 }

@@ -1,23 +1,44 @@
-//! Why a camera could not be built.
+//! Errors of cameras and other projections.
 
 use super::angle::Angle16;
 use super::format::Scalar;
 use core::fmt;
 
-/// Why a camera could not be built.
+/// An error in the numbers that a camera is built from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum ProjectionError {
-    /// The near plane is at or behind the eye: its distance, raw 16.16.
-    NearNotPositive(i32),
-    /// The near plane is not in front of the far plane: both distances, raw 16.16.
-    NearNotBeforeFar(i32, i32),
+    /// The near plane is at the eye or behind it.
+    NearNotPositive {
+        /// Distance of the near plane.
+        near: Scalar,
+    },
+    /// The near plane is not in front of the far plane.
+    NearNotBeforeFar {
+        /// Distance of the near plane.
+        near: Scalar,
+        /// Distance of the far plane.
+        far: Scalar,
+    },
     /// The field of view is not between 0 and 180 degrees.
-    FieldOfView(Angle16),
+    FieldOfView {
+        /// The opening angle.
+        angle: Angle16,
+    },
     /// One side of the aspect ratio is zero.
-    Aspect(u16, u16),
-    /// Two opposite planes of an orthographic box coincide: both, raw 16.16.
-    EmptyBox(i32, i32),
+    Aspect {
+        /// First number of the ratio.
+        width: u32,
+        /// Second number of the ratio.
+        height: u32,
+    },
+    /// Two opposite planes of an orthographic box coincide.
+    EmptyBox {
+        /// Left or bottom plane.
+        low: Scalar,
+        /// Right or top plane.
+        high: Scalar,
+    },
     /// Eye and target coincide, or up is zero or parallel to the view direction.
     DegenerateView,
 }
@@ -31,18 +52,15 @@ impl defmt::Format for ProjectionError {
 
 impl fmt::Display for ProjectionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let scalar = Scalar::from_bits;
         match *self {
-            Self::NearNotPositive(n) => write!(f, "near plane at {}, must be positive", scalar(n)),
-            Self::NearNotBeforeFar(n, m) => {
-                write!(f, "near plane at {} is not before the far plane at {}", scalar(n), scalar(m))
+            Self::NearNotPositive { near } => write!(f, "near plane at {near}, must be above 0"),
+            Self::NearNotBeforeFar { near, far } => {
+                write!(f, "near plane at {near} is not in front of the far plane at {far}")
             }
-            Self::FieldOfView(a) => write!(f, "field of view of {}/65536 turns is not within 0..32768", a.0),
-            Self::Aspect(w, h) => write!(f, "aspect ratio {w}:{h} has an empty side"),
-            Self::EmptyBox(a, b) => {
-                write!(f, "orthographic box is empty between {} and {}", scalar(a), scalar(b))
-            }
-            Self::DegenerateView => f.write_str("eye and target coincide, or up is parallel to the view"),
+            Self::FieldOfView { angle } => write!(f, "field of view of {angle} is not between 0° and 180°"),
+            Self::Aspect { width, height } => write!(f, "aspect ratio {width}:{height} has an empty side"),
+            Self::EmptyBox { low, high } => write!(f, "orthographic box is empty between {low} and {high}"),
+            Self::DegenerateView => f.write_str("eye and target coincide, or up is zero or parallel to the view"),
         }
     }
 }

@@ -42,16 +42,29 @@ pub struct DepthPrecision {
     far: Scalar,
 }
 
-/// Why there is no near plane for a wanted precision.
+/// An error in a precision that a camera is asked for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PrecisionError {
-    /// The distance is not above 0, or beyond the far plane: raw 16.16.
-    Distance(i32),
-    /// The size asked for is not above 0: raw 16.16.
-    Bin(i32),
-    /// The near plane would have to be beyond the distance itself: where, raw 16.16.
-    TooFine(i32),
+    /// The distance is not above 0, or is beyond the far plane.
+    Distance {
+        /// The distance asked for.
+        distance: Scalar,
+        /// Distance of the far plane.
+        far: Scalar,
+    },
+    /// The size of a step is not above 0.
+    Bin {
+        /// The size asked for.
+        bin: Scalar,
+    },
+    /// The near plane would have to be beyond the distance itself.
+    TooFine {
+        /// Distance of that near plane.
+        near: Scalar,
+        /// The distance asked for.
+        distance: Scalar,
+    },
 }
 
 #[cfg(feature = "defmt")]
@@ -64,10 +77,12 @@ impl defmt::Format for PrecisionError {
 impl fmt::Display for PrecisionError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::Distance(d) => write!(f, "distance {} is not between 0 and the far plane", Scalar::from_bits(d)),
-            Self::Bin(b) => write!(f, "a step of depth cannot be {} in size", Scalar::from_bits(b)),
-            Self::TooFine(n) => {
-                write!(f, "the near plane would have to be at {}, beyond the distance", Scalar::from_bits(n))
+            Self::Distance { distance, far } => {
+                write!(f, "distance {distance} is not between 0 and the far plane at {far}")
+            }
+            Self::Bin { bin } => write!(f, "a step of depth of {bin}, must be above 0"),
+            Self::TooFine { near, distance } => {
+                write!(f, "the near plane would have to be at {near}, beyond the distance {distance}")
             }
         }
     }
@@ -90,10 +105,10 @@ impl DepthPrecision {
     /// When `near ≤ 0` or `near ≥ far`, as the camera's.
     pub const fn new(near: Scalar, far: Scalar) -> Result<Self, ProjectionError> {
         if near.to_bits() <= 0 {
-            return Err(ProjectionError::NearNotPositive(near.to_bits()));
+            return Err(ProjectionError::NearNotPositive { near });
         }
         if near.to_bits() >= far.to_bits() {
-            return Err(ProjectionError::NearNotBeforeFar(near.to_bits(), far.to_bits()));
+            return Err(ProjectionError::NearNotBeforeFar { near, far });
         }
         Ok(Self { near, far })
     }
@@ -154,10 +169,10 @@ impl DepthPrecision {
     pub const fn near_for(far: Scalar, distance: Scalar, bin: Scalar) -> Result<Scalar, PrecisionError> {
         let (f, d, b) = (far.to_bits() as i128, distance.to_bits() as i128, bin.to_bits() as i128);
         if d <= 0 || d > f {
-            return Err(PrecisionError::Distance(distance.to_bits()));
+            return Err(PrecisionError::Distance { distance, far });
         }
         if b <= 0 {
-            return Err(PrecisionError::Bin(bin.to_bits()));
+            return Err(PrecisionError::Bin { bin });
         }
         // A bin from d- to d+ has the size (f - n) d- d+ / (65,535 n f), and d- ≤ d, d+ ≤ d + b. Rounded up.
         let product = d * (d + b);
@@ -168,7 +183,7 @@ impl DepthPrecision {
         };
         if near > d {
             // Below far, which is below 2³¹.
-            return Err(PrecisionError::TooFine(near as i32));
+            return Err(PrecisionError::TooFine { near: Scalar::from_bits(near as i32), distance });
         }
         Ok(Scalar::from_bits(near as i32))
     }

@@ -87,16 +87,16 @@ impl Projective {
     ) -> Result<Self, ProjectionError> {
         let (n, f) = (near.to_bits() as i128, far.to_bits() as i128);
         if n <= 0 {
-            return Err(ProjectionError::NearNotPositive(near.to_bits()));
+            return Err(ProjectionError::NearNotPositive { near });
         }
         if n >= f {
-            return Err(ProjectionError::NearNotBeforeFar(near.to_bits(), far.to_bits()));
+            return Err(ProjectionError::NearNotBeforeFar { near, far });
         }
         if field_of_view.0 < 2 || field_of_view.0 >= 0x8000 {
-            return Err(ProjectionError::FieldOfView(field_of_view));
+            return Err(ProjectionError::FieldOfView { angle: field_of_view });
         }
         if aspect.0 == 0 || aspect.1 == 0 {
-            return Err(ProjectionError::Aspect(aspect.0, aspect.1));
+            return Err(ProjectionError::Aspect { width: aspect.0 as u32, height: aspect.1 as u32 });
         }
         let half = Angle16(field_of_view.0 / 2);
         let (sin, cos) = (half.sin_q30() as i128, half.cos_q30() as i128);
@@ -121,13 +121,13 @@ impl Projective {
         let (b, t) = (bottom.to_bits() as i128, top.to_bits() as i128);
         let (n, f) = (near.to_bits() as i128, far.to_bits() as i128);
         if l == r {
-            return Err(ProjectionError::EmptyBox(left.to_bits(), right.to_bits()));
+            return Err(ProjectionError::EmptyBox { low: left, high: right });
         }
         if b == t {
-            return Err(ProjectionError::EmptyBox(bottom.to_bits(), top.to_bits()));
+            return Err(ProjectionError::EmptyBox { low: bottom, high: top });
         }
         if n >= f {
-            return Err(ProjectionError::NearNotBeforeFar(near.to_bits(), far.to_bits()));
+            return Err(ProjectionError::NearNotBeforeFar { near, far });
         }
         Ok(Self {
             rows: [

@@ -80,7 +80,7 @@ impl<'a> Lines<'a> {
             Joined::Loop => (ends, ends != 1),
         };
         if !whole {
-            return Err(MeshError::Incomplete(ends));
+            return Err(MeshError::Incomplete { indices: ends, unit: 2 });
         }
         let step = if matches!(joined, Joined::Pairs) { 2 } else { 1 };
         Ok(Self { vertices, indices: data.indices, ends, step, count })
@@ -205,12 +205,12 @@ mod tests {
 
     #[test]
     fn wrong_lines_are_errors_that_say_what_is_wrong() {
-        assert_eq!(all(Joined::Pairs, Some(&[0, 1, 2])), Err(MeshError::Incomplete(3)));
-        assert_eq!(all(Joined::Loop, Some(&[2])), Err(MeshError::Incomplete(1)));
+        assert_eq!(all(Joined::Pairs, Some(&[0, 1, 2])), Err(MeshError::Incomplete { indices: 3, unit: 2 }));
+        assert_eq!(all(Joined::Loop, Some(&[2])), Err(MeshError::Incomplete { indices: 1, unit: 2 }));
         assert_eq!(all(Joined::Pairs, Some(&[0, 4])), Err(MeshError::Index { at: 1, index: 4, vertices: 4 }));
         let colors = Some(&[[0; 3]; 3][..]);
         let data = MeshData { colors, ..MeshData::new(Positions::Exact(&ENDS)) };
-        assert_eq!(Lines::new(Joined::Pairs, data).err(), Some(MeshError::Colors(3)));
-        assert_eq!(Points::new(data).err(), Some(MeshError::Colors(3)));
+        assert_eq!(Lines::new(Joined::Pairs, data).err(), Some(MeshError::Colors { colors: 3, vertices: 4 }));
+        assert_eq!(Points::new(data).err(), Some(MeshError::Colors { colors: 3, vertices: 4 }));
     }
 }

@@ -117,70 +117,122 @@ pub struct Mesh<'a> {
     triangles: u16,
 }
 
-/// What is wrong with a mesh.
+/// An error in the slices of a mesh, of lines or of points.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum MeshError {
-    /// More than 65,535 vertices: how many.
-    TooManyVertices(usize),
-    /// More than 65,535 triangles: how many.
-    TooManyTriangles(usize),
-    /// The number of indices (or vertices, without indices) does not divide into whole triangles or quads.
-    Incomplete(usize),
-    /// An index points past the last vertex.
-    Index {
-        /// Where in the index list.
-        at: usize,
-        /// What it says.
-        index: u16,
-        /// How many vertices there are.
+    /// More than 65,535 vertices.
+    TooManyVertices {
+        /// Number of vertices.
         vertices: usize,
     },
-    /// The normals are not as many as the vertices: how many there are.
-    Normals(usize),
-    /// The face normals are not as many as the triangles: how many there are.
-    FaceNormals(usize),
-    /// The colours are not as many as the vertices: how many there are.
-    Colors(usize),
-    /// The texture coordinates are not as many as the vertices: how many there are.
-    Uvs(usize),
-    /// The scale of quantized positions, raw 16.16, is not positive.
-    Scale(i32),
-    /// A node of the hierarchy does not skip forward within it, or its triangles are out of range: which node.
-    Hierarchy(usize),
-    /// The given bounds do not hold a vertex: which one.
-    Bounds(usize),
+    /// More than 65,535 triangles.
+    TooManyTriangles {
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// The indices (or vertices, without indices) are not as many as whole triangles, quads or lines take.
+    Incomplete {
+        /// Number of indices.
+        indices: usize,
+        /// Indices of one triangle, quad or line; of a strip, fan or loop, the fewest that it has.
+        unit: usize,
+    },
+    /// An index points past the last vertex.
+    Index {
+        /// Position in the index list.
+        at: usize,
+        /// The index.
+        index: u16,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// The normals are not as many as the vertices.
+    Normals {
+        /// Number of normals.
+        normals: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// The face normals are not as many as the triangles.
+    FaceNormals {
+        /// Number of face normals.
+        face_normals: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// The colours are not as many as the vertices.
+    Colors {
+        /// Number of colours.
+        colors: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// The texture coordinates are not as many as the vertices.
+    Uvs {
+        /// Number of texture coordinates.
+        uvs: usize,
+        /// Number of vertices.
+        vertices: usize,
+    },
+    /// The scale of quantized positions is not above 0.
+    Scale {
+        /// The scale.
+        scale: Scalar,
+    },
+    /// A node of the hierarchy does not skip forward within it, or its triangles are out of range.
+    Hierarchy {
+        /// Number of the node.
+        node: usize,
+        /// Number of nodes.
+        nodes: usize,
+    },
+    /// The given bounds do not hold a vertex.
+    Bounds {
+        /// Number of the vertex.
+        vertex: usize,
+    },
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for MeshError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
 }
 
 impl fmt::Display for MeshError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::TooManyVertices(n) => write!(f, "{n} vertices, at most 65535 are possible"),
-            Self::TooManyTriangles(n) => write!(f, "{n} triangles, at most 65535 are possible"),
-            Self::Incomplete(n) => write!(f, "{n} indices leave the last primitive incomplete"),
+            Self::TooManyVertices { vertices } => write!(f, "{vertices} vertices, at most 65535 are possible"),
+            Self::TooManyTriangles { triangles } => write!(f, "{triangles} triangles, at most 65535 are possible"),
+            Self::Incomplete { indices, unit } => {
+                write!(f, "{indices} indices leave the last primitive incomplete, which takes {unit}")
+            }
             Self::Index { at, index, vertices } => {
                 write!(f, "index {index} at position {at} is out of range: there are {vertices} vertices")
             }
-            Self::Normals(n) => write!(f, "{n} normals do not match the number of vertices"),
-            Self::FaceNormals(n) => write!(f, "{n} face normals do not match the number of triangles"),
-            Self::Colors(n) => write!(f, "{n} colours do not match the number of vertices"),
-            Self::Uvs(n) => write!(f, "{n} texture coordinates do not match the number of vertices"),
-            Self::Scale(s) => write!(f, "scale {} of the positions is not positive", Scalar::from_bits(s)),
-            Self::Bounds(n) => write!(f, "the given bounds do not hold vertex {n}"),
-            Self::Hierarchy(n) => write!(f, "node {n} of the hierarchy points out of range"),
+            Self::Normals { normals, vertices } => write!(f, "{normals} normals for {vertices} vertices"),
+            Self::FaceNormals { face_normals, triangles } => {
+                write!(f, "{face_normals} face normals for {triangles} triangles")
+            }
+            Self::Colors { colors, vertices } => write!(f, "{colors} colours for {vertices} vertices"),
+            Self::Uvs { uvs, vertices } => write!(f, "{uvs} texture coordinates for {vertices} vertices"),
+            Self::Scale { scale } => write!(f, "scale {scale} of the positions, must be above 0"),
+            Self::Bounds { vertex } => write!(f, "the given bounds do not hold vertex {vertex}"),
+            Self::Hierarchy { node, nodes } => write!(f, "node {node} of the hierarchy of {nodes} points out of range"),
         }
     }
 }
 
 impl core::error::Error for MeshError {}
 
-/// `Some` slice of another length than `expected`: its length.
+/// Returns an error when there is a slice, and its length is not `expected`.
 macro_rules! check_length {
-    ($slice:expr, $expected:expr, $error:ident) => {
+    ($slice:expr, $expected:expr, $error:ident { $found:ident, $count:ident }) => {
         if let Some(slice) = $slice {
             if slice.len() != $expected {
-                return Err(MeshError::$error(slice.len()));
+                return Err(MeshError::$error { $found: slice.len(), $count: $expected });
             }
         }
     };
@@ -195,7 +247,7 @@ impl<'a> Mesh<'a> {
         let vertices = match data.positions {
             Positions::Quantized { points, scale, .. } => {
                 if scale.to_bits() <= 0 {
-                    return Err(MeshError::Scale(scale.to_bits()));
+                    return Err(MeshError::Scale { scale });
                 }
                 points.len()
             }
@@ -203,7 +255,7 @@ impl<'a> Mesh<'a> {
             Positions::Homogeneous(points) => points.len(),
         };
         if vertices > u16::MAX as usize {
-            return Err(MeshError::TooManyVertices(vertices));
+            return Err(MeshError::TooManyVertices { vertices });
         }
         let corners = match data.indices {
             Some(indices) => {
@@ -218,35 +270,35 @@ impl<'a> Mesh<'a> {
             }
             None => vertices,
         };
-        let (triangles, whole) = match data.topology {
-            Topology::Triangles => (corners / 3, corners % 3 == 0),
-            Topology::Quads => (corners / 4 * 2, corners % 4 == 0),
-            Topology::Strip | Topology::Fan => (corners.saturating_sub(2), corners != 1 && corners != 2),
+        let (triangles, unit, whole) = match data.topology {
+            Topology::Triangles => (corners / 3, 3, corners % 3 == 0),
+            Topology::Quads => (corners / 4 * 2, 4, corners % 4 == 0),
+            Topology::Strip | Topology::Fan => (corners.saturating_sub(2), 3, corners != 1 && corners != 2),
         };
         if !whole {
-            return Err(MeshError::Incomplete(corners));
+            return Err(MeshError::Incomplete { indices: corners, unit });
         }
         if triangles > u16::MAX as usize {
-            return Err(MeshError::TooManyTriangles(triangles));
+            return Err(MeshError::TooManyTriangles { triangles });
         }
-        check_length!(data.normals, vertices, Normals);
-        check_length!(data.colors, vertices, Colors);
-        check_length!(data.uvs, vertices, Uvs);
-        check_length!(data.face_normals, triangles, FaceNormals);
+        check_length!(data.normals, vertices, Normals { normals, vertices });
+        check_length!(data.colors, vertices, Colors { colors, vertices });
+        check_length!(data.uvs, vertices, Uvs { uvs, vertices });
+        check_length!(data.face_normals, triangles, FaceNormals { face_normals, triangles });
         if let Some(nodes) = data.hierarchy {
             let mut k = 0;
             while k < nodes.len() {
                 let node = &nodes[k];
                 let past = node.first_triangle as usize + node.triangles as usize;
                 if node.skip as usize <= k || node.skip as usize > nodes.len() || past > triangles {
-                    return Err(MeshError::Hierarchy(k));
+                    return Err(MeshError::Hierarchy { node: k, nodes: nodes.len() });
                 }
                 k += 1;
             }
         }
         let bounds = match data.bounds {
             Some(bounds) => match outside(&data.positions, vertices, &bounds) {
-                Some(vertex) => return Err(MeshError::Bounds(vertex)),
+                Some(vertex) => return Err(MeshError::Bounds { vertex }),
                 None => bounds,
             },
             None => find_bounds(&data.positions, vertices),
@@ -262,7 +314,7 @@ impl<'a> Mesh<'a> {
         match Self::new(data) {
             Ok(mesh) => mesh,
             Err(MeshError::Index { .. }) => panic!("a mesh index is out of range"),
-            Err(MeshError::Incomplete(_)) => panic!("the last primitive of a mesh is incomplete"),
+            Err(MeshError::Incomplete { .. }) => panic!("the last primitive of a mesh is incomplete"),
             Err(_) => panic!("mesh attributes do not match; Mesh::new tells which"),
         }
     }

@@ -103,7 +103,7 @@ impl FogTable {
     /// When `near ≤ 0` or `near ≥ far`.
     pub const fn perspective(near: Scalar, far: Scalar, curve: FogCurve) -> Result<Self, ProjectionError> {
         if near.to_bits() <= 0 {
-            return Err(ProjectionError::NearNotPositive(near.to_bits()));
+            return Err(ProjectionError::NearNotPositive { near });
         }
         Self::new(near, far, curve, true)
     }
@@ -119,7 +119,7 @@ impl FogTable {
     const fn new(near: Scalar, far: Scalar, curve: FogCurve, perspective: bool) -> Result<Self, ProjectionError> {
         let (n, f) = (near.to_bits() as i64, far.to_bits() as i64);
         if n >= f {
-            return Err(ProjectionError::NearNotBeforeFar(n as i32, f as i32));
+            return Err(ProjectionError::NearNotBeforeFar { near, far });
         }
         let mut left = [0; ENTRIES];
         let mut k = 0;

@@ -113,15 +113,25 @@ impl Sortable {
     }
 }
 
-/// Why triangles could not be sorted.
+/// An error of [`painters_order`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SortError {
-    /// There are more triangles than lent places: how many places there are, and how many it takes.
-    TooShort(usize, usize),
-    /// There are fewer indices than three a triangle: how many there are, and how many it takes.
-    IndicesTooShort(usize, usize),
+    /// There are more triangles than lent places.
+    TooShort {
+        /// Number of places.
+        found: usize,
+        /// Number of triangles.
+        expected: usize,
+    },
+    /// The indices do not hold three for each triangle.
+    IndicesTooShort {
+        /// Number of indices there is room for.
+        found: usize,
+        /// Three times the number of triangles.
+        expected: usize,
+    },
     /// The mesh has normals of faces, which would stay in their old order.
     FaceNormals,
 }
@@ -129,8 +139,8 @@ pub enum SortError {
 impl fmt::Display for SortError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::TooShort(has, needs) => write!(f, "{has} places to sort {needs} triangles"),
-            Self::IndicesTooShort(has, needs) => write!(f, "room for {has} indices, {needs} are needed"),
+            Self::TooShort { found, expected } => write!(f, "{found} places to sort {expected} triangles"),
+            Self::IndicesTooShort { found, expected } => write!(f, "room for {found} indices, {expected} are needed"),
             Self::FaceNormals => f.write_str("a mesh with normals of faces cannot be sorted"),
         }
     }
@@ -171,9 +181,11 @@ pub fn painters_order(
     }
     let count = mesh.triangle_count();
     let (places, room) = (memory.len(), indices.len());
-    let Some(triangles) = memory.get_mut(..count) else { return Err(SortError::TooShort(places, count)) };
+    let Some(triangles) = memory.get_mut(..count) else {
+        return Err(SortError::TooShort { found: places, expected: count });
+    };
     if room / 3 < count {
-        return Err(SortError::IndicesTooShort(room, 3 * count));
+        return Err(SortError::IndicesTooShort { found: room, expected: 3 * count });
     }
     let transform = Transform::new(mvp, viewport, mesh, false);
     for (number, triangle) in triangles.iter_mut().enumerate() {

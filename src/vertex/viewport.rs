@@ -1,6 +1,7 @@
 //! The viewport: which rectangle of the screen clip space is mapped to.
 
 use core::fmt;
+use embedded_graphics_core::geometry::{Point, Size};
 
 /// A rectangle of the screen in pixels; the corner may lie outside the screen, up to 32,767 px away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,27 +13,44 @@ pub struct Viewport {
     height: u16,
 }
 
-/// What is wrong with a viewport.
+/// An error in the corner or the size of a viewport.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum ViewportError {
-    /// Width or height is zero: both.
-    Empty(u16, u16),
-    /// Width or height is above [`Viewport::MAX_SIZE`]: both.
-    TooLarge(u16, u16),
-    /// The corner is more than [`Viewport::MAX_OFFSET`] px off the screen: its position.
-    TooFar(i16, i16),
+    /// Width or height is zero.
+    Empty {
+        /// Width and height.
+        size: Size,
+    },
+    /// Width or height is above [`Viewport::MAX_SIZE`].
+    TooLarge {
+        /// Width and height.
+        size: Size,
+    },
+    /// The corner is more than [`Viewport::MAX_OFFSET`] px off the screen's.
+    TooFar {
+        /// Position of the corner.
+        top_left: Point,
+    },
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for ViewportError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
 }
 
 impl fmt::Display for ViewportError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::Empty(w, h) => write!(f, "viewport of {w}x{h} px is empty"),
-            Self::TooLarge(w, h) => {
-                write!(f, "viewport of {w}x{h} px is larger than {0}x{0}", Viewport::MAX_SIZE)
+        match self {
+            Self::Empty { size } => write!(f, "viewport of {}x{} px is empty", size.width, size.height),
+            Self::TooLarge { size } => {
+                write!(f, "viewport of {}x{} px is larger than {2}x{2}", size.width, size.height, Viewport::MAX_SIZE)
             }
-            Self::TooFar(x, y) => write!(f, "viewport at ({x}, {y}) is more than {} px away", Viewport::MAX_OFFSET),
+            Self::TooFar { top_left } => {
+                write!(f, "viewport at ({}, {}) is more than {} px away", top_left.x, top_left.y, Viewport::MAX_OFFSET)
+            }
         }
     }
 }
@@ -46,49 +64,58 @@ impl Viewport {
     /// Largest distance of the corner from that of the screen, so that it cannot come near the guard band.
     pub const MAX_OFFSET: u16 = 8192;
 
-    /// The rectangle with its top-left corner at `(x, y)`.
+    /// Returns the rectangle of `size` with its top left corner at `top_left`.
     ///
     /// # Errors
     /// When it is empty, larger than [`MAX_SIZE`](Self::MAX_SIZE), or farther away than
     /// [`MAX_OFFSET`](Self::MAX_OFFSET).
-    pub const fn new(x: i16, y: i16, width: u16, height: u16) -> Result<Self, ViewportError> {
+    pub const fn new(top_left: Point, size: Size) -> Result<Self, ViewportError> {
+        let (Point { x, y }, Size { width, height }) = (top_left, size);
         if width == 0 || height == 0 {
-            return Err(ViewportError::Empty(width, height));
+            return Err(ViewportError::Empty { size });
         }
-        if width > Self::MAX_SIZE || height > Self::MAX_SIZE {
-            return Err(ViewportError::TooLarge(width, height));
+        if width > Self::MAX_SIZE as u32 || height > Self::MAX_SIZE as u32 {
+            return Err(ViewportError::TooLarge { size });
         }
-        if x.unsigned_abs() > Self::MAX_OFFSET || y.unsigned_abs() > Self::MAX_OFFSET {
-            return Err(ViewportError::TooFar(x, y));
+        if x.unsigned_abs() > Self::MAX_OFFSET as u32 || y.unsigned_abs() > Self::MAX_OFFSET as u32 {
+            return Err(ViewportError::TooFar { top_left });
         }
-        Ok(Self { x, y, width, height })
+        Ok(Self { x: x as i16, y: y as i16, width: width as u16, height: height as u16 })
     }
 
-    /// The whole of a screen.
+    /// Returns the whole of a screen.
     ///
     /// # Errors
-    /// As [`new`](Self::new).
-    pub const fn full(width: u16, height: u16) -> Result<Self, ViewportError> {
-        Self::new(0, 0, width, height)
+    /// When the screen is empty or larger than [`MAX_SIZE`](Self::MAX_SIZE).
+    pub const fn full(screen: Size) -> Result<Self, ViewportError> {
+        Self::new(Point::new(0, 0), screen)
     }
 
-    /// Left edge.
-    pub const fn x(&self) -> i16 {
+    /// Returns the top left corner, from that of the screen.
+    #[must_use]
+    pub const fn top_left(&self) -> Point {
+        Point::new(self.x as i32, self.y as i32)
+    }
+
+    /// Returns width and height.
+    #[must_use]
+    pub const fn size(&self) -> Size {
+        Size::new(self.width as u32, self.height as u32)
+    }
+
+    pub(crate) const fn x(&self) -> i16 {
         self.x
     }
 
-    /// Top edge.
-    pub const fn y(&self) -> i16 {
+    pub(crate) const fn y(&self) -> i16 {
         self.y
     }
 
-    /// Width in pixels.
-    pub const fn width(&self) -> u16 {
+    pub(crate) const fn width(&self) -> u16 {
         self.width
     }
 
-    /// Height in pixels.
-    pub const fn height(&self) -> u16 {
+    pub(crate) const fn height(&self) -> u16 {
         self.height
     }
 }

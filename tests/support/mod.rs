@@ -164,10 +164,10 @@ pub fn position(positions: &Positions<'_>, index: usize) -> [f64; 4] {
 
 /// Screen position in px, y down, and z / w, of clip coordinates with y up.
 pub fn on_screen(viewport: &Viewport, [x, y, z, w]: [f64; 4]) -> [f64; 3] {
-    let (width, height) = (f64::from(viewport.width()), f64::from(viewport.height()));
+    let (width, height) = (f64::from(viewport.size().width), f64::from(viewport.size().height));
     [
-        f64::from(viewport.x()) + (x / w + 1.0) * width / 2.0,
-        f64::from(viewport.y()) + (1.0 - y / w) * height / 2.0,
+        f64::from(viewport.top_left().x) + (x / w + 1.0) * width / 2.0,
+        f64::from(viewport.top_left().y) + (1.0 - y / w) * height / 2.0,
         z / w,
     ]
 }
