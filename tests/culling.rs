@@ -6,7 +6,8 @@ mod scenes;
 mod support;
 
 use reference::rng::Rng;
-use support::{apply, difference, matrix, on_screen, rigid, scalar, strips, vector};
+use std::ops::Range;
+use support::{difference, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Outcode, ScreenMatrix};
@@ -35,76 +36,91 @@ fn to_f64(v: Vec3) -> [f64; 3] {
     v.to_bits().map(|c| f64::from(c) / 65_536.0)
 }
 
-/// Points of a box, among them its corners.
-fn points_in_box(rng: &mut Rng, bounds: &Bounds) -> Vec<[f64; 4]> {
-    let (center, half) = (to_f64(bounds.center), to_f64(bounds.half));
-    let at = |part: [f64; 3]| {
-        let [x, y, z] = [0, 1, 2].map(|k| center[k] + part[k] * half[k]);
-        [x, y, z, 1.0]
-    };
-    let corner = |k: u32| [0, 1, 2].map(|axis| if k >> axis & 1 == 0 { -1.0 } else { 1.0 });
-    let mut points: Vec<_> = (0..8).map(|k| at(corner(k))).collect();
-    points.extend((0..24).map(|_| at([(); 3].map(|()| 2.0 * rng.unit() - 1.0))));
-    points
+/// The planes that a point has to be inside of to be seen in a rectangle of the screen, from the definition of the matrix and the
+/// viewport: a · x + b · y + c · z + d ≥ 0 for each. Exact.
+///
+/// With X = x0 + (1 + x / w) · width / 2, X ≥ left is width · x + (2 x0 + width - 2 left) · w ≥ 0, as w > 0.
+fn planes(camera: &Projective, viewport: &Viewport, columns: &Range<i32>, lines: &Range<i32>) -> [[i128; 4]; 6] {
+    let [x, y, z, w] = camera.to_rows().map(|row| row.map(i128::from));
+    let sum = |a: i128, row: [i128; 4], b: i128| [0, 1, 2, 3].map(|k: usize| a * row[k] + b * w[k]);
+    let (corner, size) = (viewport.top_left(), viewport.size());
+    let (width, height) = (i128::from(size.width), i128::from(size.height));
+    let (middle_x, middle_y) = (2 * i128::from(corner.x) + width, 2 * i128::from(corner.y) + height);
+    [
+        sum(width, x, middle_x - 2 * i128::from(columns.start)),
+        sum(-width, x, 2 * i128::from(columns.end) - middle_x),
+        // y of clip space points up.
+        sum(-height, y, middle_y - 2 * i128::from(lines.start)),
+        sum(height, y, 2 * i128::from(lines.end) - middle_y),
+        sum(1, z, 0),
+        sum(-1, z, 1),
+    ]
 }
 
-/// Draws boxes about points in front of a random camera, and asks for each whether it may be seen in a rectangle of the
-/// screen; compares with the places of the points of the box, in double precision.
+/// The value of a plane at the corner of a box that is farthest inside of it.
+fn innermost(plane: &[i128; 4], bounds: &Bounds) -> i128 {
+    let (center, half) = (bounds.center.to_bits(), bounds.half.to_bits());
+    let corner = |k: u32| {
+        let at = |axis: usize| {
+            let half = i128::from(half[axis]);
+            i128::from(center[axis]) + if k >> axis & 1 == 0 { half } else { -half }
+        };
+        plane[0] * at(0) + plane[1] * at(1) + plane[2] * at(2) + plane[3] * 65_536
+    };
+    (0..8).map(corner).max().expect("eight corners")
+}
+
+/// Asks random cameras for random boxes, and compares with the exact values of the planes at the corners of the boxes.
 #[test]
-fn boxes_are_culled_only_where_none_of_their_points_is_seen() {
-    let (mut culled, mut hidden, mut kept) = (0, 0, 0);
-    for seed in 0..4000 {
+fn boxes_are_culled_if_all_corners_are_outside_of_a_plane_and_only_then() {
+    let (mut outside, mut missed, mut kept) = ([0; 6], 0, 0);
+    for seed in 0..6000 {
         let mut rng = Rng::new(seed);
         let (camera, far) = random_camera(&mut rng);
-        let m = matrix(&camera);
-        let size = [(); 2].map(|()| rng.between(1, 640));
-        let corner = [(); 2].map(|()| rng.between(-100, 100));
-        let viewport =
-            Viewport::new(Point::new(corner[0] as i32, corner[1] as i32), Size::new(size[0] as u32, size[1] as u32))
-                .expect("a viewport");
-        let range = |rng: &mut Rng, start: i32, size: i32| {
-            let low = start + rng.between(0, size - 1);
+        let corner = Point::new(rng.between(-100, 100), rng.between(-100, 100));
+        let size = Size::new(rng.between(1, 640) as u32, rng.between(1, 640) as u32);
+        let viewport = Viewport::new(corner, size).expect("a viewport");
+        let mut range = |start: i32, size: u32| {
+            let low = start + rng.below(size.into()) as i32;
             low..low + rng.between(1, 400)
         };
-        let (x, y) = (range(&mut rng, corner[0], size[0]), range(&mut rng, corner[1], size[1]));
+        let (columns, lines) = (range(corner.x, size.width), range(corner.y, size.height));
         let extent = far * (rng.unit() * -8.0).exp2();
-        let half = [(); 3].map(|()| Scalar::from_num(extent * rng.unit()));
+        let mut side = || Scalar::from_num(extent * rng.unit());
+        let half = Vec3::new(side(), side(), side());
         let center = vector(&mut rng, far.min(32_000.0));
-        let bounds = Bounds { center, half: Vec3::new(half[0], half[1], half[2]) };
+        let bounds = Bounds { center, half };
+        let clamped = rng.pick(&[0, 0, Outcode::FAR, Outcode::FAR | Outcode::NEAR]);
+
         let mut screen = ScreenMatrix::EMPTY;
         screen.set_from(&camera, &viewport);
-        let sees = screen.sees(&bounds, &x, &y, Outcode(0));
-        let points: Vec<_> = points_in_box(&mut rng, &bounds).into_iter().map(|point| apply(&m, point)).collect();
-        for (point, clip) in points.iter().enumerate() {
-            let [sx, sy, depth] = on_screen(&viewport, *clip);
-            let within =
-                |v: f64, range: &std::ops::Range<i32>| (f64::from(range.start)..f64::from(range.end)).contains(&v);
-            if clip[3] > 0.0 && (0.0..=1.0).contains(&depth) && within(sx, &x) && within(sy, &y) {
-                assert!(sees, "seed {seed}: point {point} of {bounds:?} is at ({sx}, {sy}) in {x:?} {y:?}");
-            }
+        let sees = screen.sees(&bounds, &columns, &lines, Outcode(clamped));
+
+        let counts = |k: usize| match k {
+            4 => clamped & Outcode::NEAR == 0,
+            5 => clamped & Outcode::FAR == 0,
+            _ => true,
+        };
+        // Entries are cut to 15 bits and coordinates to 14, which together is less than 1/100 of their largest product.
+        let reach =
+            center.to_bits().iter().chain(&half.to_bits()).fold(1 << 16, |reach, c| reach.max(c.unsigned_abs()));
+        let (mut is_outside, mut is_well_outside) = (false, false);
+        for (k, plane) in planes(&camera, &viewport, &columns, &lines).iter().enumerate().filter(|(k, _)| counts(*k)) {
+            let value = innermost(plane, &bounds);
+            let largest = plane.iter().fold(0, |largest, entry| largest.max(entry.abs()));
+            is_outside |= value < 0;
+            is_well_outside |= value * 100 < -largest * i128::from(reach);
+            outside[k] += usize::from(value < 0);
         }
-        // Surely out of view: all points are outside of one plane, by a part of the distance to it.
-        let outside = |distance: &dyn Fn([f64; 4]) -> f64| {
-            points.iter().all(|clip| distance(*clip) < -0.02 * clip.iter().fold(0.0, |sum: f64, c| sum + c.abs()))
-        };
-        // On the screen (x / w + 1) / 2 · width + corner, so that a border is a plane of clip space.
-        let border = |k: usize, at: i32, sign: f64| {
-            let at = (f64::from(at - corner[k]) / f64::from(size[k]) * 2.0 - 1.0) * if k == 0 { 1.0 } else { -1.0 };
-            let sign = if k == 0 { sign } else { -sign };
-            outside(&move |clip| sign * (clip[k] - at * clip[3]))
-        };
-        let is_hidden = border(0, x.start, 1.0)
-            || border(0, x.end, -1.0)
-            || border(1, y.start, 1.0)
-            || border(1, y.end, -1.0)
-            || outside(&|clip| clip[2])
-            || outside(&|clip| clip[3] - clip[2]);
-        hidden += usize::from(is_hidden);
-        culled += usize::from(is_hidden && !sees);
+        let case = format!("seed {seed}: {bounds:?} in {columns:?} {lines:?} of {viewport:?}, clamped {clamped}");
+        assert!(sees || is_outside, "culled, but outside of no plane: {case}");
+        assert!(!sees || !is_well_outside, "kept, but outside of a plane: {case}");
+        missed += usize::from(sees && is_outside);
         kept += usize::from(sees);
     }
-    println!("{culled} of {hidden} boxes that are out of view are culled, {kept} of all are kept");
-    assert!(hidden > 2000 && culled * 100 >= hidden * 97 && kept > 200, "{culled} of {hidden}, {kept} kept");
+    println!("{outside:?} boxes are outside of each plane, {missed} of them missed; {kept} of all are kept");
+    assert!(outside.iter().all(|count| *count > 200) && kept > 400, "{outside:?}, {kept} kept");
+    assert!(missed < 100, "{missed} boxes that are barely outside are kept");
 }
 
 #[test]
@@ -261,25 +277,34 @@ fn scenes_may_leave_out_what_is_not_visible() {
     }
 }
 
-/// Boxes as far out as coordinates go, of objects that are seen.
+/// Boxes as far out as coordinates go, of objects in front of the eye and behind it. Each mesh has its triangle twice: bounds of
+/// up to four vertices are not looked at.
 #[test]
-fn far_corners_of_a_large_world_are_seen() {
+fn far_corners_of_a_large_world_are_seen_from_the_front_and_culled_behind() {
     let lens = Projective::perspective(Angle16::from_degrees(60), (512, 512), Scalar::ONE, Scalar::from_num(1000));
     let lens = lens.expect("a camera");
-    let mut rng = Rng::new(8);
-    for case in 0..300 {
+    let (mut rng, mut culled) = (Rng::new(8), 0);
+    for case in 0..150 {
         let [x, y, z] = [(); 3].map(|()| (rng.between(-31_000, 31_000) >> rng.below(12)) as i16);
         let corners = [(-60, -50), (60, -50), (0, 50)].map(|(i, j)| Vec3::from_ints(x + i, y + j, z));
+        let corners = [corners, corners].concat();
         let mesh = Mesh::new(MeshData::new(Positions::Exact(&corners))).expect("a mesh");
         // Somewhere on the screen, if not in its middle.
         let (aside, up) = (rng.between(-120, 120) as i16, rng.between(-120, 120) as i16);
         let eye = Vec3::from_ints(x + aside, y + up, z + 290);
         let [ex, ey, ez] = eye.to_bits().map(Scalar::from_bits);
-        let mvp = lens * Affine::translation(Vec3::new(-ex, -ey, -ez));
-        let (picture, stats) = strips::<Rgb565>((512, 512), 512, 100, Rgb565::BLACK, |scene| {
-            scene.draw_with(State { cull: Cull::None, ..State::default() }, &mesh, &mvp, &Gouraud::colors_unlit());
-        });
-        let lit = picture.iter().filter(|pixel| **pixel != 0).count();
-        assert!(lit > 5000 && stats.culled == 0, "case {case}: ({x}, {y}, {z}) from {eye:?}: {lit} pixels, {stats:?}");
+        let there = Affine::translation(Vec3::new(-ex, -ey, -ez));
+        for (turn, seen) in [(Angle16(0), true), (Angle16(1 << 15), false)] {
+            let mvp = lens * Affine::rotation_y(turn) * there;
+            let (picture, stats) = strips::<Rgb565>((512, 512), 512, 100, Rgb565::BLACK, |scene| {
+                scene.draw_with(State { cull: Cull::None, ..State::default() }, &mesh, &mvp, &Gouraud::colors_unlit());
+            });
+            let lit = picture.iter().filter(|pixel| **pixel != 0).count();
+            let case = format!("case {case}: ({x}, {y}, {z}) from {eye:?}, {turn:?}: {lit} pixels, {stats:?}");
+            assert!(if seen { lit > 5000 && stats.culled == 0 } else { lit == 0 }, "{case}");
+            culled += stats.culled;
+        }
     }
+    // The others are behind the eye by less than a hundredth of their coordinates.
+    assert!(culled > 80, "{culled} of 150 triangles behind the eye are culled");
 }
