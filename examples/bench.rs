@@ -18,8 +18,6 @@ mod workloads;
 
 use workloads::{HEIGHT, WIDTH, Workload};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-#[cfg(not(target_os = "none"))]
-use zstrip::frame::Buffers;
 use zstrip::frame::RamBudget;
 
 const NAMED: [(&str, Workload); 10] = [
@@ -50,8 +48,8 @@ impl Hash {
 
 /// Rows of a strip, and words of records.
 const SIZES: (usize, usize) = if cfg!(ram = "records") {
-    let budget = RamBudget::new::<Rgb565>(WIDTH as u16, 16);
-    (16, budget.with_records(1, HEIGHT as u16, 512, 1, FRONT_FACES).records / 4)
+    let budget = RamBudget::new::<Rgb565>(WIDTH as u32, 16);
+    (16, budget.with_records(1, HEIGHT as u32, 512, 1, FRONT_FACES).records / 4)
 } else if cfg!(ram = "bare") {
     (8, 0)
 } else {
@@ -69,8 +67,6 @@ mod counting {
     use core::hint::black_box;
     use cortex_m::peripheral::Peripherals;
     use semihosting::println;
-    use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-    use zstrip::frame::Buffers;
 
     struct Memory {
         color: [u16; WIDTH * SIZES.0],
@@ -81,9 +77,13 @@ mod counting {
     static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _] };
 
     /// Buffers for strips of some rows.
-    fn lend(memory: &mut Memory, rows: usize) -> Buffers<'_, Rgb565> {
+    fn lend(memory: &mut Memory, rows: usize) -> workloads::Buffers<'_> {
         let pixels = WIDTH * rows.min(SIZES.0);
-        Buffers { color: &mut memory.color[..pixels], depth: &mut memory.depth[..pixels], records: &mut memory.records }
+        workloads::Buffers {
+            color: &mut memory.color[..pixels],
+            depth: &mut memory.depth[..pixels],
+            records: &mut memory.records,
+        }
     }
 
     pub fn run() {
@@ -112,7 +112,7 @@ mod counting {
 
     /// Ticks of a frame.
     #[inline(never)]
-    fn count(workload: Workload, buffers: Buffers<'_, Rgb565>) -> u32 {
+    fn count(workload: Workload, buffers: workloads::Buffers<'_>) -> u32 {
         let start = ticks::now();
         // SAFETY: copies a register to itself.
         unsafe { asm!("mov r10, r10") };
@@ -181,7 +181,7 @@ fn main() {
     for (name, workload) in NAMED {
         let (mut color, mut depth) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
         let mut records = vec![0; SIZES.1];
-        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
+        let buffers = workloads::Buffers { color: &mut color, depth: &mut depth, records: &mut records };
         let mut hash = Hash::NEW;
         let stats = workloads::draw(workload, buffers, |strip| hash.add(strip));
         let picture = workloads::reference::draw(workload);

@@ -26,9 +26,9 @@ mod counting {
     use embedded_graphics::text::{Baseline, Text};
     use semihosting::println;
     use zstrip::Scene;
-    use zstrip::frame::{Buffers, Renderer, RendererError};
+    use zstrip::frame::{Renderer, RendererError};
     use zstrip::span::DepthTest;
-    use zstrip::target::{Overlay, Strip, StripPixels};
+    use zstrip::target::{DepthChoice, Overlay, RecordsChoice, Strip, StripPixels};
 
     const WIDTH: usize = 320;
     const HEIGHT: usize = 240;
@@ -49,7 +49,7 @@ mod counting {
         }
     }
 
-    impl<D: DepthTest, const DEPTH: bool, const RECORDS: bool> Put for Overlay<'_, Strip<'_, Rgb565, DEPTH, RECORDS>, D> {
+    impl<Z: DepthTest, D: DepthChoice, R: RecordsChoice> Put for Overlay<'_, Strip<'_, Rgb565, D, R>, Z> {
         fn put<T: Drawable<Color = Rgb565> + Dimensions>(&mut self, drawable: &T) {
             self.draw(drawable);
         }
@@ -114,13 +114,14 @@ mod counting {
         ticks::now().wrapping_sub(start)
     }
 
-    const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
+    const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
 
     /// Ticks of a frame in strips, and whether it is what the framebuffer shows.
-    fn strips_of<const DEPTH: bool, const RECORDS: bool>(
-        renderer: Result<Renderer<'_, Rgb565, DEPTH, RECORDS>, RendererError>,
+    fn strips_of<D: DepthChoice, R: RecordsChoice>(
+        renderer: Result<Renderer<'_, Rgb565, D, R>, RendererError>,
+        color: &mut [u16],
         full: &Full,
-        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, DEPTH, RECORDS>>),
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, D, R>>),
     ) -> (u32, bool) {
         let mut renderer = renderer.expect("a renderer");
         let (mut ticks, mut equal) = (0, true);
@@ -134,7 +135,7 @@ mod counting {
                 Ok::<(), Infallible>(())
             };
             let taken = count(|| {
-                black_box(renderer.frame_to(sink, Rgb565::BLACK, &mut draw).is_ok());
+                black_box(renderer.frame_to(sink, color, Rgb565::BLACK, &mut draw).is_ok());
             });
             if !check {
                 ticks = taken;
@@ -162,13 +163,13 @@ mod counting {
                     let color = &mut color[..rows * WIDTH];
                     let equal;
                     (*ticks, equal) = if deep {
-                        let buffers = Buffers { color, depth: &mut depth[..rows * WIDTH], records: &mut [] };
-                        strips_of(Renderer::new(SCREEN, buffers), full, |scene| {
+                        let renderer = Renderer::new(SCREEN).and_then(|it| it.with_depth(&mut depth[..rows * WIDTH]));
+                        strips_of(renderer.map(|it| it.with_records(&mut [])), color, full, |scene| {
                             let $to = &mut scene.at_depth(1000);
                             $draw;
                         })
                     } else {
-                        strips_of(Renderer::color_only(SCREEN, color), full, |scene| {
+                        strips_of(Renderer::new(SCREEN), color, full, |scene| {
                             let $to = &mut scene.overlay();
                             $draw;
                         })

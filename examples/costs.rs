@@ -21,11 +21,11 @@ mod rows {
         PerFragment, PerFragmentNear, ScreenDoor, Shaded, Textured,
     };
     use zstrip::span::{DepthState, Shader};
-    use zstrip::target::Strip;
+    use zstrip::target::{Strip, WithDepth, WithRecords};
     use zstrip::texture::{Bilinear, Clamp, Image, Mirror, PaletteTexel, Rgb888Texel, TexelFormat, Tile};
     use zstrip::{Scene, State};
 
-    type S<'s, 'a, 'p> = &'s mut Scene<'a, Strip<'p, Rgb565>>;
+    type S<'s, 'a, 'p> = &'s mut Scene<'a, Strip<'p, Rgb565, WithDepth, WithRecords>>;
 
     /// Name of a row, and what is drawn for it.
     pub type Row = (&'static str, fn(S<'_, '_, '_>));
@@ -180,9 +180,10 @@ mod counting {
     use cortex_m::peripheral::syst::SystClkSource;
     use cortex_m::peripheral::{Peripherals, SYST};
     use semihosting::println;
+    use zstrip::Renderer;
+    use zstrip::embedded_graphics_core::geometry::Size;
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
     use zstrip::target::StripPixels;
-    use zstrip::{Buffers, Renderer};
 
     const WIDTH: usize = 320;
     const HEIGHT: usize = 240;
@@ -218,10 +219,11 @@ mod counting {
     #[inline(never)]
     fn count(memory: &mut Memory, row: &Row) -> u32 {
         let Memory { color, depth, records } = memory;
-        let screen = (WIDTH as u16, HEIGHT as u16);
-        let Ok(mut renderer) = Renderer::<Rgb565>::new(screen, Buffers { color, depth, records }) else {
+        let screen = Size::new(WIDTH as u32, HEIGHT as u32);
+        let Ok(renderer) = Renderer::<Rgb565>::new(screen).and_then(|renderer| renderer.with_depth(depth)) else {
             return 0;
         };
+        let mut renderer = renderer.with_records(records);
         let sink = |strip: &StripPixels<'_, Rgb565>| {
             black_box(strip.pixels());
             Ok::<(), core::convert::Infallible>(())
@@ -229,7 +231,7 @@ mod counting {
         let start = SYST::get_current();
         // SAFETY: copies a register to itself.
         unsafe { asm!("mov r10, r10") };
-        let stats = renderer.frame_to(sink, Rgb565::BLACK, |scene| row.1(scene)).unwrap_or_default();
+        let stats = renderer.frame_to(sink, color, Rgb565::BLACK, |scene| row.1(scene)).unwrap_or_default();
         // SAFETY: as above.
         unsafe { asm!("mov r11, r11") };
         let ticks = start.wrapping_sub(SYST::get_current()) & 0x00FF_FFFF;

@@ -13,6 +13,7 @@ use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 const LOOKS: [Look; 4] = [
     Look { bilinear: true, mips: true },
@@ -31,7 +32,7 @@ impl Demo for Crates {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["bilinear", "nearest", "one-level", "pixels"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
         crates(scene, turn, LOOKS[mode]);
     }
 }

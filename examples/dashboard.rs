@@ -12,16 +12,17 @@ use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithRecords, WithoutDepth};
 
 struct Dashboard;
 
-impl Demo<false> for Dashboard {
+impl Demo<WithoutDepth> for Dashboard {
     type Format = Rgb565;
     const NAME: &'static str = "dashboard";
     const ABOUT: &'static str = "Instruments drawn with embedded-graphics, strip by strip and without a depth buffer.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, false>>, turn: Angle16, _mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithoutDepth, WithRecords>>, turn: Angle16, _mode: usize) {
         scenes::dashboard::draw(scene, turn);
     }
 }

@@ -13,6 +13,7 @@ use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 struct Fog;
 
@@ -24,7 +25,7 @@ impl Demo for Fog {
     const RECORDS: usize = 64 * 1024;
     const MODES: &'static [&'static str] = &["squared", "exponential", "linear"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
         fog(scene, turn, [Mist::Squared, Mist::Exponential, Mist::Linear][mode]);
     }
 }

@@ -19,8 +19,9 @@ mod ticks;
 
 use core::convert::Infallible;
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332};
-use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565};
-use zstrip::frame::{Buffers, Renderer};
+use zstrip::embedded_graphics_core::geometry::Size;
+use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888};
+use zstrip::frame::Renderer;
 use zstrip::math::Angle16;
 use zstrip::target::{Packer, Rows, StripPixels};
 
@@ -38,7 +39,7 @@ mod counting {
     use zstrip::target::{PackedFormat, Pages, RowsLowFirst};
     use zstrip::{Cull, State};
 
-    const SCREEN: (u16, u16) = (320, 240);
+    const SCREEN: Size = Size::new(320, 240);
     const PIXELS: usize = 320 * 240;
 
     struct Memory {
@@ -63,12 +64,13 @@ mod counting {
     fn pack<F: PackedFormat>(name: &str, memory: &mut Memory, dither: Dither<F::Color>) {
         let Memory { color, depth, records, packed } = memory;
         let color: &mut [u8] = bytemuck::cast_slice_mut(color);
-        let buffers = Buffers { color: &mut color[..PIXELS], depth, records };
-        let mut renderer = Renderer::<Gray8>::new(SCREEN, buffers).expect("rows fit");
-        let mut packer = Packer::<F>::new(SCREEN, renderer.strip_rows(), dither, packed).expect("strips fit");
+        let color = &mut color[..PIXELS];
+        let renderer = Renderer::<Gray8>::new(SCREEN).expect("rows fit").with_depth(depth).expect("rows fit");
+        let mut renderer = renderer.with_records(records);
+        let mut packer = Packer::<F>::new(SCREEN, SCREEN.height, dither, packed).expect("strips fit");
         let mut frame = renderer.begin(Gray8::new(99));
         while let Some(strip) =
-            frame.next_strip(|scene| scenes::torus_gouraud(scene, Angle16(0))).expect("the same scene")
+            frame.next_strip(color, |scene| scenes::torus_gouraud(scene, Angle16(0))).expect("the same scene")
         {
             count(name, || {
                 black_box(packer.pack(&strip));
@@ -90,8 +92,8 @@ mod counting {
         let mesh = Mesh::new(MeshData { topology, colors: Some(&colors), ..data }).expect("a mesh");
         let Memory { color, depth, records, .. } = memory;
         let color = &mut bytemuck::cast_slice_mut(&mut color[..PIXELS])[..PIXELS];
-        let buffers = Buffers { color, depth, records };
-        let mut renderer = Renderer::<P>::new(SCREEN, buffers).expect("rows fit");
+        let renderer = Renderer::<P>::new(SCREEN).expect("rows fit").with_depth(depth).expect("rows fit");
+        let mut renderer = renderer.with_records(records);
         let state = State { cull: Cull::None, depth: depth_state, ..State::DEFAULT };
         let mut frame = |name: &str, is_drawn: bool| {
             count(name, || {
@@ -99,7 +101,7 @@ mod counting {
                     black_box(strip);
                     Ok::<(), Infallible>(())
                 };
-                let stats = renderer.frame_to(sink, P::to_color(P::pack([0; 3])), |scene| {
+                let stats = renderer.frame_to(sink, color, Rgb888::new(0, 0, 0), |scene| {
                     if is_drawn {
                         scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
                     }
@@ -143,7 +145,6 @@ use counting::run;
 mod sheet {
     use super::*;
     use zstrip::color::Levels;
-    use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 
     pub const CELL: (usize, usize) = (160, 120);
     const COLUMNS: usize = 5;
@@ -153,15 +154,19 @@ mod sheet {
     fn colors<P: PixelFormat>() -> Vec<[u8; 3]> {
         let pixels = CELL.0 * CELL.1;
         let (mut color, mut depth) = (vec![P::pack([0; 3]); pixels], vec![0; pixels]);
-        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [0; 16_384] };
-        let mut renderer = Renderer::<P>::new((CELL.0 as u16, CELL.1 as u16), buffers).expect("rows fit");
+        let renderer = Renderer::<P>::new(Size::new(CELL.0 as u32, CELL.1 as u32))
+            .expect("rows fit")
+            .with_depth(&mut depth)
+            .expect("rows fit");
+        let mut records = [0; 16_384];
+        let mut renderer = renderer.with_records(&mut records);
         let mut picture = Vec::new();
         let sink = |strip: &StripPixels<'_, P>| {
             picture.extend(strip.pixels().iter().map(|raw| P::unpack(*raw)));
             Ok::<(), Infallible>(())
         };
         renderer
-            .frame_to(sink, P::to_color(P::pack([24, 28, 24])), |scene| scenes::room(scene, Angle16(0)))
+            .frame_to(sink, &mut color, Rgb888::new(24, 28, 24), |scene| scenes::room(scene, Angle16(0)))
             .expect("a frame");
         picture
     }
@@ -170,11 +175,12 @@ mod sheet {
     fn greys<C: Levels>(dither: Dither<C>) -> Vec<[u8; 3]> {
         let pixels = CELL.0 * CELL.1;
         let (mut color, mut depth) = (vec![0; pixels], vec![0; pixels]);
-        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [0; 16_384] };
-        let screen = (CELL.0 as u16, CELL.1 as u16);
-        let mut renderer = Renderer::<Gray8>::new(screen, buffers).expect("rows fit");
+        let screen = Size::new(CELL.0 as u32, CELL.1 as u32);
+        let renderer = Renderer::<Gray8>::new(screen).expect("a screen").with_depth(&mut depth).expect("rows fit");
+        let mut records = [0; 16_384];
+        let mut renderer = renderer.with_records(&mut records);
         let mut bytes = vec![0; pixels / 2];
-        let mut packer = Packer::<Rows<C>>::new(screen, screen.1, dither, &mut bytes).expect("strips fit");
+        let mut packer = Packer::<Rows<C>>::new(screen, screen.height, dither, &mut bytes).expect("strips fit");
         let mut picture = Vec::new();
         let sink = |strip: &StripPixels<'_, Gray8>| {
             let (bits, white) = (C::BITS, (1_u32 << C::BITS) - 1);
@@ -184,7 +190,7 @@ mod sheet {
             }
             Ok::<(), Infallible>(())
         };
-        renderer.frame_to(sink, Gray8::new(26), |scene| scenes::room(scene, Angle16(0))).expect("a frame");
+        renderer.frame_to(sink, &mut color, Gray8::new(26), |scene| scenes::room(scene, Angle16(0))).expect("a frame");
         picture
     }
 

@@ -12,6 +12,7 @@ use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 struct Glass;
 
@@ -22,7 +23,12 @@ impl Demo for Glass {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const RECORDS: usize = 64 * 1024;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, _mode: usize) {
+    fn draw(
+        &self,
+        scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>,
+        turn: Angle16,
+        _mode: usize,
+    ) {
         scenes::light::glass(scene, turn);
     }
 }

@@ -1,12 +1,13 @@
 //! A lit cube, one frame of it, drawn in strips of 16 rows straight into a PNG file.
 use std::io::Write;
+use zstrip::Renderer;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
 use zstrip::light::Light;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Flat;
 use zstrip::target::StripPixels;
-use zstrip::{Buffers, Renderer};
 
 #[rustfmt::skip]
 static CUBE: Mesh<'static> = Mesh::constant(MeshData {
@@ -19,19 +20,20 @@ static CUBE: Mesh<'static> = Mesh::constant(MeshData {
 });
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let (color, depth, records) = (&mut [[0; 3]; 320 * 16], &mut [0; 320 * 16], &mut [0; 256]);
-    let mut renderer = Renderer::<Rgb888>::new((320, 240), Buffers { color, depth, records })?;
+    let (mut color, mut depth, mut records) = ([[0; 3]; 320 * 16], [0; 320 * 16], [0; 256]);
+    let renderer = Renderer::<Rgb888>::new(Size::new(320, 240))?;
+    let mut renderer = renderer.with_depth(&mut depth)?.with_records(&mut records);
 
     let camera = Projective::perspective(Angle16::from_degrees(45), (320, 240), Scalar::ONE, Scalar::from_num(20))?;
     let view = Affine::look_at(Vec3::from_ints(2, 3, 4), Vec3::ZERO, Vec3::Y)?;
     let light = Light::new(Vec3::from_ints(1, 3, 2), Rgb888::CSS_DARK_GRAY, Rgb888::CSS_DIM_GRAY);
+    // Made here: the closure is called for each strip.
+    let (mvp, shader) = (camera * view, Flat::new(light, Rgb888::CSS_ORANGE));
 
     let mut png = png::Encoder::new(std::fs::File::create("hello.png")?, 320, 240);
     png.set_color(png::ColorType::Rgb);
     let mut png = png.write_header()?.into_stream_writer()?;
     let to_png = |strip: &StripPixels<Rgb888>| png.write_all(strip.bytes());
-    renderer.frame_to(to_png, Rgb888::BLACK, |scene| {
-        scene.draw(&CUBE, &(camera * view), &Flat::new(light, Rgb888::CSS_ORANGE));
-    })?;
+    renderer.frame_to(to_png, &mut color, Rgb888::BLACK, |scene| scene.draw(&CUBE, &mvp, &shader))?;
     Ok(png.finish()?)
 }

@@ -13,6 +13,7 @@ use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 /// The aircraft's attitude: what is steered, and what the wind adds.
 #[derive(Default)]
@@ -51,7 +52,7 @@ impl Demo for Horizon {
         self.roll = Angle16((self.steered.1 + sway(97, 24) + sway(301, 4)) as u16);
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, _turn: Angle16, mode: usize) {
         let steered = (Angle16(self.steered.0 as u16), Angle16(self.steered.1 as u16));
         let (pitch, roll) = if mode == 0 { (self.pitch, self.roll) } else { steered };
         scenes::horizon::horizon(scene, pitch, roll);

@@ -12,6 +12,7 @@ use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 struct Labels;
 
@@ -21,7 +22,7 @@ impl Demo for Labels {
     const ABOUT: &'static str = "A torus with labels in its space, hidden by what is in front of them.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle16, _mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, turn: Angle16, _mode: usize) {
         scenes::labels::draw(scene, turn);
     }
 }

@@ -13,8 +13,9 @@ use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use zstrip::color::Dither;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb888, RgbColor};
-use zstrip::frame::{Buffers, RamBudget, Renderer};
+use zstrip::frame::{RamBudget, Renderer};
 use zstrip::math::{Affine, Angle16, Scalar, Vec3};
 use zstrip::shader::Gouraud;
 use zstrip::target::{Packer, Pages, StripPixels};
@@ -87,18 +88,19 @@ fn place(names: &[&str], name: &str) -> Result<usize, String> {
 fn frame(settings: &Settings, number: u32) -> Result<Vec<u8>, Box<dyn Error>> {
     let pixels = usize::from(SIZE.0) * usize::from(settings.strip_rows.min(SIZE.1));
     let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; 4096]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<Gray8>::new(SIZE, buffers)?;
+    let screen = Size::new(SIZE.0.into(), SIZE.1.into());
+    let renderer = Renderer::<Gray8>::new(screen)?.with_depth(&mut depth)?;
+    let mut renderer = renderer.with_records(&mut records);
     let mut bytes = vec![0; pixels / 8];
     let (_, dither) = DITHERS[settings.dither];
-    let mut packer = Packer::<Pages>::new(SIZE, renderer.strip_rows(), dither, &mut bytes)?;
+    let mut packer = Packer::<Pages>::new(screen, settings.strip_rows.into(), dither, &mut bytes)?;
     let mut sent = Vec::new();
     let to_panel = |strip: &StripPixels<'_, Gray8>| {
         sent.extend_from_slice(packer.pack(strip));
         Ok::<(), Infallible>(())
     };
     let turn = Angle16(number.wrapping_mul(128) as u16);
-    renderer.frame_to(to_panel, Gray8::new(0), |scene| match settings.scene {
+    renderer.frame_to(to_panel, &mut color, Gray8::new(0), |scene| match settings.scene {
         0 => torus(scene, turn),
         _ => scenes::room(scene, turn),
     })?;
@@ -124,7 +126,7 @@ fn size() -> (usize, usize) {
 }
 
 fn describe(settings: &Settings) -> String {
-    let ram = RamBudget::new::<Gray8>(SIZE.0, settings.strip_rows.min(SIZE.1));
+    let ram = RamBudget::new::<Gray8>(SIZE.0.into(), settings.strip_rows.min(SIZE.1).into());
     let packed = ram.color / 8;
     let (name, _) = DITHERS[settings.dither];
     format!(

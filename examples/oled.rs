@@ -12,8 +12,9 @@ mod scenes;
 
 use core::convert::Infallible;
 use zstrip::color::Dither;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray4, Gray8};
-use zstrip::frame::{Buffers, Renderer};
+use zstrip::frame::Renderer;
 use zstrip::math::Angle16;
 use zstrip::target::{Packer, Rows, StripPixels};
 
@@ -28,18 +29,18 @@ const RECORDS: usize = 8 * 1024;
 
 /// Draws frame number `frame` and hands over each strip in the panel's format: two pixels a byte, dithered.
 fn draw(frame: u16, buffers: &mut Memory, mut send: impl FnMut(usize, &[u8])) {
-    const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
+    const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
     let turn = Angle16(frame * (u16::MAX / FRAMES));
     let Memory { color, depth, records, packed } = buffers;
-    let mut renderer = Renderer::<Gray8>::new(SCREEN, Buffers { color, depth, records }).expect("rows fit");
-    let rows = renderer.strip_rows();
-    let mut packer = Packer::<Rows<Gray4>>::new(SCREEN, rows, Dither::BAYER_4, packed).expect("strips fit");
+    let renderer = Renderer::<Gray8>::new(SCREEN).expect("rows fit").with_depth(depth).expect("rows fit");
+    let mut renderer = renderer.with_records(records);
+    let mut packer = Packer::<Rows<Gray4>>::new(SCREEN, ROWS as u32, Dither::BAYER_4, packed).expect("strips fit");
     let sink = |strip: &StripPixels<'_, Gray8>| {
         send(strip.area().top_left.y as usize, packer.pack(strip));
         Ok::<(), Infallible>(())
     };
     renderer
-        .frame_to(sink, Gray8::new(26), |scene| scenes::torus_gouraud(scene, turn))
+        .frame_to(sink, color, Gray8::new(26), |scene| scenes::torus_gouraud(scene, turn))
         .expect("each call draws the same");
 }
 

@@ -13,6 +13,7 @@ use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 const SHADINGS: [Shading; 5] =
     [Shading::PerFragmentNear, Shading::PerVertex, Shading::PerFace, Shading::PerFragment, Shading::Matcap];
@@ -26,7 +27,7 @@ impl Demo for Phong {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["fragment", "vertex", "face", "sun", "matcap"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
         phong(scene, turn, SHADINGS[mode]);
     }
 }

@@ -26,8 +26,6 @@ mod image {
     #[cfg(target_arch = "riscv32")]
     use riscv_rt::entry;
     use semihosting::sys::arm_compat::sys_writec;
-    use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-    use zstrip::frame::Buffers;
     use zstrip::target::Stats;
 
     const WIDTH: usize = 320;
@@ -78,11 +76,11 @@ mod image {
             // Directly, not through the table of scenes, so that no scene is linked.
             workloads::flat_torus_without_records(color, depth, send);
         } else if cfg!(proof = "w1-w6") {
-            type Draw = fn(Buffers<'_, Rgb565>, fn(&[u16])) -> Stats;
+            type Draw = fn(workloads::Buffers<'_>, fn(&[u16])) -> Stats;
             use workloads::{flat_torus, gouraud_quad, gouraud_torus, quad, textured_quad, tiny};
             let all: [Draw; 6] = [quad, gouraud_quad, textured_quad, flat_torus, gouraud_torus, tiny];
             if let Some(draw) = all.get(index) {
-                draw(Buffers { color, depth, records }, send);
+                draw(workloads::Buffers { color, depth, records }, send);
             }
         } else if cfg!(proof = "formats") {
             let memory = scenes::formats::Memory { color, depth, records };

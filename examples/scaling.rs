@@ -124,6 +124,8 @@ mod counting {
     use core::convert::Infallible;
     use cortex_m::peripheral::Peripherals;
     use semihosting::println;
+    use zstrip::Renderer;
+    use zstrip::embedded_graphics_core::geometry::Size;
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
     use zstrip::frame::RamBudget;
     use zstrip::light::Light;
@@ -131,7 +133,6 @@ mod counting {
     use zstrip::mesh::Mesh;
     use zstrip::shader::Gouraud;
     use zstrip::target::{Stats, StripPixels, records_len};
-    use zstrip::{Buffers, Renderer};
 
     const PIXELS: usize = 320 * 240;
 
@@ -200,12 +201,11 @@ mod counting {
         fn count(&self, memory: &mut Memory, rows: u16, words: usize) -> Cost {
             let (mut ticks, mut hash) = (0_u32, 0x811C_9DC5_u32);
             let pixels = usize::from(self.screen.0) * usize::from(rows);
-            let buffers = Buffers {
-                color: &mut memory.color[..pixels],
-                depth: &mut memory.depth[..pixels],
-                records: &mut memory.records[..words],
-            };
-            let mut renderer = Renderer::<Rgb565>::new(self.screen, buffers).expect("the buffers hold a row");
+            let renderer = Renderer::<Rgb565>::new(Size::new(self.screen.0.into(), self.screen.1.into()))
+                .expect("the buffers hold a row")
+                .with_depth(&mut memory.depth[..pixels])
+                .expect("the buffers hold a row");
+            let mut renderer = renderer.with_records(&mut memory.records[..words]);
             // FNV-1a over pixels.
             let sink = |strip: &StripPixels<'_, Rgb565>| {
                 let start = ticks::now();
@@ -221,7 +221,7 @@ mod counting {
             let light = Light::from_channels(Vec3::from_ints(2, 4, 3), [215; 3], [40; 3]).to_object(&model);
             let (mvp, shader) = (*self.camera * model, Gouraud::new(light, Rgb888::new(255, 160, 64)));
             let start = ticks::now();
-            let stats = renderer.frame_to(sink, Rgb565::BLACK, |scene| {
+            let stats = renderer.frame_to(sink, &mut memory.color[..pixels], Rgb565::BLACK, |scene| {
                 if let Some(mesh) = self.mesh {
                     scene.draw(mesh, &mvp, &shader);
                 }
@@ -234,7 +234,7 @@ mod counting {
         fn report(&self, memory: &mut Memory, rows: u16, room: &str, words: usize) {
             let Cost { ticks, hash, stats } = self.count(memory, rows, words);
             let ((width, height), triangles) = (self.screen, self.mesh.map_or(0, Mesh::triangle_count));
-            let bytes = RamBudget::new::<Rgb565>(width, rows).with_record_words(words).total();
+            let bytes = RamBudget::new::<Rgb565>(width.into(), rows.into()).with_record_words(words).total();
             let walks = stats.walks;
             println!("{width} {height} {rows} {triangles} {room} {bytes} {ticks} {walks} {hash:08x}");
         }

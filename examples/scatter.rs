@@ -14,6 +14,7 @@ use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::{Scene, Smooth, State, Thick, Thin};
 
 /// Points of a cloud.
@@ -96,7 +97,7 @@ impl Demo for Scatter {
         axes.extend([at(-x, -1000, z), at(-x, 1000, z)]);
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, _turn: Angle16, mode: usize) {
         let pairs = |ends| Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(ends)));
         let (Ok(grid), Ok(axes)) = (pairs(&self.grid), pairs(&self.axes)) else { return };
         let behind = State { depth: DepthState { compare: Compare::Always, write: false }, ..State::DEFAULT };

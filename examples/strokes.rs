@@ -14,12 +14,14 @@ mod scenes;
 use semihosting::println;
 
 use scenes::wires;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::frame::{Buffers, Renderer};
+use zstrip::frame::Renderer;
 use zstrip::math::{Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, MeshData, Positions};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::{Dashed, Scene, ScreenPoint, Smooth, Stroke, Thick, Thin};
 
 const WIDTH: usize = 320;
@@ -28,7 +30,7 @@ const HEIGHT: usize = 240;
 const CELLS: (usize, usize) = (8, 6);
 const LINES: usize = CELLS.0 * CELLS.1;
 
-type Target<'a> = Strip<'a, Rgb565>;
+type Target<'a> = Strip<'a, Rgb565, WithDepth, WithRecords>;
 type Drawing = fn(&mut Scene<'_, Target<'_>>, &Input<'_>);
 
 /// What is ready before a frame.
@@ -150,10 +152,11 @@ fn run() {
 #[inline(never)]
 fn frame(memory: &mut Memory, drawing: Drawing, rows: usize, input: &Input<'_>, mut sink: impl FnMut(&[u16])) {
     let (color, depth) = (&mut memory.color[..WIDTH * rows], &mut memory.depth[..WIDTH * rows]);
-    let buffers = Buffers { color, depth, records: &mut memory.records };
-    let Ok(mut renderer) = Renderer::<Rgb565>::new((WIDTH as u16, HEIGHT as u16), buffers) else { return };
+    let screen = Size::new(WIDTH as u32, HEIGHT as u32);
+    let Ok(renderer) = Renderer::<Rgb565>::new(screen).and_then(|renderer| renderer.with_depth(depth)) else { return };
+    let mut renderer = renderer.with_records(&mut memory.records);
     let mut frame = renderer.begin(Rgb565::BLACK);
-    while let Ok(Some(strip)) = frame.next_strip(|scene| drawing(scene, input)) {
+    while let Ok(Some(strip)) = frame.next_strip(color, |scene| drawing(scene, input)) {
         sink(strip.pixels());
     }
 }

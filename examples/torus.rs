@@ -13,6 +13,7 @@ use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 /// The scenes' names.
 const NAMES: [&str; SCENES.len()] = {
@@ -36,7 +37,7 @@ impl Demo for Torus {
     /// Gouraud shaded.
     const FIRST: usize = 1;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
         (SCENES[mode].draw)(scene, turn);
     }
 }

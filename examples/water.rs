@@ -13,6 +13,7 @@ use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 
 struct Water;
 
@@ -23,7 +24,7 @@ impl Demo for Water {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["breeze", "waves", "gale"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format>>, turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
         water(scene, turn, [1, 2, 3][mode]);
     }
 }

@@ -16,6 +16,7 @@ use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
 use zstrip::shader::{DepthOnly, Flat};
 use zstrip::span::{Compare, DepthState};
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::{Dashed, Scene, Smooth, State, Thin};
 
 /// Corners of the polygons that stand for circles.
@@ -146,7 +147,7 @@ impl Demo for Wireframe {
         }
     }
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565>>, _turn: Angle16, mode: usize) {
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, _turn: Angle16, mode: usize) {
         let mesh = self.part.mesh();
         let edges = if mode == 3 { &self.all } else { &self.seen };
         let Ok(lines) = Lines::of_mesh(&mesh, edges) else { return };

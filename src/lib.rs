@@ -2,30 +2,33 @@
 //! it was drawn. No allocator, no floats, no `unsafe`; a frame of 320×240 takes some KB of RAM instead of 300.
 //!
 //! ```
-//! use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors};
+//! use zstrip::embedded_graphics_core::geometry::Size;
+//! use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
 //! use zstrip::shader::Flat;
 //! use zstrip::mesh::{Mesh, MeshData, Positions};
 //! use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 //! use zstrip::color::Rgb565Be;
-//! use zstrip::{Buffers, Renderer};
+//! use zstrip::Renderer;
 //!
 //! // A mesh borrows its slices, which may lie in flash. Counter-clockwise is the front.
 //! static CORNERS: [Vec3; 3] = [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(0, 1, 0)];
 //! static TRIANGLE: Mesh<'static> = Mesh::constant(MeshData::new(Positions::Exact(&CORNERS)));
 //!
 //! // The caller owns the memory; its size makes the strip's height: 16 rows. Records may be few, or none.
-//! let (color, depth, records) = (&mut [0; 320 * 16], &mut [0; 320 * 16], &mut [0; 64]);
-//! let mut renderer = Renderer::<Rgb565Be>::new((320, 240), Buffers { color, depth, records })?;
+//! let (mut color, mut depth, mut records) = ([0; 320 * 16], [0; 320 * 16], [0; 64]);
+//! let mut renderer =
+//!     Renderer::<Rgb565Be>::new(Size::new(320, 240))?.with_depth(&mut depth)?.with_records(&mut records);
 //!
 //! let camera = Projective::perspective(Angle16::from_degrees(60), (320, 240), Scalar::ONE, Scalar::from_num(100))?;
 //! let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(Angle16::from_degrees(15));
+//! let (mvp, shader) = (camera * model, Flat::unlit(Rgb888::CSS_ORANGE));
 //!
 //! # let mut sent = 0;
 //! # let mut spi_write = |bytes: &[u8]| sent += bytes.len();
-//! let mut frame = renderer.begin(Rgb565::BLACK);
+//! let mut frame = renderer.begin(Rgb888::BLACK);
 //! // The closure draws the whole scene; it is called for each strip and must draw the same each time.
-//! while let Some(strip) = frame.next_strip(|scene| {
-//!     scene.draw(&TRIANGLE, &(camera * model), &Flat::unlit(Rgb888::CSS_ORANGE));
+//! while let Some(strip) = frame.next_strip(&mut color, |scene| {
+//!     scene.draw(&TRIANGLE, &mvp, &shader);
 //! })? {
 //!     spi_write(strip.bytes());
 //! }
@@ -105,11 +108,7 @@ pub mod prelude;
 // The crates whose types stand in signatures.
 pub use bytemuck;
 pub use embedded_graphics_core;
-pub use fixed;
-#[cfg(feature = "micromath")]
-pub use micromath;
-
-pub use frame::{Buffers, Renderer};
+pub use frame::Renderer;
 pub use scene::{Canvas, Cull, Dashed, Scene, ScreenPoint, Smooth, State, Stroke, Thick, Thin, Winding};
 pub use target::Framebuffer;
 

@@ -5,7 +5,7 @@
 #[doc(no_inline)]
 pub use crate::{
     color::Rgb565Be,
-    frame::{Buffers, Renderer},
+    frame::Renderer,
     light::{DirectionalLight, Lighting, Material},
     math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3},
     mesh::{Lines, Mesh, MeshData, Points, Positions, Topology},

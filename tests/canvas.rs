@@ -228,9 +228,12 @@ fn framebuffers_get_the_same_bytes_with_a_stride_and_a_low_depth_buffer() {
     let (expected, ..) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| draw_any(scene, 5));
     let mut color = vec![0; 80 * 48];
     let mut depth = vec![0; 64 * 5];
-    let mut renderer = FramebufferRenderer::new(SCREEN, &mut depth, &mut []).expect("a renderer");
-    let mut frame = FrameSlice::<Rgb565>::with_stride(&mut color, 64, 48, 80).expect("a framebuffer");
-    renderer.frame(&mut frame, Some(Rgb565::BLACK), |scene| draw_any(scene, 5)).expect("a frame");
+    let mut renderer = FramebufferRenderer::new(Size::new(SCREEN.0.into(), SCREEN.1.into()))
+        .expect("a renderer")
+        .with_depth(&mut depth)
+        .expect("a renderer");
+    let mut frame = FrameSlice::<Rgb565>::with_stride(&mut color, Size::new(64, 48), 80).expect("a framebuffer");
+    renderer.frame(&mut frame, Rgb565::BLACK, |scene| draw_any(scene, 5)).expect("a frame");
     let packed: Vec<_> = color.chunks(80).flat_map(|row| &row[..64]).copied().collect();
     assert_eq!(difference(&packed, &expected, SCREEN.0), None);
 }

@@ -11,13 +11,14 @@ use reference::subject::Subject;
 use std::cell::Cell;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, Renderer};
+use zstrip::frame::{FrameError, FramebufferRenderer, Renderer};
 use zstrip::internals::{Projected, Transform};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Bounds, Mesh, MeshData, MeshError, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::vertex::{DepthRange, Face, VertexRef, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State};
 
@@ -37,16 +38,17 @@ fn white() -> Flat {
 }
 
 /// A frame of 64×64 px in one strip: how many pixels are not black.
-fn lit(draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565>>)) -> (usize, Stats) {
+fn lit(draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>)) -> (usize, Stats) {
     let (mut color, mut depth, mut records) = ([0; 4096], [0; 4096], [0; 1000]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers).expect("a renderer");
+    let renderer =
+        Renderer::<Rgb565>::new(Size::new(64, 64)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+    let mut renderer = renderer.with_records(&mut records);
     let mut lit = 0;
     let count = |strip: &StripPixels<'_, Rgb565>| {
         lit += strip.pixels().iter().filter(|p| **p != 0).count();
         Ok::<(), ()>(())
     };
-    let stats = renderer.frame_to(count, Rgb565::BLACK, draw).expect("a frame");
+    let stats = renderer.frame_to(count, &mut color, Rgb565::BLACK, draw).expect("a frame");
     (lit, stats)
 }
 
@@ -177,13 +179,14 @@ fn steep_channels_on_slivers_do_not_overflow() {
 #[test]
 fn frame_is_over_after_its_scene_changed() {
     let (mut color, mut depth, mut records) = ([0; 512], [0; 512], [0; 1000]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers).expect("a renderer");
+    let renderer =
+        Renderer::<Rgb565>::new(Size::new(64, 64)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+    let mut renderer = renderer.with_records(&mut records);
     let mut frame = renderer.begin(Rgb565::BLACK);
     let mut call = 0;
     let mut next = || {
         frame
-            .next_strip(|scene| {
+            .next_strip(&mut color, |scene| {
                 call += 1;
                 scene.draw(&square(), &Projective::IDENTITY, &white());
                 let turn = Angle16(if call == 2 { 100 } else { 0 });
@@ -191,7 +194,7 @@ fn frame_is_over_after_its_scene_changed() {
             })
             .map(|strip| strip.is_some())
     };
-    assert_eq!(next(), Err(FrameError::SceneChanged(1)));
+    assert_eq!(next(), Err(FrameError::SceneChanged { draw: 1 }));
     assert_eq!(next(), Ok(false));
 }
 
@@ -200,18 +203,20 @@ fn another_mesh_of_the_same_size_is_noticed() {
     let half = SQUARE.map(|p| p * Scalar::from_num(0.5));
     let (whole, half) = (square(), Mesh::new(quad(&half)).expect("a mesh"));
     let (mut color, mut depth, mut records) = ([0; 512], [0; 512], [0; 1000]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers).expect("a renderer");
+    let renderer =
+        Renderer::<Rgb565>::new(Size::new(64, 64)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+    let mut renderer = renderer.with_records(&mut records);
     let mut call = 0;
     let result = renderer.frame_to(
         |_: &StripPixels<'_, Rgb565>| Ok::<(), ()>(()),
+        &mut color,
         Rgb565::BLACK,
         |scene| {
             call += 1;
             scene.draw(if call == 1 { &whole } else { &half }, &Projective::IDENTITY, &white());
         },
     );
-    assert_eq!(result, Err(FrameError::SceneChanged(0)));
+    assert_eq!(result, Err(FrameError::SceneChanged { draw: 0 }));
 }
 
 #[test]
@@ -231,25 +236,16 @@ fn framebuffers_smaller_than_the_screen_get_what_they_hold() {
     let mut depth = [0; 4096];
     for (width, height, stride) in [(32, 64, 32), (64, 20, 64), (1, 64, 3), (64, 1, usize::MAX)] {
         let mut pixels = vec![0; 4096];
-        let mut renderer = FramebufferRenderer::new((64, 64), &mut depth, &mut []).expect("a renderer");
-        let mut slice = FrameSlice::<Rgb565>::with_stride(&mut pixels, width, height, stride).expect("a framebuffer");
-        renderer.frame(&mut slice, Some(Rgb565::BLACK), draw).expect("a frame");
+        let mut renderer = FramebufferRenderer::new(Size::new(64, 64))
+            .expect("a renderer")
+            .with_depth(&mut depth)
+            .expect("a renderer");
+        let mut slice =
+            FrameSlice::<Rgb565>::with_stride(&mut pixels, Size::new(width, height), stride).expect("a framebuffer");
+        renderer.frame(&mut slice, Rgb565::BLACK, draw).expect("a frame");
         let lit = pixels.iter().filter(|p| **p != 0).count();
-        assert_eq!(lit, usize::from(width) * usize::from(height), "{width}x{height}");
+        assert_eq!(lit, (width * height) as usize, "{width}x{height}");
     }
-}
-
-#[test]
-fn short_buffer_for_a_strip_gets_the_pixels_it_holds() {
-    let (mut color, mut depth) = ([0; 512], [0; 512]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
-    let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers).expect("a renderer");
-    let mut short = [0; 502];
-    let mut frame = renderer.begin(Rgb565::BLACK);
-    let strip = frame.next_strip_in(&mut short, |scene| scene.draw(&square(), &Projective::IDENTITY, &white()));
-    let strip = strip.expect("the same scene").expect("a strip");
-    assert_eq!(strip.pixels().len(), 502);
-    assert!(strip.pixels().iter().all(|p| *p == 0xFFFF));
 }
 
 /// w on the border of the range that the short path is made for: its own rounding must not lead out of it.

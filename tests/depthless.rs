@@ -16,7 +16,8 @@ use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, Mesh, Points};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{DepthState, Shader};
-use zstrip::target::{FrameSlice, Strip, StripPixels, WithoutDepth};
+use zstrip::target::{Depthless, FrameSlice, Strip, StripPixels};
+use zstrip::target::{WithRecords, WithoutDepth};
 use zstrip::{Cull, Dashed, Framebuffer, Scene, ScreenPoint, Smooth, State, Thin};
 
 const SCREEN: (u16, u16) = (77, 50);
@@ -26,18 +27,19 @@ fn without_depth<P: PixelFormat>(
     rows: usize,
     records: usize,
     background: P::Color,
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, false>>),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, WithoutDepth, WithRecords>>),
 ) -> Vec<P::Raw> {
     let mut color = vec![P::pack([0x5A; 3]); usize::from(SCREEN.0) * rows];
     let mut records = vec![0; records];
-    let mut renderer = Renderer::<P, false>::without_depth(SCREEN, &mut color, &mut records).expect("a renderer");
-    assert_eq!(usize::from(renderer.strip_rows()), rows.min(usize::from(SCREEN.1)), "colours alone decide");
+    let screen = Size::new(SCREEN.0.into(), SCREEN.1.into());
+    let mut renderer = Renderer::<P>::new(screen).expect("a renderer").with_records(&mut records);
+    assert_eq!(renderer.strip_rows(color.len()) as usize, rows.min(usize::from(SCREEN.1)), "colours alone decide");
     let mut picture = Vec::new();
     let sink = |strip: &StripPixels<'_, P>| {
         picture.extend_from_slice(strip.pixels());
         Ok::<(), core::convert::Infallible>(())
     };
-    renderer.frame_to(sink, background, draw).expect("the same scene in each call");
+    renderer.frame_to(sink, &mut color, background, draw).expect("the same scene in each call");
     picture
 }
 
@@ -88,13 +90,13 @@ where
             }
             if records == 0 {
                 let mut color = vec![P::pack([0x5A; 3]); usize::from(SCREEN.0) * rows];
-                let mut renderer = Renderer::<P, false, false>::color_only(SCREEN, &mut color).expect("a renderer");
+                let mut renderer = Renderer::<P>::new(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a renderer");
                 let mut picture = Vec::new();
                 let sink = |strip: &StripPixels<'_, P>| {
                     picture.extend_from_slice(strip.pixels());
                     Ok::<(), core::convert::Infallible>(())
                 };
-                renderer.frame_to(sink, background, |s| draw(s, &mesh, DepthState::LESS)).expect("a frame");
+                renderer.frame_to(sink, &mut color, background, |s| draw(s, &mesh, DepthState::LESS)).expect("a frame");
                 let found = difference(&picture, &expected, SCREEN.0);
                 assert_eq!(found, None, "seed {seed}, {rows} rows, colours only");
             }
@@ -116,9 +118,9 @@ fn framebuffer_needs_no_depth_either() {
     let mesh = soup.mesh();
     let (expected, _) = strips::<Rgb565>(SCREEN, 50, 20_000, Rgb565::BLUE, |s| draw(s, &mesh, DepthState::OFF));
     let mut pixels = vec![0; 77 * 50];
-    let mut framebuffer = WithoutDepth(FrameSlice::<Rgb565>::new(&mut pixels, 77, 50).expect("a framebuffer"));
-    let mut renderer = FramebufferRenderer::without_depth(SCREEN, &mut []).expect("a renderer");
-    let stats = renderer.frame(&mut framebuffer, Some(Rgb565::BLUE), |s| draw(s, &mesh, DepthState::LESS));
+    let mut framebuffer = Depthless(FrameSlice::<Rgb565>::new(&mut pixels, Size::new(77, 50)).expect("a framebuffer"));
+    let mut renderer = FramebufferRenderer::new(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a renderer");
+    let stats = renderer.frame(&mut framebuffer, Rgb565::BLUE, |s| draw(s, &mesh, DepthState::LESS));
     assert_eq!(stats.expect("the same scene").strips, 1, "nothing limits the strip");
     assert_eq!(difference(&pixels, &expected, SCREEN.0), None);
 }

@@ -18,6 +18,7 @@ use zstrip::color::{Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::span::{DepthOff, DepthState};
 use zstrip::target::{FrameSlice, Overlay, StripPixels};
+use zstrip::target::{WithDepth, WithRecords};
 
 const WIDTH: usize = 96;
 const HEIGHT: usize = 70;
@@ -177,7 +178,8 @@ macro_rules! check {
             }
             // Without a depth buffer, where an overlay at a depth is an overlay.
             let mut color = vec![Default::default(); WIDTH * rows];
-            let mut renderer = Renderer::<$format, false, false>::color_only(SCREEN, &mut color).expect("a renderer");
+            let mut renderer =
+                Renderer::<$format>::new(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a renderer");
             for z in [None, Some(65_535)] {
                 let mut picture = Vec::new();
                 let sink = |strip: &StripPixels<'_, $format>| {
@@ -185,7 +187,7 @@ macro_rules! check {
                     Ok::<(), core::convert::Infallible>(())
                 };
                 renderer
-                    .frame_to(sink, background, |scene| match z {
+                    .frame_to(sink, &mut color, background, |scene| match z {
                         None => $draw(&mut scene.overlay()),
                         Some(z) => $draw(&mut scene.at_depth(z)),
                     })
@@ -194,11 +196,15 @@ macro_rules! check {
             }
         }
         let mut pixels = vec![Default::default(); (WIDTH + 7) * HEIGHT];
-        let mut slice = FrameSlice::<$format>::with_stride(&mut pixels, WIDTH as u16, HEIGHT as u16, WIDTH + 7)
-            .expect("a framebuffer");
+        let mut slice =
+            FrameSlice::<$format>::with_stride(&mut pixels, Size::new(WIDTH as u32, HEIGHT as u32), WIDTH + 7)
+                .expect("a framebuffer");
         let mut depth = vec![0; WIDTH * 9];
-        let mut renderer = FramebufferRenderer::new(SCREEN, &mut depth, &mut []).expect("a renderer");
-        renderer.frame(&mut slice, Some(background), |scene| $draw(&mut scene.overlay())).expect("a frame");
+        let mut renderer = FramebufferRenderer::new(Size::new(SCREEN.0.into(), SCREEN.1.into()))
+            .expect("a renderer")
+            .with_depth(&mut depth)
+            .expect("a renderer");
+        renderer.frame(&mut slice, background, |scene| $draw(&mut scene.overlay())).expect("a frame");
         let packed: Vec<_> = pixels.chunks(WIDTH + 7).flat_map(|row| &row[..WIDTH]).copied().collect();
         check(&packed, "in a framebuffer with a stride");
     }};
@@ -265,6 +271,8 @@ fn images_are_drawn_by_the_part_in_the_strip() {
 #[test]
 fn pixels_in_no_order_and_far_away_are_those_in_a_framebuffer() {
     let colors = [Rgb565::CSS_TAN, Rgb565::CSS_TEAL, Rgb565::WHITE];
-    let plain = |overlay: &mut Overlay<'_, zstrip::target::Strip<'_, Rgb565>, _>| sprinkle(overlay, &colors);
+    let plain = |overlay: &mut Overlay<'_, zstrip::target::Strip<'_, Rgb565, WithDepth, WithRecords>, _>| {
+        sprinkle(overlay, &colors)
+    };
     check!(Rgb565, Rgb565, |target: &mut _| sprinkle(target, &colors), plain);
 }

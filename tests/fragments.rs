@@ -13,6 +13,7 @@ use zstrip::math::{Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Strip;
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::vertex::{Face, Side, Varyings, VertexRef, VertexShader, Viewport};
 use zstrip::{Cull, Scene, State, Winding};
 
@@ -70,7 +71,7 @@ fn every_walk_covers_the_pixels_of_the_rasterizer() {
         for depth in [DepthState::OFF, DepthState::LESS, DepthState { compare: Compare::LessEqual, write: true }] {
             let state = State { cull: Cull::None, depth, ..State::DEFAULT };
             for rows in [32, 7] {
-                let draw = |draw: &dyn Fn(&mut Scene<'_, Strip<'_, Rgb565>>)| {
+                let draw = |draw: &dyn Fn(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>)| {
                     strips::<Rgb565>(SCREEN, rows, 200, Rgb565::BLACK, |scene| draw(scene)).0
                 };
                 let few = draw(&|scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, &Varied::<1>));

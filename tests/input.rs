@@ -15,12 +15,13 @@ use zstrip::embedded_graphics_core::geometry::Point;
 use zstrip::embedded_graphics_core::geometry::{OriginDimensions, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, GrayColor, PixelColor, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
-use zstrip::frame::{Buffers, FrameError, FramebufferRenderer, RamBudget, Renderer, RendererError};
+use zstrip::frame::{FrameError, FramebufferRenderer, RamBudget, Renderer, RendererError};
 use zstrip::math::{Affine, Angle16, ProjectionError, Projective, Scalar, Vec3};
 use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, MeshError, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::Shader;
 use zstrip::target::{FrameSlice, FramebufferError, StripPixels, StripSink, records_len};
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::vertex::{VertexShader, Viewport, ViewportError};
 
 /// The error, and that it says more than nothing.
@@ -107,53 +108,46 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
     assert_eq!(told(at(0, i32::MIN, 1, 1)), ViewportError::TooFar { top_left: Point::new(0, i32::MIN) });
     assert!(at(-8192, 8192, 4096, 4096).is_ok());
 
-    let build = |screen, color: usize, depth: usize| {
-        let (mut color, mut depth) = (vec![0; color], vec![0; depth]);
-        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
-        Renderer::<Rgb565>::new(screen, buffers).map(|r| r.strip_rows())
+    let build = |(width, height), color: usize, depth: usize| {
+        let mut depth = vec![0; depth];
+        let renderer = Renderer::<Rgb565>::new(Size::new(width, height))?.with_depth(&mut depth)?;
+        Ok::<_, RendererError>(renderer.strip_rows(color))
     };
-    assert_eq!(told(build((320, 240), 319, 320)), RendererError::ColorTooShort(319, 320));
-    assert_eq!(told(build((320, 240), 320, 319)), RendererError::DepthTooShort(319, 320));
-    assert_eq!(told(build((320, 240), 0, 0)), RendererError::ColorTooShort(0, 320));
-    let empty = RendererError::Screen(ViewportError::Empty { size: Size::new(0, 240) });
-    assert_eq!(told(build((0, 240), 100, 100)), empty);
-    assert_eq!(
-        told(build((320, 0), 400, 400)),
-        RendererError::Screen(ViewportError::Empty { size: Size::new(320, 0) })
-    );
-    let large = RendererError::Screen(ViewportError::TooLarge { size: Size::new(5000, 1) });
-    assert_eq!(told(build((5000, 1), 5000, 5000)), large);
+    for depth in [319, 0] {
+        let short = RendererError::DepthTooShort { pixels: depth, needed: 320 };
+        assert_eq!(told(build((320, 240), 320, depth)), short);
+        let mut depth = vec![0; depth];
+        let framebuffer = FramebufferRenderer::new(Size::new(320, 240)).expect("a renderer");
+        assert_eq!(told(framebuffer.with_depth(&mut depth)), short);
+    }
+    for (width, height) in [(0, 240), (320, 0), (4097, 1), (1, 4097), (65_536 + 320, 240), (320, u32::MAX)] {
+        let screen = Size::new(width, height);
+        let refused = RendererError::Screen(told(Viewport::full(screen)));
+        assert_eq!(told(build((width, height), 5000, 5000)), refused);
+        assert_eq!(told(FramebufferRenderer::new(screen)), refused);
+    }
     // The smaller buffer decides, and no strip is higher than the screen.
     assert_eq!(build((320, 240), 320 * 16, 320 * 9 + 319), Ok(9));
     assert_eq!(build((320, 240), 320 * 7, 320 * 9), Ok(7));
+    assert_eq!(build((320, 240), 320 * 8 - 1, 320 * 9), Ok(7));
+    assert_eq!(build((320, 240), 319, 320 * 9), Ok(0));
     assert_eq!(build((10, 4), 1000, 1000), Ok(4));
-    // No depth at all is a renderer of its own.
-    assert_eq!(told(build((320, 240), 320 * 5, 0)), RendererError::DepthTooShort(0, 320));
-    let mut color = [0; 320 * 5];
-    let rows = |renderer: Result<u16, RendererError>| renderer.expect("a renderer");
-    assert_eq!(
-        rows(Renderer::<Rgb565, false>::without_depth((320, 240), &mut color, &mut []).map(|r| r.strip_rows())),
-        5
-    );
-    assert_eq!(rows(Renderer::<Rgb565, false, false>::color_only((320, 240), &mut color).map(|r| r.strip_rows())), 5);
-    assert_eq!(
-        told(Renderer::<Rgb565, true, false>::without_records((320, 240), &mut color, &mut [0; 319])),
-        RendererError::DepthTooShort(319, 320)
-    );
-
-    let mut depth = [0; 100];
-    let short = FramebufferRenderer::new((320, 240), &mut depth, &mut []);
-    assert_eq!(told(short), RendererError::DepthTooShort(100, 320));
+    let bare = Renderer::<Rgb565>::new(Size::new(320, 240)).expect("a renderer");
+    assert_eq!(bare.strip_rows(320 * 5), 5);
+    assert_eq!(bare.strip_rows(usize::MAX), 240);
 
     let mut pixels = [0_u16; 100];
-    assert_eq!(told(FrameSlice::<Rgb565>::new(&mut pixels, 10, 11)), FramebufferError::TooShort(100, 110));
-    let strided = FrameSlice::<Rgb565>::with_stride(&mut pixels, 10, 4, 9);
-    assert_eq!(told(strided), FramebufferError::Stride(9, 10));
-    let strided = FrameSlice::<Rgb565>::with_stride(&mut pixels, 10, 4, 31);
-    assert_eq!(told(strided), FramebufferError::TooShort(100, 103));
+    assert_eq!(
+        told(FrameSlice::<Rgb565>::new(&mut pixels, Size::new(10, 11))),
+        FramebufferError::TooShort { pixels: 100, needed: 110 }
+    );
+    let strided = FrameSlice::<Rgb565>::with_stride(&mut pixels, Size::new(10, 4), 9);
+    assert_eq!(told(strided), FramebufferError::Stride { stride: 9, width: 10 });
+    let strided = FrameSlice::<Rgb565>::with_stride(&mut pixels, Size::new(10, 4), 31);
+    assert_eq!(told(strided), FramebufferError::TooShort { pixels: 100, needed: 103 });
     // The gap behind the last row need not be there.
-    assert!(FrameSlice::<Rgb565>::with_stride(&mut pixels, 10, 4, 30).is_ok());
-    assert!(FrameSlice::<Rgb565>::with_stride(&mut pixels, 10, 4, usize::MAX).is_err());
+    assert!(FrameSlice::<Rgb565>::with_stride(&mut pixels, Size::new(10, 4), 30).is_ok());
+    assert!(FrameSlice::<Rgb565>::with_stride(&mut pixels, Size::new(10, 4), usize::MAX).is_err());
 }
 
 #[test]
@@ -201,20 +195,27 @@ fn empty_mesh_draws_nothing() {
 const SIZE: (u16, u16) = (64, 48);
 
 /// Calls `test` with a renderer of strips of 8 rows.
-fn with_renderer<T>(records: usize, test: impl FnOnce(&mut Renderer<'_, Rgb565>) -> T) -> T {
+fn with_renderer<T>(
+    records: usize,
+    test: impl FnOnce(&mut Renderer<'_, Rgb565, WithDepth, WithRecords>, &mut [u16]) -> T,
+) -> T {
     let (mut color, mut depth, mut records) = (vec![0; 64 * 8], vec![0; 64 * 8], vec![0; records]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    test(&mut Renderer::<Rgb565>::new(SIZE, buffers).expect("a renderer"))
+    let renderer = Renderer::<Rgb565>::new(Size::new(64, 48)).expect("a renderer");
+    test(&mut renderer.with_depth(&mut depth).expect("a renderer").with_records(&mut records), &mut color)
 }
 
 /// The whole frame, from a renderer that has been used before.
-fn next_frame(renderer: &mut Renderer<'_, Rgb565>, turn: Angle16) -> Vec<u16> {
+fn next_frame(
+    renderer: &mut Renderer<'_, Rgb565, WithDepth, WithRecords>,
+    color: &mut [u16],
+    turn: Angle16,
+) -> Vec<u16> {
     let mut picture = Vec::new();
     let sink = |strip: &StripPixels<'_, Rgb565>| {
         picture.extend_from_slice(strip.pixels());
         Ok::<(), Infallible>(())
     };
-    let drawn = renderer.frame_to(sink, Rgb565::BLACK, |scene| scenes::room(scene, turn));
+    let drawn = renderer.frame_to(sink, color, Rgb565::BLACK, |scene| scenes::room(scene, turn));
     drawn.expect("a frame like any other");
     picture
 }
@@ -240,13 +241,13 @@ impl StripSink<Rgb565> for Failing {
 #[test]
 fn failing_sink_ends_the_frame_and_the_next_one_is_right() {
     for (records, strips_left) in [0, 900, 30_000].into_iter().flat_map(|r| [0, 1, 3, 5].map(|s| (r, s))) {
-        with_renderer(records, |renderer| {
+        with_renderer(records, |renderer, color| {
             let sink = Failing { strips_left };
-            let failed = renderer.frame_to(sink, Rgb565::RED, |scene| scenes::room(scene, Angle16(1000)));
+            let failed = renderer.frame_to(sink, color, Rgb565::RED, |scene| scenes::room(scene, Angle16(1000)));
             let error = failed.expect_err("the sink fails");
             assert_eq!(error, FrameError::Sink("the cable came off"));
             assert!(error.to_string().contains("the cable came off"));
-            let found = difference(&next_frame(renderer, Angle16(9)), &first_frame(Angle16(9)), 64);
+            let found = difference(&next_frame(renderer, color, Angle16(9)), &first_frame(Angle16(9)), 64);
             assert_eq!(found, None, "{records} records, after {strips_left} strips");
         });
     }
@@ -258,10 +259,11 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
     let shader = Flat::unlit(Rgb888::WHITE);
     // Draws in the first call, and in the later ones; which draw differs.
     for (first, later, differs) in [(2, 1, 1), (1, 2, 1), (0, 1, 0), (3, 0, 0)] {
-        with_renderer(30_000, |renderer| {
+        with_renderer(30_000, |renderer, color| {
             let mut calls = 0;
             let changed = renderer.frame_to(
                 |_: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(()),
+                color,
                 Rgb565::RED,
                 |scene| {
                     calls += 1;
@@ -270,18 +272,19 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
                     }
                 },
             );
-            assert_eq!(changed, Err(FrameError::SceneChanged(differs)), "{first} draws, then {later}");
+            assert_eq!(changed, Err(FrameError::SceneChanged { draw: differs }), "{first} draws, then {later}");
             assert!(told(changed).to_string().contains(&differs.to_string()));
-            assert_eq!(difference(&next_frame(renderer, Angle16(9)), &first_frame(Angle16(9)), 64), None);
+            assert_eq!(difference(&next_frame(renderer, color, Angle16(9)), &first_frame(Angle16(9)), 64), None);
         });
     }
     // Another matrix, another state, another mesh.
     let other = Mesh::new(data(&[Vec3::ZERO; 6])).expect("two triangles");
     for change in 0..3 {
-        with_renderer(30_000, |renderer| {
+        with_renderer(30_000, |renderer, color| {
             let mut calls = 0;
             let changed = renderer.frame_to(
                 |_: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(()),
+                color,
                 Rgb565::RED,
                 |scene| {
                     calls += 1;
@@ -296,8 +299,8 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
                     scene.draw_with(state, if which == 2 { &other } else { &mesh }, &mvp, &shader);
                 },
             );
-            assert_eq!(changed, Err(FrameError::SceneChanged(1)), "change {change}");
-            assert_eq!(difference(&next_frame(renderer, Angle16(9)), &first_frame(Angle16(9)), 64), None);
+            assert_eq!(changed, Err(FrameError::SceneChanged { draw: 1 }), "change {change}");
+            assert_eq!(difference(&next_frame(renderer, color, Angle16(9)), &first_frame(Angle16(9)), 64), None);
         });
     }
 }
@@ -305,8 +308,8 @@ fn scene_that_changes_between_calls_is_an_error_and_the_next_frame_is_right() {
 /// The buffers of a 320 × 240 frame in 16-row strips, with records for the torus: added up, and as the constants say.
 #[test]
 fn ram_of_a_frame_is_what_the_constants_say() {
-    const WIDTH: u16 = 320;
-    const ROWS: u16 = 16;
+    const WIDTH: u32 = 320;
+    const ROWS: u32 = 16;
     const WORDS: usize = <Gouraud as VertexShader>::WORDS;
     const VERTICES: usize = scenes::torus::MESH.vertex_count();
     const TRIANGLES: usize = scenes::torus::MESH.triangle_count();
@@ -315,20 +318,22 @@ fn ram_of_a_frame_is_what_the_constants_say() {
     const RAM: RamBudget = BARE.with_records(1, 240, VERTICES, WORDS, TRIANGLES / 2);
     const _: () = assert!(RAM.total() < 40 * 1024, "a constant that can be asserted");
 
-    let pixels = usize::from(WIDTH) * usize::from(ROWS);
+    let pixels = (WIDTH * ROWS) as usize;
     let (mut color, mut depth, mut records) = (vec![0_u16; pixels], vec![0_u16; pixels], vec![0_u32; RECORDS]);
     let bytes = [size_of_val(&color[..]), size_of_val(&depth[..]), size_of_val(&records[..])];
     assert_eq!(bytes, [RAM.color, RAM.depth, RAM.records]);
     assert_eq!(bytes.iter().sum::<usize>(), RAM.total());
     assert_eq!(BARE.total(), RAM.color + RAM.depth);
 
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<Rgb565>::new((WIDTH, 240), buffers).expect("a renderer");
-    assert_eq!(renderer.strip_rows(), ROWS);
+    let renderer =
+        Renderer::<Rgb565>::new(Size::new(WIDTH, 240)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+    let mut renderer = renderer.with_records(&mut records);
+    assert_eq!(renderer.strip_rows(color.len()), ROWS);
     let handle = size_of_val(&renderer);
     let sink = |_: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(());
-    let stats =
-        renderer.frame_to(sink, Rgb565::BLACK, |scene| scenes::torus_gouraud(scene, Angle16(0))).expect("a frame");
+    let stats = renderer
+        .frame_to(sink, &mut color, Rgb565::BLACK, |scene| scenes::torus_gouraud(scene, Angle16(0)))
+        .expect("a frame");
     assert_eq!((stats.overflows, stats.direct_strips), (0, 0), "the records suffice: {stats:?}");
     println!(
         "320x240 in 16-row strips: colour {} + depth {} + records {} = {} bytes; renderer {handle} bytes; without records {}",
@@ -403,17 +408,18 @@ where
 {
     let mesh = Mesh::new(data(&CORNER)).expect("a triangle");
     let (mut color, mut depth) = (vec![P::pack([0; 3]); 20 * 5], vec![0; 20 * 5]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
-    let mut renderer = Renderer::<P>::new((20, 16), buffers).expect("a renderer");
+    let renderer =
+        Renderer::<P>::new(Size::new(20, 16)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+    let mut renderer = renderer.with_records(&mut []);
     let mut display = Display::new();
-    let draw = |scene: &mut zstrip::Scene<'_, zstrip::target::Strip<'_, P>>| {
+    let draw = |scene: &mut zstrip::Scene<'_, zstrip::target::Strip<'_, P, WithDepth, WithRecords>>| {
         scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(COLOR));
     };
-    renderer.frame(&mut display, background, draw).expect("a display that works");
+    renderer.frame(&mut display, &mut color, background, draw).expect("a display that works");
     assert_eq!(display.fills, 4, "a strip is one call");
 
     let mut broken = Display { fails_at: 2, ..Display::new() };
-    let error = renderer.frame(&mut broken, background, draw).expect_err("a display that fails");
+    let error = renderer.frame(&mut broken, &mut color, background, draw).expect_err("a display that fails");
     assert_eq!(error, FrameError::Sink("no answer on the bus"));
     display.pixels.into_iter().map(|p| p.expect("every pixel is drawn")).collect()
 }
@@ -447,10 +453,10 @@ fn pixels_arrive_on_a_display_in_the_right_places() {
 /// The bytes of a strip in one colour, from left to right.
 fn bytes_of<P: PixelFormat>(background: P::Color) -> Vec<u8> {
     let (mut color, mut depth) = (vec![P::pack([0; 3]); 2], vec![0; 2]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
-    let mut renderer = Renderer::<P>::new((2, 1), buffers).expect("a renderer");
+    let renderer = Renderer::<P>::new(Size::new(2, 1)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+    let mut renderer = renderer.with_records(&mut []);
     let mut frame = renderer.begin(background);
-    let strip = frame.next_strip(|_| ()).expect("an empty scene").expect("one strip");
+    let strip = frame.next_strip(&mut color, |_| ()).expect("an empty scene").expect("one strip");
     assert!(strip.colors().eq([background; 2]));
     strip.bytes().to_vec()
 }

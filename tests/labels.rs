@@ -13,7 +13,7 @@ use embedded_graphics::text::{Baseline, Text};
 use reference::rng::Rng;
 use support::{Soup, angle, apply, difference, matrix, on_screen, rigid, scalar, strips, vector, whole};
 use zstrip::color::PixelFormat;
-use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
+use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::internals::{Projected, Transform};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
@@ -258,8 +258,12 @@ fn nothing_is_drawn_while_recording() {
         let (walks, colors) = (Cell::new(0), Cell::new(0));
         let mut framebuffer = Counting { pixels: vec![0; PIXELS], spans: 0 };
         let (mut depth, mut records) = (vec![0; PIXELS], vec![0; records]);
-        let mut renderer = FramebufferRenderer::new(SCREEN, &mut depth, &mut records).expect("a renderer");
-        let stats = renderer.frame(&mut framebuffer, None, |scene| {
+        let mut renderer = FramebufferRenderer::new(Size::new(SCREEN.0.into(), SCREEN.1.into()))
+            .expect("a renderer")
+            .with_depth(&mut depth)
+            .expect("a renderer")
+            .with_records(&mut records);
+        let stats = renderer.frame_over(&mut framebuffer, |scene| {
             walks.set(walks.get() + 1);
             let mut overlay = scene.at_depth(7);
             let area = Rectangle::new(Point::new(3, 4), Size::new(20, 10));
@@ -282,11 +286,14 @@ fn nothing_is_drawn_while_recording() {
 fn overlay_covers_the_screen_in_every_strip_and_says_what_is_visible() {
     let strip = Cell::new(0);
     let (mut color, mut depth) = (vec![0; 64 * 10], vec![0; 64 * 10]);
-    let buffers = Buffers::<Rgb565> { color: &mut color, depth: &mut depth, records: &mut [] };
-    let mut renderer = Renderer::new(SCREEN, buffers).expect("a renderer");
+    let renderer = Renderer::<Rgb565>::new(Size::new(SCREEN.0.into(), SCREEN.1.into()))
+        .expect("a renderer")
+        .with_depth(&mut depth)
+        .expect("a renderer");
+    let mut renderer = renderer.with_records(&mut []);
     let mut frame = renderer.begin(Rgb565::BLACK);
     while frame
-        .next_strip(|scene| {
+        .next_strip(&mut color, |scene| {
             let top = 10 * strip.get();
             let overlay = scene.overlay();
             assert_eq!(overlay.bounding_box(), Rectangle::new(Point::zero(), Size::new(64, 48)));

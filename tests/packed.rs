@@ -11,13 +11,11 @@ use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{OriginDimensions, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888, WebColors};
 use zstrip::color::{Dither, Levels, PixelFormat};
-use zstrip::frame::{Buffers, Renderer};
+use zstrip::frame::Renderer;
 use zstrip::math::{Angle16, Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud};
-use zstrip::target::{
-    DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst, Strip, StripPixels,
-};
+use zstrip::target::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst, StripPixels};
 use zstrip::{Cull, Framebuffer, Scene, State, embedded_graphics_core};
 
 /// Draws the torus in strips of `rows` rows and hands them, packed, to `sink` with their first row.
@@ -30,15 +28,21 @@ fn torus<P: PixelFormat, F: PackedFormat>(
 ) {
     let pixels = usize::from(screen.0) * usize::from(rows);
     let (mut color, mut depth, mut records) = (vec![P::pack([9; 3]); pixels], vec![0; pixels], vec![0; 20_000]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<P>::new(screen, buffers).expect("a renderer");
+    let renderer = Renderer::<P>::new(Size::new(screen.0.into(), screen.1.into()))
+        .expect("a renderer")
+        .with_depth(&mut depth)
+        .expect("a renderer");
+    let mut renderer = renderer.with_records(&mut records);
     let mut bytes = vec![0x5A; F::bytes(screen.0, rows)];
-    let mut packer = Packer::<F>::new(screen, rows, dither, &mut bytes).expect("a packer");
+    let mut packer = Packer::<F>::new(Size::new(screen.0.into(), screen.1.into()), rows.into(), dither, &mut bytes)
+        .expect("a packer");
     let to_sink = |strip: &StripPixels<'_, P>| {
         sink(strip.area().top_left.y as usize, packer.pack(strip));
         Ok::<(), Infallible>(())
     };
-    renderer.frame_to(to_sink, background, |scene| scenes::torus_gouraud(scene, Angle16(4000))).expect("a frame");
+    renderer
+        .frame_to(to_sink, &mut color, background, |scene| scenes::torus_gouraud(scene, Angle16(4000)))
+        .expect("a frame");
 }
 
 /// Greys of the same frame, pixel by pixel.
@@ -131,12 +135,16 @@ fn check_display<C: Levels + PartialEq + core::fmt::Debug>(dither: Dither<C>) {
     for rows in [1, 7, 45] {
         let pixels = usize::from(screen.0) * rows;
         let (mut color, mut depth) = (vec![0; pixels], vec![0; pixels]);
-        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [0; 20_000] };
-        let mut renderer = Renderer::<Gray8>::new(screen, buffers).expect("a renderer");
+        let renderer = Renderer::<Gray8>::new(Size::new(screen.0.into(), screen.1.into()))
+            .expect("a renderer")
+            .with_depth(&mut depth)
+            .expect("a renderer");
+        let mut records = [0; 20_000];
+        let mut renderer = renderer.with_records(&mut records);
         let mut panel = Panel { size: Size::new(61, 45), pixels: vec![None; 61 * 45] };
         let sink = DitheredDisplay::new(&mut panel, dither);
         renderer
-            .frame_to(sink, Gray8::new(70), |scene| scenes::torus_gouraud(scene, Angle16(4000)))
+            .frame_to(sink, &mut color, Gray8::new(70), |scene| scenes::torus_gouraud(scene, Angle16(4000)))
             .expect("the same scene in each call");
         for (k, grey) in greys(screen).into_iter().enumerate() {
             let expected = dither.color(grey, (k as i32 % 61, k as i32 / 61));
@@ -203,9 +211,11 @@ fn picture_of_a_triangle_in_pages() {
         scene.draw(mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::CSS_WHITE));
     }
     let (color, depth, records) = (&mut [0; 16 * 8], &mut [0; 16 * 8], &mut [0; 64]);
-    let mut renderer = Renderer::<Gray8>::new((16, 12), Buffers { color, depth, records }).expect("a renderer");
+    let renderer =
+        Renderer::<Gray8>::new(Size::new(16, 12)).expect("a renderer").with_depth(depth).expect("a renderer");
+    let mut renderer = renderer.with_records(records);
     let mut bytes = [0xFF; 16];
-    let mut packer = Packer::<Pages>::new((16, 12), 8, Dither::BAYER_8, &mut bytes).expect("a packer");
+    let mut packer = Packer::<Pages>::new(Size::new(16, 12), 8, Dither::BAYER_8, &mut bytes).expect("a packer");
     let mut rows = vec![String::new(); 16];
     let sink = |strip: &StripPixels<'_, Gray8>| {
         let first = strip.area().top_left.y as usize;
@@ -217,7 +227,7 @@ fn picture_of_a_triangle_in_pages() {
         Ok::<(), Infallible>(())
     };
     // The rest is of grey 188, half of white's light.
-    renderer.frame_to(sink, Gray8::new(188), |scene: &mut Scene<'_, Strip<'_, Gray8>>| draw(scene, &mesh)).expect("");
+    renderer.frame_to(sink, color, Gray8::new(188), |scene| draw(scene, &mesh)).expect("");
     let picture = "\
 #.#.#.#.#.#.#.#.
 ##.#.#.#.#.#.#.#
@@ -241,15 +251,16 @@ fn picture_of_a_triangle_in_pages() {
 
 #[test]
 fn packers_that_cannot_work_are_refused() {
-    let refused = |screen, rows, bytes: usize| {
-        Packer::<Pages>::new(screen, rows, Dither::BAYER_8, &mut vec![0; bytes]).expect_err("it cannot work")
+    let refused = |(width, height), rows, bytes: usize| {
+        Packer::<Pages>::new(Size::new(width, height), rows, Dither::BAYER_8, &mut vec![0; bytes])
+            .expect_err("it cannot work")
     };
-    assert_eq!(refused((128, 64), 12, 1024), PackerError::PartialPages(12, 8));
-    assert_eq!(refused((128, 64), 16, 255), PackerError::TooShort(255, 256));
-    assert_eq!(refused((128, 60), 64, 1023), PackerError::TooShort(1023, 1024));
+    assert_eq!(refused((128, 64), 12, 1024), PackerError::PartialPages { rows: 12, page: 8 });
+    assert_eq!(refused((128, 64), 16, 255), PackerError::TooShort { bytes: 255, needed: 256 });
+    assert_eq!(refused((128, 60), 64, 1023), PackerError::TooShort { bytes: 1023, needed: 1024 });
     assert_eq!(refused((128, 64), 12, 1024).to_string(), "strips of 12 rows, but 8 rows share a byte");
     assert_eq!(refused((128, 64), 16, 255).to_string(), "buffer of 255 bytes, a packed strip has 256");
     // One strip for the whole screen may end anywhere, and rows may too.
-    Packer::<Pages>::new((128, 60), 60, Dither::BAYER_8, &mut [0; 1024]).expect("the last page is not full");
-    Packer::<Rows<Gray4>>::new((127, 60), 7, Dither::BAYER_8, &mut [0; 64 * 7]).expect("rows end bytes");
+    Packer::<Pages>::new(Size::new(128, 60), 60, Dither::BAYER_8, &mut [0; 1024]).expect("the last page is not full");
+    Packer::<Rows<Gray4>>::new(Size::new(127, 60), 7, Dither::BAYER_8, &mut [0; 64 * 7]).expect("rows end bytes");
 }

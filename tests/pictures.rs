@@ -25,7 +25,7 @@ use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Joined, Lines, Mesh, MeshData, Points, Positions, Topology};
 use zstrip::shader::{Add, Blend, Flat, Gouraud, Textured};
 use zstrip::span::DepthState;
-use zstrip::target::Strip;
+use zstrip::target::{Strip, WithDepth, WithRecords};
 use zstrip::texture::Tile;
 use zstrip::{Cull, Dashed, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 
@@ -52,7 +52,7 @@ fn character(rgb: [u8; 3]) -> char {
 ///
 /// On a failure it prints both pictures side by side, and which pixels are too many or too few.
 #[track_caller]
-fn assert_pattern(expected: &[&str], draw: impl Fn(&mut Scene<'_, Strip<'_, Rgb888>>)) {
+fn assert_pattern(expected: &[&str], draw: impl Fn(&mut Scene<'_, Strip<'_, Rgb888, WithDepth, WithRecords>>)) {
     let (width, height) = (expected[0].len(), expected.len());
     assert!(expected.iter().all(|row| row.len() == width), "the rows of a pattern are equally long");
     for (rows, records) in ARRANGEMENTS {

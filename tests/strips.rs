@@ -11,12 +11,13 @@ use support::{Soup, difference, strips, unrecorded_strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
-use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
+use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{DepthBias, DepthState};
 use zstrip::target::{FrameSlice, Framebuffer, Stats, Strip, records_len};
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::vertex::{DepthScale, Viewport};
 use zstrip::{Cull, Scene, State};
 
@@ -24,7 +25,7 @@ const SCREEN: (u16, u16) = (320, 240);
 const AMPLE: usize = 40_000;
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
-fn draw_scene(name: &str) -> impl Fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle16) + use<> {
+fn draw_scene(name: &str) -> impl Fn(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, Angle16) + use<> {
     let info = scenes::SCENES.iter().find(|info| info.name == name);
     let draw = info.unwrap_or_else(|| panic!("no scene {name}")).draw;
     move |scene, turn| draw(scene, turn)
@@ -200,11 +201,14 @@ fn framebuffer_and_strips_hold_the_same_pixels() {
             let mut depth = vec![0; depth_rows * usize::from(width)];
             let mut records = vec![0; 900];
             let mut frame =
-                FrameSlice::<Rgb888>::with_stride(&mut pixels, width, height, stride).expect("a framebuffer");
-            let mut renderer = FramebufferRenderer::new((width, height), &mut depth, &mut records).expect("a renderer");
-            renderer
-                .frame(&mut frame, Some(Rgb888::GREEN), |s| draw_soup(s, &mesh, state, part))
-                .expect("the same scene");
+                FrameSlice::<Rgb888>::with_stride(&mut pixels, Size::new(u32::from(width), u32::from(height)), stride)
+                    .expect("a framebuffer");
+            let mut renderer = FramebufferRenderer::new(Size::new(u32::from(width), u32::from(height)))
+                .expect("a renderer")
+                .with_depth(&mut depth)
+                .expect("a renderer")
+                .with_records(&mut records);
+            renderer.frame(&mut frame, Rgb888::GREEN, |s| draw_soup(s, &mesh, state, part)).expect("the same scene");
             let inside: Vec<_> = pixels.chunks(stride).flat_map(|row| &row[..usize::from(width)]).copied().collect();
             assert_eq!(difference(&inside, &expected, width), None, "{case}");
             let gaps = pixels.chunks(stride).flat_map(|row| &row[usize::from(width)..]);
@@ -219,10 +223,13 @@ fn framebuffer_without_a_background_is_drawn_over() {
     let mesh = Mesh::new(MeshData::new(Positions::Exact(&triangle))).expect("a triangle");
     let mut pixels: Vec<u16> = (0..20 * 20).collect();
     let (mut depth, mut records) = (vec![0; 20 * 4], vec![0; 64]);
-    let mut frame = FrameSlice::<Rgb565>::new(&mut pixels, 20, 20).expect("a framebuffer");
-    FramebufferRenderer::new((20, 20), &mut depth, &mut records)
+    let mut frame = FrameSlice::<Rgb565>::new(&mut pixels, Size::new(20, 20)).expect("a framebuffer");
+    FramebufferRenderer::new(Size::new(20, 20))
         .expect("a renderer")
-        .frame(&mut frame, None, |scene| scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE)))
+        .with_depth(&mut depth)
+        .expect("a renderer")
+        .with_records(&mut records)
+        .frame_over(&mut frame, |scene| scene.draw(&mesh, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE)))
         .expect("the same scene");
     let covered = pixels.iter().filter(|p| **p == 0xFFFF).count();
     let kept = (0..400).filter(|&i| pixels[usize::from(i)] == i).count();
@@ -253,9 +260,12 @@ fn framebuffer_of_ones_own_gets_the_rows_it_hands_out() {
         strips::<Rgb565Be>((32, 24), 24, 5000, Rgb565::BLACK, |s| draw_soup(s, &mesh, BOTH_SIDES, part));
     let mut frame = Mirrored { rows: vec![[1; 32]; 24] };
     let (mut depth, mut records) = (vec![0; 32 * 5], vec![0; 300]);
-    FramebufferRenderer::new((32, 24), &mut depth, &mut records)
+    FramebufferRenderer::new(Size::new(32, 24))
         .expect("a renderer")
-        .frame(&mut frame, Some(Rgb565::BLACK), |s| draw_soup(s, &mesh, BOTH_SIDES, part))
+        .with_depth(&mut depth)
+        .expect("a renderer")
+        .with_records(&mut records)
+        .frame(&mut frame, Rgb565::BLACK, |s| draw_soup(s, &mesh, BOTH_SIDES, part))
         .expect("the same scene");
     let found: Vec<u16> = frame.rows.iter().rev().flatten().copied().collect();
     assert_eq!(difference(&found, &expected, 32), None);
@@ -267,18 +277,19 @@ fn pulled_strips_are_those_that_are_sent() {
     let (expected, _) = strips::<Rgb565>((80, 60), 60, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle16(3)));
     for records in [0, 700, AMPLE] {
         let (mut color, mut depth, mut records) = (vec![9; 80 * 7], vec![9; 80 * 7], vec![9; records]);
-        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-        let mut renderer = Renderer::<Rgb565>::new((80, 60), buffers).expect("a renderer");
+        let renderer =
+            Renderer::<Rgb565>::new(Size::new(80, 60)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+        let mut renderer = renderer.with_records(&mut records);
 
         let mut frame = renderer.begin(scenes::BACKGROUND);
         let mut picture = Vec::new();
-        while let Some(strip) = frame.next_strip(|s| draw(s, Angle16(3))).expect("the same scene") {
+        while let Some(strip) = frame.next_strip(&mut color, |s| draw(s, Angle16(3))).expect("the same scene") {
             picture.extend_from_slice(strip.pixels());
         }
         assert_eq!(frame.stats().strips, 9);
         assert_eq!(difference(&picture, &expected, 80), None);
         assert!(
-            frame.next_strip(|s| draw(s, Angle16(3))).expect("no error").is_none(),
+            frame.next_strip(&mut color, |s| draw(s, Angle16(3))).expect("no error").is_none(),
             "a finished frame stays finished"
         );
         assert_eq!(frame.stats().strips, 9);
@@ -287,7 +298,7 @@ fn pulled_strips_are_those_that_are_sent() {
         let mut frame = renderer.begin(scenes::BACKGROUND);
         let (mut drawn, mut sent) = (vec![1; 80 * 7], vec![2; 80 * 7]);
         let (mut picture, mut rows) = (Vec::new(), 0);
-        while let Some(strip) = frame.next_strip_in(&mut drawn, |s| draw(s, Angle16(3))).expect("the same scene") {
+        while let Some(strip) = frame.next_strip(&mut drawn, |s| draw(s, Angle16(3))).expect("the same scene") {
             rows = strip.area().size.height as usize;
             assert_eq!(strip.pixels().len(), 80 * rows);
             std::mem::swap(&mut drawn, &mut sent);
@@ -302,15 +313,16 @@ fn pulled_strips_are_those_that_are_sent() {
 fn frame_that_is_not_finished_does_not_disturb_the_next() {
     let draw = draw_scene("torus_flat");
     let (mut color, mut depth, mut records) = (vec![0; 64 * 8], vec![0; 64 * 8], vec![0; 3000]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers).expect("a renderer");
+    let renderer =
+        Renderer::<Rgb565>::new(Size::new(64, 64)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
+    let mut renderer = renderer.with_records(&mut records);
     let mut frame = renderer.begin(Rgb565::BLACK);
     for _ in 0..3 {
-        assert!(frame.next_strip(|s| draw(s, Angle16(100))).expect("the same scene").is_some());
+        assert!(frame.next_strip(&mut color, |s| draw(s, Angle16(100))).expect("the same scene").is_some());
     }
     let mut picture = Vec::new();
     let mut frame = renderer.begin(Rgb565::BLACK);
-    while let Some(strip) = frame.next_strip(|s| draw(s, Angle16(200))).expect("the same scene") {
+    while let Some(strip) = frame.next_strip(&mut color, |s| draw(s, Angle16(200))).expect("the same scene") {
         picture.extend_from_slice(strip.pixels());
     }
     let (expected, _) = strips::<Rgb565>((64, 64), 64, AMPLE, Rgb565::BLACK, |s| draw(s, Angle16(200)));

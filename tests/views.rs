@@ -14,7 +14,7 @@ use embedded_graphics::primitives::{Circle, PrimitiveStyle, Rectangle};
 use reference::rng::Rng;
 use support::{Soup, strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
-use zstrip::frame::{Buffers, FrameError, FrameView};
+use zstrip::frame::{FrameError, FrameView};
 use zstrip::math::Projective;
 use zstrip::mesh::Mesh;
 use zstrip::shader::Gouraud;
@@ -79,15 +79,20 @@ fn view_shows_the_frame_wherever_it_is() {
     assert!(expected.iter().any(|p| *p != expected[0]), "an empty picture");
     for (rows, records) in [(33, 9_000), (8, 9_000), (5, 0)] {
         let (color, depth) = (&mut vec![0; 40 * rows], &mut vec![0; 40 * rows]);
-        let buffers = Buffers { color, depth, records: &mut vec![0; records] };
-        let mut renderer = Renderer::<Rgb565Be>::new(VIEW, buffers).expect("a renderer");
+        let renderer = Renderer::<Rgb565Be>::new(Size::new(VIEW.0.into(), VIEW.1.into()))
+            .expect("a renderer")
+            .with_depth(depth)
+            .expect("a renderer");
+        let mut records_of_view = vec![0; records];
+        let mut renderer = renderer.with_records(&mut records_of_view);
         for at in PLACES {
             let what = format!("{rows} rows, {records} records");
             let mut shown = display();
-            let stats = renderer.frame_at(&mut shown, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh)).expect("a frame");
+            let stats =
+                renderer.frame_at(&mut shown, at, color, Rgb565::CSS_NAVY, |s| draw(s, &mesh)).expect("a frame");
             assert_pasted(&shown, &expected, at, &format!("frame_at, {what}"));
 
-            let view = FrameView::new(&mut renderer, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
+            let view = FrameView::new(&mut renderer, color, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
             assert_eq!(view.bounding_box(), Rectangle::new(at, Size::new(40, 33)));
             for again in 0..2 {
                 let mut shown = display();
@@ -110,9 +115,13 @@ fn view_is_drawn_within_another_frame() {
     for rows in [60, 7, 1] {
         for at in PLACES {
             let mut inner = (vec![0; 40 * 8], vec![0; 40 * 8], vec![0; 3000]);
-            let buffers = Buffers { color: &mut inner.0, depth: &mut inner.1, records: &mut inner.2 };
-            let mut renderer = Renderer::<Rgb565>::new(VIEW, buffers).expect("a renderer");
-            let view = FrameView::new(&mut renderer, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
+            let color = &mut inner.0;
+            let renderer = Renderer::<Rgb565>::new(Size::new(VIEW.0.into(), VIEW.1.into()))
+                .expect("a renderer")
+                .with_depth(&mut inner.1)
+                .expect("a renderer");
+            let mut renderer = renderer.with_records(&mut inner.2);
+            let view = FrameView::new(&mut renderer, color, at, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
             let shown = display();
             let (picture, _) = strips::<Rgb565>((90, 60), rows, 50, Rgb565::BLACK, |scene| {
                 let all = shown.bounding_box();
@@ -152,11 +161,15 @@ fn what_goes_wrong_in_a_view_is_told_and_the_next_frame_is_right() {
     let mesh = soup.mesh();
     let (expected, _) = strips::<Rgb565>(VIEW, 33, 9_000, Rgb565::CSS_NAVY, |s| draw(s, &mesh));
     let (color, depth) = (&mut vec![0; 40 * 8], &mut vec![0; 40 * 8]);
-    let buffers = Buffers { color, depth, records: &mut vec![0; 9_000] };
-    let mut renderer = Renderer::<Rgb565>::new(VIEW, buffers).expect("a renderer");
+    let renderer = Renderer::<Rgb565>::new(Size::new(VIEW.0.into(), VIEW.1.into()))
+        .expect("a renderer")
+        .with_depth(depth)
+        .expect("a renderer");
+    let mut records = vec![0; 9_000];
+    let mut renderer = renderer.with_records(&mut records);
     let draws = Cell::new(0);
     let changing = Cell::new(false);
-    let view = FrameView::new(&mut renderer, Point::zero(), Rgb565::CSS_NAVY, |s| {
+    let view = FrameView::new(&mut renderer, color, Point::zero(), Rgb565::CSS_NAVY, |s| {
         draws.set(draws.get() + 1);
         draw(s, &mesh);
         if changing.get() && draws.get() == 3 {
@@ -168,7 +181,7 @@ fn what_goes_wrong_in_a_view_is_told_and_the_next_frame_is_right() {
     changing.set(true);
     draws.set(0);
     let found: Result<_, Infallible> = view.draw(&mut display());
-    assert_eq!(found, Ok(Err(FrameError::SceneChanged(1))), "a second draw in the third call");
+    assert_eq!(found, Ok(Err(FrameError::SceneChanged { draw: 1 })), "a second draw in the third call");
     changing.set(false);
     let mut shown = display();
     let Ok(drawn) = view.draw(&mut shown);

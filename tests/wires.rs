@@ -356,15 +356,18 @@ fn a_stroke_that_changes_between_strips_is_an_error() {
     let lines = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
     let other = Lines::new(Joined::Loop, MeshData::new(Positions::Exact(&ends))).expect("a line");
     let (mut color, mut depth, mut records) = ([0; 160 * 10], [0; 160 * 10], [0; 200]);
-    let buffers = zstrip::Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = zstrip::Renderer::<Rgb565>::new(SCREEN, buffers).expect("a renderer");
+    let renderer = zstrip::Renderer::<Rgb565>::new(Size::new(SCREEN.0.into(), SCREEN.1.into()))
+        .expect("a renderer")
+        .with_depth(&mut depth)
+        .expect("a renderer");
+    let mut renderer = renderer.with_records(&mut records);
     let mut calls = 0;
     let sink = |_: &zstrip::target::StripPixels<'_, Rgb565>| Ok::<(), core::convert::Infallible>(());
-    let result = renderer.frame_to(sink, Rgb565::BLACK, |scene| {
+    let result = renderer.frame_to(sink, &mut color, Rgb565::BLACK, |scene| {
         calls += 1;
         scene.draw_lines(if calls < 4 { &lines } else { &other }, &camera(), &Flat::unlit(Rgb888::RED));
     });
-    assert_eq!(result, Err(zstrip::frame::FrameError::SceneChanged(0)));
+    assert_eq!(result, Err(zstrip::frame::FrameError::SceneChanged { draw: 0 }));
     assert_eq!(calls, 4);
 }
 

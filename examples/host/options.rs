@@ -1,6 +1,6 @@
 //! The options of the command line, which are the same for all examples.
 
-use super::program::Demo;
+use super::program::{Demo, Depth};
 use std::error::Error;
 use std::path::PathBuf;
 
@@ -15,7 +15,7 @@ pub struct Settings {
 }
 
 /// What `--help` prints.
-pub fn help<D: Demo<DEPTH>, const DEPTH: bool>() -> String {
+pub fn help<D: Demo<Z>, Z: Depth>() -> String {
     let first = D::MODES.get(D::FIRST);
     let modes = first.map_or_else(String::new, |first| {
         format!("  --mode NAME       what or how to draw ({first}); --scene is the same\n")
@@ -50,7 +50,7 @@ keys in the window
 }
 
 /// The settings of the command line, or `None` if help was asked for.
-pub fn arguments<D: Demo<DEPTH>, const DEPTH: bool>() -> Result<Option<Settings>, Box<dyn Error>> {
+pub fn arguments<D: Demo<Z>, Z: Depth>() -> Result<Option<Settings>, Box<dyn Error>> {
     use lexopt::prelude::*;
     let mut settings =
         Settings { png: None, strip_rows: 16, records: D::RECORDS, frame: 0, mode: D::FIRST, size: (320, 240) };
@@ -58,7 +58,7 @@ pub fn arguments<D: Demo<DEPTH>, const DEPTH: bool>() -> Result<Option<Settings>
     while let Some(argument) = parser.next()? {
         match argument {
             Long("png") => settings.png = Some(parser.value()?.into()),
-            Long("mode" | "scene") => settings.mode = parser.value()?.parse_with(mode::<D, DEPTH>)?,
+            Long("mode" | "scene") => settings.mode = parser.value()?.parse_with(mode::<D, Z>)?,
             Long("frame") => settings.frame = parser.value()?.parse()?,
             Long("size") => settings.size = parser.value()?.parse_with(size)?,
             Long("strip-rows") => settings.strip_rows = parser.value()?.parse()?,
@@ -76,7 +76,7 @@ pub fn arguments<D: Demo<DEPTH>, const DEPTH: bool>() -> Result<Option<Settings>
     Ok(Some(settings))
 }
 
-fn mode<D: Demo<DEPTH>, const DEPTH: bool>(name: &str) -> Result<usize, String> {
+fn mode<D: Demo<Z>, Z: Depth>(name: &str) -> Result<usize, String> {
     let found = D::MODES.iter().position(|mode| *mode == name);
     found.ok_or_else(|| match D::MODES {
         [] => "there are no modes".into(),

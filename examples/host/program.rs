@@ -9,13 +9,40 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 use zstrip::color::PixelFormat;
-use zstrip::frame::RamBudget;
+use zstrip::embedded_graphics_core::geometry::Size;
+use zstrip::frame::{RamBudget, RendererError};
 use zstrip::math::Angle16;
-use zstrip::target::{Stats, Strip, StripPixels};
-use zstrip::{Buffers, Renderer, Scene};
+use zstrip::target::{DepthChoice, Stats, Strip, StripPixels, WithDepth, WithRecords, WithoutDepth};
+use zstrip::{Renderer, Scene};
+
+/// Lends a renderer its depth buffer, if it is to have one.
+pub trait Depth: DepthChoice + Sized {
+    fn lend<'b, P: PixelFormat>(
+        renderer: Renderer<'b, P>,
+        depth: &'b mut [u16],
+    ) -> Result<Renderer<'b, P, Self>, RendererError>;
+}
+
+impl Depth for WithDepth {
+    fn lend<'b, P: PixelFormat>(
+        renderer: Renderer<'b, P>,
+        depth: &'b mut [u16],
+    ) -> Result<Renderer<'b, P, Self>, RendererError> {
+        renderer.with_depth(depth)
+    }
+}
+
+impl Depth for WithoutDepth {
+    fn lend<'b, P: PixelFormat>(
+        renderer: Renderer<'b, P>,
+        _: &'b mut [u16],
+    ) -> Result<Renderer<'b, P, Self>, RendererError> {
+        Ok(renderer)
+    }
+}
 
 /// What is shown.
-pub trait Demo<const DEPTH: bool = true> {
+pub trait Demo<Z: Depth = WithDepth> {
     /// What is drawn into.
     type Format: PixelFormat;
 
@@ -29,7 +56,7 @@ pub trait Demo<const DEPTH: bool = true> {
     /// The mode to begin with.
     const FIRST: usize = 0;
     /// Words of records where the command line says nothing: enough for most of what is shown.
-    const RECORDS: usize = if DEPTH { 16 * 1024 } else { 0 };
+    const RECORDS: usize = if Z::DEPTH { 16 * 1024 } else { 0 };
     /// What [`key`](Self::key) does, a line for each of its keys.
     const KEYS: &'static str = "";
 
@@ -40,7 +67,7 @@ pub trait Demo<const DEPTH: bool = true> {
     fn prepare(&mut self, _frame: u32, _screen: (u16, u16)) {}
 
     /// Draws the frame that was prepared, for an angle that each frame adds 1/512 of a turn to. Called for each strip.
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, DEPTH>>, turn: Angle16, mode: usize);
+    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, Z, WithRecords>>, turn: Angle16, mode: usize);
 }
 
 /// What the keys choose from; the height of the screen is the tallest strip.
@@ -50,32 +77,33 @@ const DIGITS: [Key; 9] =
     [Key::Key1, Key::Key2, Key::Key3, Key::Key4, Key::Key5, Key::Key6, Key::Key7, Key::Key8, Key::Key9];
 
 /// Draws a frame through strips, as a display would get it.
-fn render<D: Demo<DEPTH>, const DEPTH: bool>(
+fn render<D: Demo<Z>, Z: Depth>(
     demo: &mut D,
     settings: &Settings,
     picture: &mut Picture,
 ) -> Result<Stats, Box<dyn Error>> {
     let pixels = usize::from(settings.size.0) * usize::from(settings.strip_rows.min(settings.size.1));
-    let depths = if DEPTH { pixels } else { 0 };
+    let depths = if Z::DEPTH { pixels } else { 0 };
     let mut color = vec![bytemuck::Zeroable::zeroed(); pixels];
     let (mut depth, mut records) = (vec![0; depths], vec![0; settings.records]);
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let mut renderer = Renderer::<D::Format, DEPTH>::with_buffers(settings.size, buffers)?;
+    let (width, height) = settings.size;
+    let renderer = Renderer::<D::Format>::new(Size::new(width.into(), height.into()))?;
+    let mut renderer = Z::lend(renderer, &mut depth)?.with_records(&mut records);
     let to_picture = |strip: &StripPixels<'_, D::Format>| {
         picture.put(strip);
         Ok::<(), std::convert::Infallible>(())
     };
     demo.prepare(settings.frame, settings.size);
     let turn = Angle16(settings.frame.wrapping_mul(128) as u16);
-    Ok(renderer.frame_to(to_picture, D::BACKGROUND, |scene| demo.draw(scene, turn, settings.mode))?)
+    Ok(renderer.frame_to(to_picture, &mut color, D::BACKGROUND, |scene| demo.draw(scene, turn, settings.mode))?)
 }
 
 /// Settings and statistics in a line.
-fn describe<D: Demo<DEPTH>, const DEPTH: bool>(settings: &Settings, stats: &Stats) -> String {
+fn describe<D: Demo<Z>, Z: Depth>(settings: &Settings, stats: &Stats) -> String {
     let (width, height) = settings.size;
     let rows = settings.strip_rows.min(height);
-    let budget = RamBudget::new::<D::Format>(width, rows).with_record_words(settings.records);
-    let ram = if DEPTH { budget } else { budget.without_depth() };
+    let budget = RamBudget::new::<D::Format>(width.into(), rows.into()).with_record_words(settings.records);
+    let ram = if Z::DEPTH { budget } else { budget.without_depth() };
     let mut line = D::NAME.to_string();
     line.extend(D::MODES.get(settings.mode).map(|mode| format!(" {mode}")));
     line += &format!(" {width}x{height} | {rows} rows, {} records: {} bytes |", settings.records, ram.total());
@@ -86,15 +114,11 @@ fn describe<D: Demo<DEPTH>, const DEPTH: bool>(settings: &Settings, stats: &Stat
     line + &format!(", {} walks, {} overflows", stats.walks, stats.overflows)
 }
 
-fn picture<D: Demo<DEPTH>, const DEPTH: bool>(
-    demo: &mut D,
-    settings: &Settings,
-    path: &Path,
-) -> Result<(), Box<dyn Error>> {
+fn picture<D: Demo<Z>, Z: Depth>(demo: &mut D, settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
     let mut picture = Picture::new(settings.size);
     let stats = render(demo, settings, &mut picture)?;
     picture.write_png(path)?;
-    println!("{}", describe::<D, DEPTH>(settings, &stats));
+    println!("{}", describe::<D, Z>(settings, &stats));
     println!("wrote {}", path.display());
     Ok(())
 }
@@ -116,7 +140,7 @@ fn neighbour<T: Copy + PartialOrd>(list: impl Iterator<Item = T> + Clone, value:
 }
 
 /// What a key does that was pressed.
-fn press<D: Demo<DEPTH>, const DEPTH: bool>(key: Key, settings: &mut Settings, paused: &mut bool) {
+fn press<D: Demo<Z>, Z: Depth>(key: Key, settings: &mut Settings, paused: &mut bool) {
     let height = settings.size.1;
     let rows = STRIP_ROWS.into_iter().filter(|rows| *rows < height).chain([height]);
     match key {
@@ -139,11 +163,7 @@ fn press<D: Demo<DEPTH>, const DEPTH: bool>(key: Key, settings: &mut Settings, p
 }
 
 /// Runs until the window is closed.
-fn play<D: Demo<DEPTH>, const DEPTH: bool>(
-    demo: &mut D,
-    window: &mut Window,
-    mut settings: Settings,
-) -> Result<(), Box<dyn Error>> {
+fn play<D: Demo<Z>, Z: Depth>(demo: &mut D, window: &mut Window, mut settings: Settings) -> Result<(), Box<dyn Error>> {
     window.set_target_fps(60);
     let mut picture = Picture::new(settings.size);
     let mut paused = false;
@@ -157,21 +177,21 @@ fn play<D: Demo<DEPTH>, const DEPTH: bool>(
         let seconds = since.elapsed().as_secs_f64();
         if seconds > 0.5 {
             let (fps, ms) = (f64::from(frames) / seconds, drawing.as_secs_f64() * 1e3 / f64::from(frames));
-            window.set_title(&format!("{fps:.0} fps, {ms:.2} ms | {}", describe::<D, DEPTH>(&settings, &stats)));
+            window.set_title(&format!("{fps:.0} fps, {ms:.2} ms | {}", describe::<D, Z>(&settings, &stats)));
             (since, frames, drawing) = (Instant::now(), 0, Duration::ZERO);
         }
         settings.frame = settings.frame.wrapping_add(u32::from(!paused));
         window.get_keys().into_iter().for_each(|key| demo.key(key));
         for key in window.get_keys_pressed(KeyRepeat::No) {
-            press::<D, DEPTH>(key, &mut settings, &mut paused);
+            press::<D, Z>(key, &mut settings, &mut paused);
         }
     }
     Ok(())
 }
 
-fn run<D: Demo<DEPTH>, const DEPTH: bool>(demo: &mut D) -> Result<(), Box<dyn Error>> {
-    let Some(settings) = arguments::<D, DEPTH>()? else {
-        println!("{}", help::<D, DEPTH>());
+fn run<D: Demo<Z>, Z: Depth>(demo: &mut D) -> Result<(), Box<dyn Error>> {
+    let Some(settings) = arguments::<D, Z>()? else {
+        println!("{}", help::<D, Z>());
         return Ok(());
     };
     if let Some(path) = &settings.png {
@@ -187,7 +207,7 @@ fn run<D: Demo<DEPTH>, const DEPTH: bool>(demo: &mut D) -> Result<(), Box<dyn Er
 }
 
 /// Runs an example.
-pub fn show<D: Demo<DEPTH>, const DEPTH: bool>(mut demo: D) -> ExitCode {
+pub fn show<D: Demo<Z>, Z: Depth>(mut demo: D) -> ExitCode {
     match run(&mut demo) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {

@@ -3,10 +3,12 @@
 use super::{in_place, room, torus_gouraud};
 use zstrip::Scene;
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be};
-use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8};
-use zstrip::frame::{Buffers, Renderer};
+use zstrip::embedded_graphics_core::geometry::Size;
+use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8, Rgb888};
+use zstrip::frame::Renderer;
 use zstrip::math::Angle16;
 use zstrip::target::{PackedFormat, Packer, Pages, Rows, Strip};
+use zstrip::target::{WithDepth, WithRecords};
 
 /// Memory for a frame: colours, packed strips and whatever else a pixel takes are in `color`.
 pub struct Memory<'m> {
@@ -36,44 +38,56 @@ pub const FORMATS: &[FormatInfo] = &[
         name: "torus_332",
         draw: |memory, sink| direct::<Dithered<Rgb332>>(memory, sink, |scene| torus_gouraud(scene, Angle16(0))),
     },
-    FormatInfo { name: "torus_pages", draw: |memory, sink| packed::<Pages>((80, 64), Dither::BAYER_8, memory, sink) },
+    FormatInfo {
+        name: "torus_pages",
+        draw: |memory, sink| packed::<Pages>(Size::new(80, 64), Dither::BAYER_8, memory, sink),
+    },
     FormatInfo {
         name: "torus_gray2",
-        draw: |memory, sink| packed::<Rows<Gray2>>((317, 240), Dither::BAYER_4, memory, sink),
+        draw: |memory, sink| packed::<Rows<Gray2>>(Size::new(317, 240), Dither::BAYER_4, memory, sink),
     },
     FormatInfo {
         name: "torus_gray4",
-        draw: |memory, sink| packed::<Rows<Gray4>>((317, 240), Dither::BAYER_8, memory, sink),
+        draw: |memory, sink| packed::<Rows<Gray4>>(Size::new(317, 240), Dither::BAYER_8, memory, sink),
     },
 ];
 
 /// Draws 320×240 pixels of a format.
-fn direct<P: PixelFormat>(memory: Memory<'_>, sink: &mut Sink<'_>, mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>)) {
+fn direct<P: PixelFormat>(
+    memory: Memory<'_>,
+    sink: &mut Sink<'_>,
+    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, WithDepth, WithRecords>>),
+) {
     let Memory { color, depth, records } = memory;
     let Ok(color) = bytemuck::try_cast_slice_mut(color) else { return };
-    let mut renderer = in_place(|| Renderer::<P>::new((320, 240), Buffers { color, depth, records }));
+    let mut renderer = in_place(|| {
+        Renderer::<P>::new(Size::new(320, 240))
+            .and_then(|renderer| renderer.with_depth(depth))
+            .map(|renderer| renderer.with_records(records))
+    });
     let Ok(renderer) = &mut renderer else { return };
-    let mut frame = renderer.begin(P::to_color(P::pack([24, 28, 24])));
+    let mut frame = renderer.begin(Rgb888::new(24, 28, 24));
     // A frame that fails lacks strips, which shows in its hash.
-    while let Ok(Some(strip)) = frame.next_strip(&mut draw) {
+    while let Ok(Some(strip)) = frame.next_strip(color, &mut draw) {
         sink(strip.bytes());
     }
 }
 
 /// Draws the torus in greys and packs them.
-fn packed<F: PackedFormat>(screen: (u16, u16), dither: Dither<F::Color>, memory: Memory<'_>, sink: &mut Sink<'_>) {
+fn packed<F: PackedFormat>(screen: Size, dither: Dither<F::Color>, memory: Memory<'_>, sink: &mut Sink<'_>) {
     let Memory { color, depth, records } = memory;
     // Half for greys, half for what they are packed to.
     let bytes: &mut [u8] = bytemuck::cast_slice_mut(color);
     let Some((color, bytes)) = bytes.split_at_mut_checked(bytes.len() / 2) else { return };
-    let width = usize::from(screen.0);
+    let (width, height) = (screen.width as usize, screen.height as usize);
     let page = usize::from(F::ROWS);
-    let rows = (color.len().min(depth.len()) / width / page * page).min(usize::from(screen.1));
+    let rows = (color.len().min(depth.len()) / width / page * page).min(height);
     let (Some(color), Some(depth)) = (color.get_mut(..width * rows), depth.get_mut(..width * rows)) else { return };
-    let Ok(mut renderer) = Renderer::<Gray8>::new(screen, Buffers { color, depth, records }) else { return };
-    let Ok(mut packer) = Packer::<F>::new(screen, renderer.strip_rows(), dither, bytes) else { return };
+    let Ok(renderer) = Renderer::<Gray8>::new(screen).and_then(|renderer| renderer.with_depth(depth)) else { return };
+    let mut renderer = renderer.with_records(records);
+    let Ok(mut packer) = Packer::<F>::new(screen, rows as u32, dither, bytes) else { return };
     let mut frame = renderer.begin(Gray8::new(26));
-    while let Ok(Some(strip)) = frame.next_strip(|scene| torus_gouraud(scene, Angle16(0))) {
+    while let Ok(Some(strip)) = frame.next_strip(color, |scene| torus_gouraud(scene, Angle16(0))) {
         sink(packer.pack(&strip));
     }
 }

@@ -23,13 +23,15 @@ pub mod water;
 pub mod wires;
 
 use kept::kept;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::frame::{Buffers, Renderer};
+use zstrip::frame::Renderer;
 use zstrip::light::Light;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::Shader;
 use zstrip::target::{Stats, Strip};
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// Something to draw.
@@ -38,7 +40,7 @@ pub struct SceneInfo {
     /// Its name on the command line and in reports.
     pub name: &'static str,
     /// Draws it, turned by an angle, on a screen of some size.
-    pub draw: fn(&mut Scene<'_, Strip<'_, Rgb565>>, Angle16),
+    pub draw: fn(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, Angle16),
 }
 
 /// Scenes of plain meshes, which the flash of a small chip holds, too; the first two are a torus flat and Gouraud shaded.
@@ -310,15 +312,19 @@ pub fn frame(
     color: &mut [u16],
     depth: &mut [u16],
     records: &mut [u32],
-    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
+    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>),
     sink: &mut impl FnMut(usize, &[u16]),
 ) -> Stats {
-    let screen = (width as u16, height as u16);
-    let mut renderer = in_place(|| Renderer::<Rgb565>::new(screen, Buffers { color, depth, records }));
+    let screen = Size::new(width as u32, height as u32);
+    let mut renderer = in_place(|| {
+        Renderer::<Rgb565>::new(screen)
+            .and_then(|renderer| renderer.with_depth(depth))
+            .map(|renderer| renderer.with_records(records))
+    });
     let Ok(renderer) = &mut renderer else { return Stats::default() };
     let mut frame = renderer.begin(BACKGROUND);
     loop {
-        match frame.next_strip(&mut draw) {
+        match frame.next_strip(color, &mut draw) {
             Ok(Some(strip)) => sink(strip.area().top_left.y as usize, strip.pixels()),
             Ok(None) => return frame.stats(),
             Err(_) => return Stats::default(),

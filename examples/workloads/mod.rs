@@ -13,14 +13,17 @@
 pub mod reference;
 
 use zstrip::color::PixelFormat;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::frame::{Buffers, Renderer, RendererError};
+use zstrip::frame::{Renderer, RendererError};
 use zstrip::light::Light;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud, Textured};
 use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
+use zstrip::target::RecordsChoice;
 use zstrip::target::{Stats, Strip};
+use zstrip::target::{WithDepth, WithRecords};
 use zstrip::texture::Tile;
 use zstrip::vertex::{Face, VertexRef, VertexShader};
 use zstrip::{Scene, State};
@@ -60,8 +63,15 @@ pub enum Workload {
     Tiny,
 }
 
+/// The memory of a frame.
+pub struct Buffers<'b> {
+    pub color: &'b mut [u16],
+    pub depth: &'b mut [u16],
+    pub records: &'b mut [u32],
+}
+
 /// Draws a frame of a workload; the strip is as high as the buffers.
-pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn draw(workload: Workload, buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     match workload {
         Workload::Empty => frame(buffers, &mut sink, &mut |_| {}),
         Workload::Quad => quad(buffers, sink),
@@ -76,34 +86,37 @@ pub fn draw(workload: Workload, buffers: Buffers<'_, Rgb565>, mut sink: impl FnM
     }
 }
 
-const SCREEN: (u16, u16) = (WIDTH as u16, HEIGHT as u16);
+const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
 
 /// One function for all workloads, as a program has that shows several things.
 #[inline(never)]
 fn frame(
-    buffers: Buffers<'_, Rgb565>,
+    buffers: Buffers<'_>,
     sink: &mut dyn FnMut(&[u16]),
-    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565>>),
+    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>),
 ) -> Stats {
-    frame_by(Renderer::new(SCREEN, buffers), sink, draw)
+    let Buffers { color, depth, records } = buffers;
+    let renderer = Renderer::new(SCREEN).and_then(|renderer| renderer.with_depth(depth));
+    frame_by(renderer.map(|renderer| renderer.with_records(records)), color, sink, draw)
 }
 
 /// Buffers that do not hold a row draw nothing.
-fn frame_by<const RECORDS: bool>(
-    mut renderer: Result<Renderer<'_, Rgb565, true, RECORDS>, RendererError>,
+fn frame_by<R: RecordsChoice>(
+    mut renderer: Result<Renderer<'_, Rgb565, WithDepth, R>, RendererError>,
+    color: &mut [u16],
     mut sink: impl FnMut(&[u16]),
-    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, true, RECORDS>>),
+    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, R>>),
 ) -> Stats {
     let Ok(renderer) = &mut renderer else { return Stats::default() };
     let mut frame = renderer.begin(BACKGROUND);
-    while let Ok(Some(strip)) = frame.next_strip(&mut draw) {
+    while let Ok(Some(strip)) = frame.next_strip(color, &mut draw) {
         sink(strip.pixels());
     }
     frame.stats()
 }
 
 #[inline(never)]
-pub fn quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     const OVER: State = State { depth: DepthState::OFF, ..State::DEFAULT };
     let [r, g, b] = QUAD_COLOR;
     let shader = Flat::unlit(Rgb888::new(r, g, b));
@@ -111,33 +124,33 @@ pub fn quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats
 }
 
 #[inline(never)]
-pub fn gouraud_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn gouraud_quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::colors_unlit()))
 }
 
 #[inline(never)]
-pub fn flat_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn flat_quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     let [r, g, b] = QUAD_COLOR;
     frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &Flat::unlit(Rgb888::new(r, g, b))))
 }
 
 #[inline(never)]
-pub fn own_flat_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn own_flat_quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &OwnFlat))
 }
 
 #[inline(never)]
-pub fn own_gouraud_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn own_gouraud_quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &OwnGouraud))
 }
 
 #[inline(never)]
-pub fn textured_quad(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn textured_quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     frame(buffers, &mut sink, &mut |scene| scene.draw(&TILTED, &IN_VIEW, &Textured::new(&TEXTURE)))
 }
 
 #[inline(never)]
-pub fn flat_torus(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn flat_torus(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     let shader = Flat::new(TORUS_LIGHT, torus_color());
     frame(buffers, &mut sink, &mut |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
@@ -146,18 +159,18 @@ pub fn flat_torus(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) ->
 #[inline(never)]
 pub fn flat_torus_without_records(color: &mut [u16], depth: &mut [u16], sink: impl FnMut(&[u16])) {
     let shader = Flat::new(TORUS_LIGHT, torus_color());
-    let renderer = Renderer::without_records(SCREEN, color, depth);
-    frame_by(renderer, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader));
+    let renderer = Renderer::new(SCREEN).and_then(|renderer| renderer.with_depth(depth));
+    frame_by(renderer, color, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader));
 }
 
 #[inline(never)]
-pub fn gouraud_torus(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn gouraud_torus(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     let shader = Gouraud::new(TORUS_LIGHT, torus_color());
     frame(buffers, &mut sink, &mut |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
 #[inline(never)]
-pub fn tiny(buffers: Buffers<'_, Rgb565>, mut sink: impl FnMut(&[u16])) -> Stats {
+pub fn tiny(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
     let shader = FaceColors(Flat::unlit(Rgb888::new(0, 0, 0)));
     frame(buffers, &mut sink, &mut |scene| scene.draw(tiny_mesh(), &IN_VIEW, &shader))
 }

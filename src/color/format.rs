@@ -2,7 +2,7 @@
 
 use super::luma::luma;
 use super::packed::packed_channels;
-use embedded_graphics_core::pixelcolor::PixelColor;
+use embedded_graphics_core::pixelcolor::{PixelColor, Rgb888};
 
 /// How colours are kept in a framebuffer. Implemented by marker types, which for formats that embedded-graphics knows are
 /// its own colour types.
@@ -11,7 +11,7 @@ pub trait PixelFormat {
     type Raw: bytemuck::Pod;
 
     /// The embedded-graphics colour of this format.
-    type Color: PixelColor;
+    type Color: PixelColor + Into<Rgb888>;
 
     /// Packs red, green and blue of 8 bits; surplus bits are cut.
     fn pack(rgb: [u8; 3]) -> Self::Raw;

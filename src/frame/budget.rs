@@ -20,26 +20,29 @@ pub struct RamBudget {
     pub depth: usize,
     /// Records.
     pub records: usize,
-    rows: u16,
+    rows: u32,
 }
 
 impl RamBudget {
-    /// A strip of `rows` rows of a screen `width` px wide, without records.
-    pub const fn new<P: PixelFormat>(width: u16, rows: u16) -> Self {
+    /// Counts a strip of `rows` rows of a screen `width` px wide, without records.
+    #[must_use]
+    pub const fn new<P: PixelFormat>(width: u32, rows: u32) -> Self {
         let pixels = width as usize * rows as usize;
         Self { color: pixels * size_of::<P::Raw>(), depth: pixels * 2, records: 0, rows }
     }
 
-    /// Without a depth buffer: for what is drawn in the painter's order, and for 2-D drawing.
+    /// Leaves out the depth buffer: for what is drawn in the painter's order, and for 2-D drawing.
+    #[must_use]
     pub const fn without_depth(self) -> Self {
         Self { depth: 0, ..self }
     }
 
-    /// With room for the records of a scene; see [`records_len`](crate::target::records_len).
+    /// Adds room for the records of a scene; see [`records_len`](crate::target::records_len).
+    #[must_use]
     pub const fn with_records(
         self,
         draws: usize,
-        height: u16,
+        height: u32,
         vertices: usize,
         varying_words: usize,
         triangles: usize,
@@ -48,12 +51,31 @@ impl RamBudget {
         Self { records: 4 * records_len(strips, draws, vertices, varying_words, triangles), ..self }
     }
 
-    /// With a number of words of records.
+    /// Adds a number of words of records.
+    #[must_use]
     pub const fn with_record_words(self, words: usize) -> Self {
         Self { records: 4 * words, ..self }
     }
 
-    /// All of them.
+    /// Returns the greatest number of rows, up to `most`, that divides a screen's height: with strips of that height the last
+    /// strip of a frame is no shorter than the others. DMA that always sends whole buffers needs that.
+    ///
+    /// ```
+    /// use zstrip::frame::RamBudget;
+    /// const ROWS: u32 = RamBudget::even_rows(240, 17);
+    /// assert_eq!(ROWS, 16);
+    /// ```
+    #[must_use]
+    pub const fn even_rows(height: u32, most: u32) -> u32 {
+        let mut rows = if most < height { most } else { height };
+        while rows > 1 && !height.is_multiple_of(rows) {
+            rows -= 1;
+        }
+        rows
+    }
+
+    /// Returns the bytes of all buffers together.
+    #[must_use]
     pub const fn total(&self) -> usize {
         self.color + self.depth + self.records
     }

@@ -1,9 +1,16 @@
 //! Frames: bands and strips, renderers, views, RAM budgets.
 
 mod budget;
+mod engine;
+mod error;
+mod frame;
+mod framebuffer_renderer;
 mod renderer;
 mod view;
 
 pub use budget::RamBudget;
-pub use renderer::{Buffers, Frame, FrameError, FramebufferRenderer, Renderer, RendererError};
+pub use error::{FrameError, RendererError};
+pub use frame::Frame;
+pub use framebuffer_renderer::FramebufferRenderer;
+pub use renderer::Renderer;
 pub use view::FrameView;

@@ -81,14 +81,14 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     ///
     /// ```
     /// # use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-    /// # use zstrip::frame::{Buffers, Renderer};
+    /// # use zstrip::embedded_graphics_core::geometry::Size;
+    /// # use zstrip::frame::Renderer;
     /// # use zstrip::target::StripPixels;
     /// use zstrip::{ScreenPoint, Smooth};
-    /// # let (mut color, mut depth) = ([0; 64 * 8], [0; 64 * 8]);
-    /// # let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut [] };
-    /// # let mut renderer = Renderer::<Rgb565>::new((64, 64), buffers)?;
+    /// # let mut color = [0; 64 * 8];
+    /// # let mut renderer = Renderer::<Rgb565>::new(Size::new(64, 64))?;
     /// # let sink = |_: &StripPixels<Rgb565>| Ok::<(), core::convert::Infallible>(());
-    /// renderer.frame_to(sink, Rgb565::BLACK, |scene| {
+    /// renderer.frame_to(sink, &mut color, Rgb888::BLACK, |scene| {
     ///     let mut canvas = scene.canvas();
     ///     canvas.polygon(&[(4, 4), (60, 10), (30, 60)].map(|(x, y)| ScreenPoint::corner(x, y)), Rgb888::BLUE);
     ///     canvas.line_with(ScreenPoint::center(0, 0), ScreenPoint::center(50, 63), Rgb888::WHITE, &Smooth::px(3));

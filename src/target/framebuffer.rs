@@ -1,7 +1,10 @@
 //! What is drawn into: anything that has rows of pixels.
 
+use super::choice::{DepthChoice, RecordsChoice, WithoutDepth, WithoutRecords};
 use crate::color::PixelFormat;
 use core::fmt;
+use core::marker::PhantomData;
+use embedded_graphics_core::geometry::Size;
 
 /// Rows of pixels to draw into.
 ///
@@ -45,26 +48,29 @@ fn first<R>(pixels: &mut [R], length: usize) -> &mut [R] {
 }
 
 /// A horizontal strip of the screen, with a depth buffer and records beside it, or without.
+///
+/// A function for the scenes of any renderer takes `&mut Scene<'_, impl Framebuffer>`, and need not name this type.
 #[derive(Debug)]
-pub struct Strip<'a, P: PixelFormat, const DEPTH: bool = true, const RECORDS: bool = true> {
+pub struct Strip<'a, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
     pixels: &'a mut [P::Raw],
     width: usize,
     first_row: u32,
+    choices: PhantomData<(D, R)>,
 }
 
-impl<'a, P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Strip<'a, P, DEPTH, RECORDS> {
-    /// Rows of `width` px from `first_row` on, one after the other in `pixels`.
-    pub const fn new(pixels: &'a mut [P::Raw], width: u16, first_row: u32) -> Self {
-        Self { pixels, width: width as usize, first_row }
+impl<'a, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Strip<'a, P, D, R> {
+    /// Makes a strip of rows of `width` px from `first_row` on, one after the other in `pixels`.
+    pub(crate) const fn new(pixels: &'a mut [P::Raw], width: usize, first_row: u32) -> Self {
+        Self { pixels, width, first_row, choices: PhantomData }
     }
 }
 
-impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Framebuffer for Strip<'_, P, DEPTH, RECORDS> {
+impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice> Framebuffer for Strip<'_, P, D, R> {
     type Format = P;
 
-    const DEPTH: bool = DEPTH;
+    const DEPTH: bool = D::DEPTH;
 
-    const RECORDS: bool = RECORDS;
+    const RECORDS: bool = R::RECORDS;
 
     // Out of line: in loops, rows are asked for one by one where the strip is short or narrow.
     #[inline(never)]
@@ -91,12 +97,12 @@ impl<P: PixelFormat, const DEPTH: bool, const RECORDS: bool> Framebuffer for Str
 
 /// A framebuffer that is drawn into without a depth buffer.
 #[derive(Debug)]
-pub struct WithoutDepth<F>(
-    /// Where the pixels are.
+pub struct Depthless<F>(
+    /// The framebuffer that holds the pixels.
     pub F,
 );
 
-impl<F: Framebuffer> Framebuffer for WithoutDepth<F> {
+impl<F: Framebuffer> Framebuffer for Depthless<F> {
     type Format = F::Format;
 
     const DEPTH: bool = false;
@@ -128,22 +134,32 @@ pub struct FrameSlice<'a, P: PixelFormat> {
     stride: usize,
 }
 
-/// What is wrong with a framebuffer.
+/// The error of a framebuffer that could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum FramebufferError {
-    /// The slice is shorter than its rows need: how many pixels it has, and how many it needs.
-    TooShort(usize, usize),
-    /// The stride is below the width: stride and width.
-    Stride(usize, u16),
+    /// The slice is shorter than its rows need.
+    TooShort {
+        /// Pixels that the slice holds.
+        pixels: usize,
+        /// Pixels from the first one of the first row to the last one of the last row.
+        needed: usize,
+    },
+    /// The stride is below the width.
+    Stride {
+        /// Pixels from the beginning of a row to that of the next.
+        stride: usize,
+        /// Pixels of a row.
+        width: u32,
+    },
 }
 
 impl fmt::Display for FramebufferError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::TooShort(has, needs) => write!(f, "framebuffer of {has} pixels, {needs} are needed"),
-            Self::Stride(stride, width) => write!(f, "stride of {stride} pixels is below the width of {width}"),
+            Self::TooShort { pixels, needed } => write!(f, "framebuffer of {pixels} pixels, {needed} are needed"),
+            Self::Stride { stride, width } => write!(f, "stride of {stride} pixels is below the width of {width}"),
         }
     }
 }
@@ -151,33 +167,29 @@ impl fmt::Display for FramebufferError {
 impl core::error::Error for FramebufferError {}
 
 impl<'a, P: PixelFormat> FrameSlice<'a, P> {
-    /// A whole screen without gaps between its rows.
+    /// Makes a framebuffer of a whole screen without gaps between its rows.
     ///
     /// # Errors
     /// When the slice is too short.
-    pub const fn new(pixels: &'a mut [P::Raw], width: u16, height: u16) -> Result<Self, FramebufferError> {
-        Self::with_stride(pixels, width, height, width as usize)
+    pub const fn new(pixels: &'a mut [P::Raw], size: Size) -> Result<Self, FramebufferError> {
+        Self::with_stride(pixels, size, size.width as usize)
     }
 
-    /// Rows of `width` pixels that begin `stride` pixels apart.
+    /// Makes a framebuffer whose rows begin `stride` pixels apart.
     ///
     /// # Errors
     /// When the slice is too short or the stride is below the width.
-    pub const fn with_stride(
-        pixels: &'a mut [P::Raw],
-        width: u16,
-        height: u16,
-        stride: usize,
-    ) -> Result<Self, FramebufferError> {
+    pub const fn with_stride(pixels: &'a mut [P::Raw], size: Size, stride: usize) -> Result<Self, FramebufferError> {
+        let Size { width, height } = size;
         if stride < width as usize {
-            return Err(FramebufferError::Stride(stride, width));
+            return Err(FramebufferError::Stride { stride, width });
         }
-        let needs =
+        let needed =
             if height == 0 { 0 } else { (height as usize - 1).saturating_mul(stride).saturating_add(width as usize) };
-        if pixels.len() < needs {
-            return Err(FramebufferError::TooShort(pixels.len(), needs));
+        if pixels.len() < needed {
+            return Err(FramebufferError::TooShort { pixels: pixels.len(), needed });
         }
-        Ok(Self { pixels, width: width as usize, height: height as u32, stride })
+        Ok(Self { pixels, width: width as usize, height, stride })
     }
 }
 

@@ -1,5 +1,6 @@
 //! Where pixels go: framebuffers, strips, sinks, packers, embedded-graphics targets, and the records of a band.
 
+mod choice;
 mod draw_target;
 mod framebuffer;
 mod packer;
@@ -8,8 +9,9 @@ mod sink;
 mod stats;
 mod strip_rows;
 
+pub use choice::{DepthChoice, RecordsChoice, WithDepth, WithRecords, WithoutDepth, WithoutRecords};
 pub use draw_target::Overlay;
-pub use framebuffer::{FrameSlice, Framebuffer, FramebufferError, Strip, WithoutDepth};
+pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use packer::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use records::records_len;
 pub(crate) use records::{Layout, PackedVertex, Records, TriangleRecord, Triangles, VERTEX_WORDS};

@@ -8,6 +8,7 @@ use crate::color::{Dither, Levels, PixelFormat};
 use core::fmt;
 use core::marker::PhantomData;
 use embedded_graphics_core::draw_target::DrawTarget;
+use embedded_graphics_core::geometry::Size;
 use embedded_graphics_core::pixelcolor::BinaryColor;
 
 /// How pixels share bytes.
@@ -188,22 +189,32 @@ fn pack_row<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
     }
 }
 
-/// Why a packer could not be built.
+/// The error of a packer that could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum PackerError {
-    /// The buffer does not hold a strip: how many bytes it has, and how many it needs.
-    TooShort(usize, usize),
-    /// Strips of so many rows do not end where bytes do, which takes a multiple of the second number.
-    PartialPages(u16, u16),
+    /// The buffer does not hold a packed strip.
+    TooShort {
+        /// Bytes that the buffer holds.
+        bytes: usize,
+        /// Bytes of a packed strip.
+        needed: usize,
+    },
+    /// Strips do not end where bytes do.
+    PartialPages {
+        /// Rows of a strip.
+        rows: u32,
+        /// Rows that share a byte: those of a strip must be a multiple.
+        page: u16,
+    },
 }
 
 impl fmt::Display for PackerError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match *self {
-            Self::TooShort(has, needs) => write!(f, "buffer of {has} bytes, a packed strip has {needs}"),
-            Self::PartialPages(rows, page) => write!(f, "strips of {rows} rows, but {page} rows share a byte"),
+            Self::TooShort { bytes, needed } => write!(f, "buffer of {bytes} bytes, a packed strip has {needed}"),
+            Self::PartialPages { rows, page } => write!(f, "strips of {rows} rows, but {page} rows share a byte"),
         }
     }
 }
@@ -215,16 +226,17 @@ impl core::error::Error for PackerError {}
 /// ```
 /// use embedded_graphics_core::pixelcolor::{Gray8, GrayColor};
 /// use zstrip::color::Dither;
-/// use zstrip::frame::{Buffers, Renderer};
+/// use zstrip::embedded_graphics_core::geometry::Size;
+/// use zstrip::frame::Renderer;
 /// use zstrip::target::{Packer, Pages};
-/// let (color, depth, records) = (&mut [0; 128 * 16], &mut [0; 128 * 16], &mut [0; 64]);
-/// let mut renderer = Renderer::<Gray8>::new((128, 64), Buffers { color, depth, records })?;
+/// let (screen, mut color, mut depth) = (Size::new(128, 64), [0; 128 * 16], [0; 128 * 16]);
+/// let mut renderer = Renderer::<Gray8>::new(screen)?.with_depth(&mut depth)?;
 /// let mut bytes = [0; 128 * 16 / 8];
-/// let mut packer = Packer::<Pages>::new((128, 64), renderer.strip_rows(), Dither::BAYER_8, &mut bytes)?;
+/// let mut packer = Packer::<Pages>::new(screen, 16, Dither::BAYER_8, &mut bytes)?;
 /// # let mut sent = 0;
 /// # let mut i2c_write = |bytes: &[u8]| sent += bytes.len();
 /// let mut frame = renderer.begin(Gray8::BLACK);
-/// while let Some(strip) = frame.next_strip(|scene| { /* scene.draw(...) */ })? {
+/// while let Some(strip) = frame.next_strip(&mut color, |scene| { /* scene.draw(...) */ })? {
 ///     i2c_write(packer.pack(&strip));
 /// }
 /// # assert_eq!(sent, 128 * 64 / 8);
@@ -237,23 +249,24 @@ pub struct Packer<'b, F: PackedFormat> {
 }
 
 impl<'b, F: PackedFormat> Packer<'b, F> {
-    /// For strips of `strip_rows` rows of a screen of `(width, height)` pixels.
+    /// Makes a packer for strips of `strip_rows` rows of a screen.
     ///
     /// # Errors
     /// When a strip's bytes do not fit, or a strip does not end where bytes do and another follows.
     pub fn new(
-        screen: (u16, u16),
-        strip_rows: u16,
+        screen: Size,
+        strip_rows: u32,
         dither: Dither<F::Color>,
         bytes: &'b mut [u8],
     ) -> Result<Self, PackerError> {
-        let rows = strip_rows.min(screen.1);
-        if rows < screen.1 && !rows.is_multiple_of(F::ROWS) {
-            return Err(PackerError::PartialPages(strip_rows, F::ROWS));
+        let rows = strip_rows.min(screen.height);
+        if rows < screen.height && !rows.is_multiple_of(F::ROWS.into()) {
+            return Err(PackerError::PartialPages { rows: strip_rows, page: F::ROWS });
         }
-        let needs = F::bytes(screen.0, rows);
-        if bytes.len() < needs {
-            return Err(PackerError::TooShort(bytes.len(), needs));
+        let side = |pixels: u32| u16::try_from(pixels).unwrap_or(u16::MAX);
+        let needed = F::bytes(side(screen.width), side(rows));
+        if bytes.len() < needed {
+            return Err(PackerError::TooShort { bytes: bytes.len(), needed });
         }
         Ok(Self { dither, bytes })
     }

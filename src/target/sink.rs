@@ -6,36 +6,55 @@ use embedded_graphics_core::geometry::Point;
 use embedded_graphics_core::primitives::Rectangle;
 
 /// A finished strip: whole rows of the screen, from left to right and from top to bottom.
-#[derive(Clone, Copy, Debug)]
-pub struct StripPixels<'a, P: PixelFormat> {
+///
+/// It holds the part of the colour buffer that has the strip's pixels, exactly: the last strip of a frame may have fewer rows
+/// than the others, and what the buffer holds behind them is old.
+#[derive(Debug)]
+pub struct StripPixels<'c, P: PixelFormat> {
     area: Rectangle,
-    pixels: &'a [P::Raw],
+    pixels: &'c mut [P::Raw],
 }
 
-impl<'a, P: PixelFormat> StripPixels<'a, P> {
-    pub(crate) const fn new(area: Rectangle, pixels: &'a [P::Raw]) -> Self {
+impl<'c, P: PixelFormat> StripPixels<'c, P> {
+    pub(crate) const fn new(area: Rectangle, pixels: &'c mut [P::Raw]) -> Self {
         Self { area, pixels }
     }
 
-    /// The part of the screen it covers.
+    /// Returns the part of the screen that the strip covers.
+    #[must_use]
     pub const fn area(&self) -> Rectangle {
         self.area
     }
 
-    /// Its pixels, as many as the area has.
-    pub const fn pixels(&self) -> &'a [P::Raw] {
+    /// Returns the pixels, as many as the area has.
+    #[must_use]
+    pub const fn pixels(&self) -> &[P::Raw] {
         self.pixels
     }
 
-    /// Its pixels as bytes: ready for a display's bus, in formats made for it such as
+    /// Returns the pixels as bytes: ready for a display's bus, in formats made for it such as
     /// [`Rgb565Be`](crate::color::Rgb565Be).
-    pub fn bytes(&self) -> &'a [u8] {
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
         bytemuck::cast_slice(self.pixels)
     }
 
-    /// Its pixels as embedded-graphics colours.
-    pub fn colors(&self) -> impl Iterator<Item = P::Color> + use<'a, P> {
+    /// Returns the pixels as embedded-graphics colours.
+    pub fn colors(&self) -> impl Iterator<Item = P::Color> + use<'_, 'c, P> {
         self.pixels.iter().map(|raw| P::to_color(*raw))
+    }
+
+    /// Gives back the part of the buffer that holds the strip, for as long as the buffer was lent: `'static` for a DMA
+    /// transfer, if the buffer was handed over as `'static`.
+    #[must_use]
+    pub const fn into_pixels(self) -> &'c mut [P::Raw] {
+        self.pixels
+    }
+
+    /// Gives back the part of the buffer that holds the strip, as bytes.
+    #[must_use]
+    pub fn into_bytes(self) -> &'c mut [u8] {
+        bytemuck::cast_slice_mut(self.pixels)
     }
 }
 

@@ -12,6 +12,9 @@ pub(crate) struct StripRows {
 }
 
 impl StripRows {
+    /// Strips whose height is not known yet.
+    pub(crate) const UNSET: Self = Self { rows: 0, factor: 0, shift: 0 };
+
     /// # Format
     /// row / rows = row factor / 2^shift with factor = ⌈2^shift / rows⌉ ≤ 2¹³: too large by less than row / 2^shift, which is below
     /// 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below 2¹².

@@ -5,6 +5,7 @@
 
 use super::conformance::{ClipTriangle, PerspectiveTriangle, Rasterizer, ScreenTriangle};
 use std::cell::RefCell;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::frame::FramebufferRenderer;
 use zstrip::internals::{Line, PixelRect, square};
@@ -136,11 +137,16 @@ impl Subject {
         let mut depth = vec![0; width as usize * self.strip_rows.min(height as usize)];
         let mut records = vec![0; self.records];
         let size = (width as u16, height as u16);
-        let mut frame = FrameSlice::<Rgb565>::new(&mut color, size.0, size.1).expect("a framebuffer");
-        let mut renderer = FramebufferRenderer::new(size, &mut depth, &mut records).expect("a renderer");
+        let mut frame =
+            FrameSlice::<Rgb565>::new(&mut color, Size::new(size.0.into(), size.1.into())).expect("a framebuffer");
+        let mut renderer = FramebufferRenderer::new(Size::new(size.0.into(), size.1.into()))
+            .expect("a renderer")
+            .with_depth(&mut depth)
+            .expect("a renderer")
+            .with_records(&mut records);
         let state = State { cull: Cull::None, depth: depth_state, ..State::default() };
         renderer
-            .frame(&mut frame, None, |scene| scene.draw_with(state, &mesh, &y_down(), shader))
+            .frame_over(&mut frame, |scene| scene.draw_with(state, &mesh, &y_down(), shader))
             .expect("the same scene each time");
         (color, depth)
     }

@@ -5,10 +5,12 @@ use crate::reference::rng::Rng;
 use crate::reference::scenes::clip_soup;
 use zstrip::Scene;
 use zstrip::color::PixelFormat;
-use zstrip::frame::{Buffers, FramebufferRenderer, Renderer};
+use zstrip::embedded_graphics_core::geometry::Size;
+use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::internals::{ClipVertex, Outcode, Transform, clip_triangle, project, weighted};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, Positions};
+use zstrip::target::{DepthChoice, RecordsChoice, WithDepth, WithRecords, WithoutRecords};
 use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
 use zstrip::vertex::{DepthRange, ScreenVertex, Viewport};
 
@@ -20,16 +22,19 @@ pub fn strips<P: PixelFormat>(
     rows: usize,
     records: usize,
     background: P::Color,
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, P>>),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, WithDepth, WithRecords>>),
 ) -> (Vec<P::Raw>, Stats) {
     let pixels = usize::from(width) * rows;
     // Old contents must not matter.
     let mut color = vec![P::pack([0xA5; 3]); pixels];
     let mut depth = vec![0x1234; pixels];
     let mut records = vec![0xDEAD_BEEF; records];
-    let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-    let renderer = Renderer::<P>::new((width, height), buffers).expect("a renderer");
-    collect(renderer, background, draw)
+    let renderer = Renderer::<P>::new(Size::new(u32::from(width), u32::from(height)))
+        .expect("a renderer")
+        .with_depth(&mut depth)
+        .expect("a renderer");
+    let renderer = renderer.with_records(&mut records);
+    collect(renderer, &mut color, background, draw)
 }
 
 /// The same by a renderer that knows no records.
@@ -37,31 +42,33 @@ pub fn unrecorded_strips<P: PixelFormat>(
     (width, height): (u16, u16),
     rows: usize,
     background: P::Color,
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, true, false>>),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, WithDepth, WithoutRecords>>),
 ) -> (Vec<P::Raw>, Stats) {
     let pixels = usize::from(width) * rows;
     let (mut color, mut depth) = (vec![P::pack([0xA5; 3]); pixels], vec![0x1234; pixels]);
-    let renderer = Renderer::without_records((width, height), &mut color, &mut depth).expect("a renderer");
-    collect(renderer, background, draw)
+    let renderer = Renderer::new(Size::new(u32::from(width), u32::from(height))).expect("a renderer");
+    let renderer = renderer.with_depth(&mut depth).expect("a renderer");
+    collect(renderer, &mut color, background, draw)
 }
 
-fn collect<P: PixelFormat, const DEPTH: bool, const RECORDS: bool>(
-    mut renderer: Renderer<'_, P, DEPTH, RECORDS>,
+fn collect<P: PixelFormat, D: DepthChoice, R: RecordsChoice>(
+    mut renderer: Renderer<'_, P, D, R>,
+    color: &mut [P::Raw],
     background: P::Color,
-    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, DEPTH, RECORDS>>),
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, D, R>>),
 ) -> (Vec<P::Raw>, Stats) {
-    let (width, height) = renderer.screen();
+    let Size { width, height } = renderer.screen();
     let mut picture = Vec::new();
     let sink = |strip: &StripPixels<'_, P>| {
         let area = strip.area();
         assert_eq!(area.top_left.x, 0);
-        assert_eq!(area.top_left.y as usize * usize::from(width), picture.len());
+        assert_eq!(area.top_left.y as usize * width as usize, picture.len());
         assert_eq!((area.size.width * area.size.height) as usize, strip.pixels().len());
         picture.extend_from_slice(strip.pixels());
         Ok::<(), core::convert::Infallible>(())
     };
-    let stats = renderer.frame_to(sink, background, draw).expect("the same scene in each call");
-    assert_eq!(picture.len(), usize::from(width) * usize::from(height));
+    let stats = renderer.frame_to(sink, color, background, draw).expect("the same scene in each call");
+    assert_eq!(picture.len(), (width * height) as usize);
     (picture, stats)
 }
 
@@ -75,9 +82,14 @@ pub fn whole<P: PixelFormat>(
     let mut color = vec![P::pack([0xA5; 3]); pixels];
     let mut depth = vec![0x1234; pixels];
     let mut records = vec![0xDEAD_BEEF; 1 << 17];
-    let mut frame = FrameSlice::<P>::new(&mut color, width, height).expect("a framebuffer");
-    let mut renderer = FramebufferRenderer::new((width, height), &mut depth, &mut records).expect("a renderer");
-    let stats = renderer.frame(&mut frame, Some(background), draw).expect("the same scene in each call");
+    let mut frame =
+        FrameSlice::<P>::new(&mut color, Size::new(u32::from(width), u32::from(height))).expect("a framebuffer");
+    let mut renderer = FramebufferRenderer::new(Size::new(u32::from(width), u32::from(height)))
+        .expect("a renderer")
+        .with_depth(&mut depth)
+        .expect("a renderer")
+        .with_records(&mut records);
+    let stats = renderer.frame(&mut frame, background, draw).expect("the same scene in each call");
     (color, depth, stats)
 }
 

@@ -1,0 +1,247 @@
+//! The loop that makes a frame: bands of strips, recorded as large as the records allow, replayed strip by strip.
+
+use super::error::RendererError;
+use crate::color::clear;
+use crate::scene::{Phase, Scene, Target};
+use crate::target::{Framebuffer, Layout, Records, Stats, StripRows, whole_rows};
+use crate::vertex::Viewport;
+use embedded_graphics_core::geometry::Size;
+
+/// The screen and its strips.
+#[derive(Clone, Copy, Debug)]
+struct Grid {
+    viewport: Viewport,
+    /// Rows that the depth buffer holds, or of the screen if those are fewer.
+    most_rows: u16,
+    /// Strips of the frame at hand.
+    strips: StripRows,
+}
+
+impl Grid {
+    fn screen(&self) -> (u16, u16) {
+        (self.viewport.width(), self.viewport.height())
+    }
+
+    /// Returns the rows of a strip whose colour buffer holds a number of pixels; 0 if it does not hold one row.
+    fn strip_rows(&self, pixels: usize) -> u16 {
+        let (width, most) = (self.viewport.width(), self.most_rows);
+        if pixels >= usize::from(width) * usize::from(most) { most } else { whole_rows(pixels, width) as u16 }
+    }
+
+    /// Returns the height of the strip that begins at `row`.
+    fn rows_at(&self, row: u16) -> u16 {
+        self.strips.rows.min(self.viewport.height() - row)
+    }
+
+    /// Counts the strips from `row` on.
+    fn strips_from(&self, row: u16) -> u16 {
+        self.strips.of(u32::from(self.viewport.height() - row) - 1) as u16 + 1
+    }
+
+    /// Returns the first row of a number of strips that begin at `row`, and the row behind their last one.
+    fn band(&self, row: u16, strips: u16) -> (u16, u16) {
+        let end = u32::from(row) + u32::from(strips) * u32::from(self.strips.rows);
+        (row, end.min(u32::from(self.viewport.height())) as u16)
+    }
+}
+
+/// The part that all renderers share: the screen, its strips, depth and records.
+#[derive(Debug)]
+pub(super) struct Engine<'b> {
+    grid: Grid,
+    depth: &'b mut [u16],
+    records: &'b mut [u32],
+}
+
+impl<'b> Engine<'b> {
+    /// Makes an engine for a screen, without depth and records.
+    #[inline]
+    pub(super) fn new(screen: Size) -> Result<Self, RendererError> {
+        let viewport = Viewport::full(screen).map_err(RendererError::Screen)?;
+        let grid = Grid { viewport, most_rows: viewport.height(), strips: StripRows::UNSET };
+        Ok(Self { grid, depth: &mut [], records: &mut [] })
+    }
+
+    /// Takes a depth buffer, whose rows limit the height of strips.
+    #[inline]
+    pub(super) fn with_depth(mut self, depth: &'b mut [u16]) -> Result<Self, RendererError> {
+        let rows = self.strip_rows(depth.len());
+        if rows == 0 {
+            return Err(RendererError::DepthTooShort { pixels: depth.len(), needed: self.width() });
+        }
+        self.grid.most_rows = rows;
+        self.depth = depth;
+        Ok(self)
+    }
+
+    /// Takes memory for records.
+    #[inline]
+    pub(super) fn with_records(self, records: &'b mut [u32]) -> Self {
+        Self { records, ..self }
+    }
+
+    /// Returns the size of the screen.
+    pub(super) fn screen(&self) -> Size {
+        let (width, height) = self.grid.screen();
+        Size::new(width.into(), height.into())
+    }
+
+    /// Returns the pixels of a row.
+    pub(super) fn width(&self) -> usize {
+        self.grid.viewport.width().into()
+    }
+
+    /// Returns the rows of a strip whose colour buffer holds a number of pixels; 0 if it does not hold one row.
+    pub(super) fn strip_rows(&self, pixels: usize) -> u16 {
+        self.grid.strip_rows(pixels)
+    }
+
+    /// Sets the height of a frame's strips.
+    #[inline]
+    pub(super) fn set_strip_rows(&mut self, rows: u16, records: bool) {
+        if rows != self.grid.strips.rows {
+            self.grid.strips = StripRows::new(rows, records);
+        }
+    }
+}
+
+/// The state of a frame: which strip comes next, and which band is in the records.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Progress {
+    /// First row of the next strip.
+    row: u16,
+    /// Rows of the band in the records; none if it is used up.
+    band: (u16, u16),
+    /// Strips to try to record at once; 0 to draw the next one directly.
+    strips: u16,
+    layout: Layout,
+    /// Draws in the records.
+    draws: u16,
+    pub(super) stats: Stats,
+}
+
+impl Progress {
+    /// Starts a frame.
+    pub(super) fn new() -> Self {
+        Self { row: 0, band: (0, 0), strips: u16::MAX, layout: Layout::default(), draws: 0, stats: Stats::default() }
+    }
+
+    /// Returns the first row of the next strip.
+    pub(super) fn row(&self) -> u16 {
+        self.row
+    }
+
+    /// Goes on to the next strip.
+    #[inline]
+    fn end_strip(&mut self, rows: u16, phase: Phase) {
+        if phase == Phase::Direct {
+            self.strips = 1;
+            self.stats.direct_strips = self.stats.direct_strips.wrapping_add(1);
+        }
+        self.row += rows;
+        self.stats.strips = self.stats.strips.wrapping_add(1);
+    }
+}
+
+impl Engine<'_> {
+    /// Returns the rows of the next strip; `None` after the last.
+    pub(super) fn next_rows(&self, progress: &Progress) -> Option<u16> {
+        let rows = self.grid.rows_at(progress.row);
+        (rows > 0).then_some(rows)
+    }
+
+    /// Draws the next strip, which has `rows` rows, into `framebuffer`, which holds the background already. Fails with the
+    /// number of the draw that differed.
+    ///
+    /// If it is not in the records, a band that begins with it is recorded first: all the rest of the screen, or half of
+    /// what was tried last, until it fits. Where not even one strip does, it is drawn directly.
+    #[inline]
+    pub(super) fn next_strip<F: Framebuffer>(
+        &mut self,
+        progress: &mut Progress,
+        framebuffer: &mut F,
+        rows: u16,
+        draw: &mut dyn FnMut(&mut Scene<'_, F>),
+    ) -> Result<(), u16> {
+        if F::DEPTH {
+            let pixels = usize::from(self.grid.viewport.width()) * usize::from(rows);
+            clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
+        }
+        loop {
+            let phase = if F::RECORDS { self.begin_walk(progress, rows) } else { Phase::Direct };
+            if let Some(draw) = self.walk(progress, framebuffer, rows, phase, draw) {
+                // What is left in the records is of no use: the frame is over.
+                progress.row = self.grid.viewport.height();
+                return Err(draw);
+            }
+            if phase != Phase::Record {
+                progress.end_strip(rows, phase);
+                return Ok(());
+            }
+        }
+    }
+
+    /// Decides what the next walk does, and makes the records ready for it.
+    #[inline(never)]
+    fn begin_walk(&mut self, progress: &mut Progress, rows: u16) -> Phase {
+        let Progress { row, band, strips, layout, .. } = progress;
+        let mut records = Records::new(self.records, layout);
+        if *row < band.1 {
+            records.begin_replay(self.grid.strips.of(u32::from(*row - band.0)));
+            return Phase::Replay;
+        }
+        if *strips == 0 {
+            *band = (*row, *row + rows);
+            records.clear();
+            return Phase::Direct;
+        }
+        *strips = self.grid.strips_from(*row).min(*strips);
+        *band = self.grid.band(*row, *strips);
+        records.begin_band(usize::from(*strips));
+        Phase::Record
+    }
+
+    /// Walks over the scene once. Returns the number of the draw that differed from the walk before.
+    fn walk<F: Framebuffer>(
+        &mut self,
+        progress: &mut Progress,
+        framebuffer: &mut F,
+        rows: u16,
+        phase: Phase,
+        draw: &mut dyn FnMut(&mut Scene<'_, F>),
+    ) -> Option<u16> {
+        let rows = i32::from(progress.row)..i32::from(progress.row + rows);
+        let mut scene = Scene {
+            screen: self.grid.screen(),
+            viewport: self.grid.viewport,
+            phase,
+            records: Records::new(self.records, &mut progress.layout),
+            strips: &self.grid.strips,
+            band: if F::RECORDS { i32::from(progress.band.0)..i32::from(progress.band.1) } else { rows.clone() },
+            target: Target { framebuffer, depth: self.depth, rows },
+            stats: &mut progress.stats,
+            draws: 0,
+            changed: None,
+        };
+        // Records that cannot even hold the lists need no walk to overflow.
+        if !scene.overflowed() {
+            scene.stats.walks = scene.stats.walks.wrapping_add(1);
+            draw(&mut scene);
+        }
+        if !F::RECORDS {
+            return None;
+        }
+        let (draws, changed) = (scene.draws, scene.changed);
+        match scene.phase {
+            Phase::Record if scene.overflowed() => {
+                scene.stats.overflows = scene.stats.overflows.wrapping_add(1);
+                progress.strips /= 2;
+                progress.band.1 = progress.band.0;
+            }
+            Phase::Record => progress.draws = draws,
+            Phase::Replay if draws != progress.draws => return changed.or(Some(draws.min(progress.draws))),
+            Phase::Replay | Phase::Direct => {}
+        }
+        changed
+    }
+}

@@ -1,0 +1,81 @@
+//! Why a renderer could not be built, and why a frame ended early.
+
+use crate::vertex::ViewportError;
+use core::convert::Infallible;
+use core::fmt;
+
+/// The error of a renderer that could not be built.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum RendererError {
+    /// The screen is empty, or larger than [`Viewport::MAX_SIZE`](crate::vertex::Viewport::MAX_SIZE).
+    Screen(ViewportError),
+    /// The depth buffer does not hold one row.
+    DepthTooShort {
+        /// Pixels that the buffer holds.
+        pixels: usize,
+        /// Pixels of a row.
+        needed: usize,
+    },
+}
+
+impl fmt::Display for RendererError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Screen(error) => write!(f, "screen: {error}"),
+            Self::DepthTooShort { pixels, needed } => {
+                write!(f, "depth buffer of {pixels} pixels, one row has {needed}")
+            }
+        }
+    }
+}
+
+impl core::error::Error for RendererError {}
+
+/// The error of a frame that ended early, or of a strip that could not be drawn. `E` is the error of the sink.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
+pub enum FrameError<E = Infallible> {
+    /// The sink, or the display, failed. The frame is over.
+    Sink(E),
+    /// The closure drew something else than in its call before. The frame is over.
+    SceneChanged {
+        /// Number of the first draw that differed, counted from 0.
+        draw: u16,
+    },
+    /// The colour buffer does not hold the strip; for the first strip of a frame: not one row. Nothing was drawn: the frame
+    /// goes on with the next buffer that is long enough.
+    BufferTooShort {
+        /// Pixels that the buffer holds.
+        pixels: usize,
+        /// Pixels of the strip; for the first strip of a frame: pixels of a row.
+        needed: usize,
+    },
+}
+
+impl FrameError {
+    /// Returns the error as that of a frame whose sink fails with an `E`.
+    pub(super) fn widen<E>(self) -> FrameError<E> {
+        match self {
+            Self::Sink(never) => match never {},
+            Self::SceneChanged { draw } => FrameError::SceneChanged { draw },
+            Self::BufferTooShort { pixels, needed } => FrameError::BufferTooShort { pixels, needed },
+        }
+    }
+}
+
+impl<E: fmt::Display> fmt::Display for FrameError<E> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Sink(error) => write!(f, "display: {error}"),
+            Self::SceneChanged { draw } => write!(f, "draw {draw} differs from the call before in the same frame"),
+            Self::BufferTooShort { pixels, needed } => {
+                write!(f, "colour buffer of {pixels} pixels, {needed} are needed")
+            }
+        }
+    }
+}
+
+impl<E: fmt::Debug + fmt::Display> core::error::Error for FrameError<E> {}
