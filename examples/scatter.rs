@@ -10,7 +10,7 @@ use host::program::{Demo, show};
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
+use zstrip::mesh::{LineTopology, Lines, Points, Positions, Vertices};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
 use zstrip::target::Strip;
@@ -98,22 +98,22 @@ impl Demo for Scatter {
     }
 
     fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, _turn: Angle16, mode: usize) {
-        let pairs = |ends| Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(ends)));
+        let pairs = |ends| Lines::new(Vertices::new(Positions::Exact(ends)), LineTopology::Pairs, None);
         let (Ok(grid), Ok(axes)) = (pairs(&self.grid), pairs(&self.axes)) else { return };
         let behind = State { depth: DepthState { compare: Compare::Always, write: false }, ..State::DEFAULT };
         let thin = Flat::unlit(Rgb888::new(52, 64, 76));
         scene.draw_lines_with(behind, &grid, &self.mvp, &thin, &Smooth::new(230));
         scene.draw_lines_with(behind, &axes, &self.mvp, &Flat::unlit(Rgb888::new(190, 200, 210)), &Smooth::new(340));
         let colors = Some(&self.colors[..]);
-        let points = |at| Points::new(MeshData { colors, ..MeshData::new(Positions::Exact(at)) });
+        let points = |at| Points::new(Vertices { colors, ..Vertices::new(Positions::Exact(at)) });
         let (Ok(points), Ok(shadows)) = (points(&self.points), points(&self.shadows)) else { return };
         scene.draw_points(State::DEFAULT, &shadows, &self.mvp, &Flat::unlit(Rgb888::new(40, 40, 48)), 600);
         if mode == 1 {
             let (ends, colors): (Vec<_>, Vec<_>) = (self.points.iter().zip(&self.shadows).zip(&self.colors))
                 .flat_map(|((point, shadow), color)| [(*point, *color), (*shadow, color.map(|c| c / 4))])
                 .unzip();
-            let data = MeshData { colors: Some(&colors), ..MeshData::new(Positions::Exact(&ends)) };
-            if let Ok(stems) = Lines::new(Joined::Pairs, data) {
+            let data = Vertices { colors: Some(&colors), ..Vertices::new(Positions::Exact(&ends)) };
+            if let Ok(stems) = Lines::new(data, LineTopology::Pairs, None) {
                 scene.draw_lines_with(State::DEFAULT, &stems, &self.mvp, &Gouraud::colors_unlit(), &Thin);
             }
         }

@@ -18,7 +18,7 @@ use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::frame::Renderer;
 use zstrip::math::{Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Joined, Lines, MeshData, Positions};
+use zstrip::mesh::{LineTopology, Lines, Positions, Vertices};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::target::Strip;
 use zstrip::target::{WithDepth, WithRecords};
@@ -74,10 +74,10 @@ impl Ends {
 
     fn input(&self) -> Option<Input<'_>> {
         let positions = Positions::Quantized { points: &self.space, scale: Scalar::ONE, offset: Vec3::ZERO };
-        let data = MeshData { colors: Some(&self.colors), ..MeshData::new(positions) };
+        let data = Vertices { colors: Some(&self.colors), ..Vertices::new(positions) };
         let camera = scenes::camera((WIDTH as u16, HEIGHT as u16), Scalar::ONE, Scalar::from_bits(12 << 16));
         let torus = camera * scenes::torus_model(Angle16(5000));
-        Some(Input { screen: &self.screen, lines: Lines::new(Joined::Pairs, data).ok()?, torus })
+        Some(Input { screen: &self.screen, lines: Lines::new(data, LineTopology::Pairs, None).ok()?, torus })
     }
 }
 

@@ -8,7 +8,7 @@ pub use crate::{
     frame::Renderer,
     light::{DirectionalLight, Lighting, Material},
     math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3},
-    mesh::{Lines, Mesh, MeshData, Points, Positions, Topology},
+    mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices},
     scene::{Scene, State},
     shader::{Flat, Gouraud, Shaded, Textured},
     target::Framebuffer,

@@ -13,7 +13,7 @@ use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::{FramebufferRenderer, RamBudget, Renderer};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Joined, Lines, Mesh, Points};
+use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Vertices};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{DepthState, Shader};
 use zstrip::target::{Depthless, FrameSlice, Strip, StripPixels};
@@ -56,8 +56,9 @@ where
     let turned = Projective::from(Affine::rotation_z(Angle16(40_000)));
     scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
     // Lines, points and shapes on the screen.
-    let data = *mesh.data();
-    let lines = Lines::new(Joined::Strip, data).expect("vertices are lines");
+    let MeshData { positions, normals, colors, uvs, .. } = *mesh.data();
+    let data = Vertices { positions, normals, colors, uvs, bounds: None };
+    let lines = Lines::new(data, LineTopology::Strip, None).expect("vertices are lines");
     scene.draw_lines_with(state, &lines, mvp, &Gouraud::colors_unlit(), &Thin);
     scene.draw_lines_with(state, &lines, mvp, &Flat::unlit(Rgb888::CSS_TEAL), &Dashed(0xF0F0_3333));
     scene.draw_lines_with(state, &lines, &turned, &Flat::unlit(Rgb888::CSS_GOLD), &Smooth::px(2));

@@ -14,7 +14,7 @@ use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Line, PixelRect, Projected, Transform};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Joined, Lines, Mesh, MeshData, Positions, Topology};
+use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Positions, Topology, Vertices};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::span::{DepthBias, DepthState, Fragment, Shader};
 use zstrip::vertex::{Face, ScreenVertex, VertexRef, VertexShader, Viewport};
@@ -163,8 +163,8 @@ fn lines_may_be_pulled_forward_instead() {
     let quad = MeshData { topology: Topology::Quads, ..data };
     let quad = Mesh::new(quad).expect("a mesh");
     let indices = Some(&[0_u16, 2][..]);
-    let diagonal = MeshData { indices, ..data };
-    let diagonal = Lines::new(Joined::Pairs, diagonal).expect("a line");
+
+    let diagonal = Lines::new(Vertices::new(Positions::Exact(&corners)), LineTopology::Pairs, indices).expect("a line");
     let camera = scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12));
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -3));
     let red = |constant: i16| {

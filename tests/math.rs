@@ -58,8 +58,8 @@ fn angles_wrap_as_angles_do() {
     assert_eq!(Angle16(60_000) + Angle16(10_000), Angle16(4464));
     assert_eq!(Angle16(100) - Angle16(200), Angle16(65_436));
     assert_eq!(-Angle16(1), Angle16(65_535));
-    Angle16::from_degrees(i32::MIN);
-    Angle16::from_degrees(i32::MAX);
+    let _ = Angle16::from_degrees(i32::MIN);
+    let _ = Angle16::from_degrees(i32::MAX);
 }
 
 #[test]

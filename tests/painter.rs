@@ -10,31 +10,31 @@ use support::whole;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
+use zstrip::mesh::{Mesh, MeshData, Positions, Topology, sort_back_to_front};
 use zstrip::shader::Gouraud;
 use zstrip::span::DepthState;
-use zstrip::vertex::{Order, SortError, Sortable, Viewport, far_to_near, painters_order};
+use zstrip::vertex::{SortError, SortReport, SortScratch, Viewport, painters_order};
 use zstrip::{Cull, State};
 
 const SCREEN: (u16, u16) = (160, 120);
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
 #[test]
-fn items_are_sorted_from_far_to_near() {
+fn items_are_sorted_from_sort_back_to_front() {
     let mut rng = Rng::new(3);
     for case in 0..500 {
         let items: Vec<i32> = (0..rng.between(0, 60)).map(|_| rng.between(-20, 20) << rng.between(0, 20)).collect();
         let (mut sorted, mut expected) = (items.clone(), items);
-        far_to_near(&mut sorted, |item| *item);
+        sort_back_to_front(&mut sorted, |item| i64::from(*item));
         expected.sort_unstable_by_key(|item| std::cmp::Reverse(*item));
         assert_eq!(sorted, expected, "case {case}");
     }
 }
 
 /// Draws a mesh with a depth buffer, and sorted without one: pixels that differ, pixels drawn, and the order.
-fn compare(mesh: &Mesh<'_>, mvp: &Projective) -> (usize, usize, Order) {
+fn compare(mesh: &Mesh<'_>, mvp: &Projective) -> (usize, usize, SortReport) {
     let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
-    let mut memory = vec![Sortable::default(); mesh.triangle_count()];
+    let mut memory = vec![SortScratch::default(); mesh.triangle_count()];
     let mut indices = vec![0; 3 * mesh.triangle_count()];
     let order = painters_order(mesh, mvp, &viewport, &mut memory, &mut indices).expect("room for all");
     let draw = |mesh: &Mesh<'_>, state: State| {
@@ -87,7 +87,7 @@ fn slanted_triangles_are_painted_in_the_right_order() {
         }
         // In no order to begin with.
         let mut order: Vec<u16> = (0..14).collect();
-        far_to_near(&mut order, |k| (i32::from(*k) * 7919 + seed as i32) % 31);
+        sort_back_to_front(&mut order, |k| (i64::from(*k) * 7919 + seed as i64) % 31);
         let indices: Vec<u16> = order.iter().flat_map(|k| [3 * k, 3 * k + 1, 3 * k + 2]).collect();
         let data =
             MeshData { colors: Some(&colors), indices: Some(&indices), ..MeshData::new(Positions::Exact(&points)) };
@@ -100,7 +100,7 @@ fn slanted_triangles_are_painted_in_the_right_order() {
         // By their farthest vertices alone.
         let mut naive: Vec<u16> = (0..14).collect();
         let distance = |k: &u16| (0..3).map(|c| -points[usize::from(3 * k + c)].to_bits()[2]).max().unwrap_or(0);
-        far_to_near(&mut naive, distance);
+        sort_back_to_front(&mut naive, |k| i64::from(distance(k)));
         let back_to_front = (0..14).collect::<Vec<u16>>();
         naive_wrong += usize::from(naive != back_to_front);
     }
@@ -123,7 +123,7 @@ fn what_cannot_be_sorted_is_refused() {
     let count = mesh.triangle_count();
     let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     let sort = |mesh: &Mesh<'_>, places: usize, indices: usize| {
-        let (mut memory, mut indices) = (vec![Sortable::default(); places], vec![0; indices]);
+        let (mut memory, mut indices) = (vec![SortScratch::default(); places], vec![0; indices]);
         painters_order(mesh, &Projective::IDENTITY, &viewport, &mut memory, &mut indices)
     };
     assert_eq!(sort(mesh, count - 1, 3 * count), Err(SortError::TooShort { found: count - 1, expected: count }));
@@ -136,7 +136,7 @@ fn what_cannot_be_sorted_is_refused() {
     assert_eq!(sort(&with_normals, count, 3 * count), Err(SortError::FaceNormals));
     // Nothing of it is on the screen: any order is right.
     let behind = Projective::IDENTITY * Affine::translation(Vec3::from_ints(0, 0, 900));
-    let mut memory = vec![Sortable::default(); count];
+    let mut memory = vec![SortScratch::default(); count];
     let order = painters_order(mesh, &behind, &viewport, &mut memory, &mut vec![0; 3 * count]);
     assert_eq!(order.map(|order| order.indices), Ok(3 * count));
 }

@@ -22,7 +22,7 @@ use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::Drawable;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb888, RgbColor};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Joined, Lines, Mesh, MeshData, Points, Positions, Topology};
+use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices};
 use zstrip::shader::{Add, Blend, Flat, Gouraud, Textured};
 use zstrip::span::DepthState;
 use zstrip::target::{Strip, WithDepth, WithRecords};
@@ -232,7 +232,7 @@ fn thin_lines_in_all_octants_leave_the_diamond_of_their_start_and_not_that_of_th
 #[test]
 fn thin_line_strip_draws_the_pixels_of_a_joint_once() {
     let points = at([(1, 1, 8), (14, 1, 8), (14, 6, 8), (2, 6, 8), (2, 3, 8), (11, 3, 8)]);
-    let lines = Lines::new(Joined::Strip, MeshData::new(Positions::Exact(&points))).expect("lines");
+    let lines = Lines::new(Vertices::new(Positions::Exact(&points)), LineTopology::Strip, None).expect("lines");
     assert_pattern(
         &[
             "................",
@@ -324,7 +324,7 @@ fn smooth_line_covers_its_rim_in_part() {
 fn points_are_squares_about_their_vertices() {
     let points = at([(2, 2, 4), (5, 2, 4), (9, 4, 4), (11, 6, 2)]);
     let colors = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 0]];
-    let data = MeshData { colors: Some(&colors), ..MeshData::new(Positions::Exact(&points)) };
+    let data = Vertices { colors: Some(&colors), ..Vertices::new(Positions::Exact(&points)) };
     let points = Points::new(data).expect("points");
     let green = at([(7, 0, 8), (7, 8, 8), (9, 8, 8), (9, 0, 8)]);
     let wall =

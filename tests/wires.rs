@@ -12,7 +12,7 @@ use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Line, PixelRect, Projected, Transform, square};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
+use zstrip::mesh::{LineTopology, Lines, MeshData, Points, Positions, Vertices};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Framebuffer;
@@ -42,22 +42,22 @@ impl Ends {
         Self { positions, colors }
     }
 
-    fn data(&self) -> MeshData<'_> {
-        MeshData { colors: Some(&self.colors), ..MeshData::new(Positions::Homogeneous(&self.positions)) }
+    fn data(&self) -> Vertices<'_> {
+        Vertices { colors: Some(&self.colors), ..Vertices::new(Positions::Homogeneous(&self.positions)) }
     }
 }
 
 /// One draw of each kind.
 fn draw_all<F: Framebuffer>(scene: &mut Scene<'_, F>, ends: &Ends, turn: Angle16, range: DepthRange) {
     let mvp = Projective::from(Affine::rotation_z(turn));
-    let lines = |joined| Lines::new(joined, ends.data()).expect("lines");
+    let lines = |joined| Lines::new(ends.data(), joined, None).expect("lines");
     let shader = Gouraud::colors_unlit();
     let state = State { range, ..State::DEFAULT };
-    scene.draw_lines_with(state, &lines(Joined::Strip), &mvp, &shader, &Thin);
-    scene.draw_lines_with(state, &lines(Joined::Loop), &mvp, &shader, &Dashed::EVEN);
-    scene.draw_lines_with(state, &lines(Joined::Pairs), &mvp, &shader, &Thick::new(700));
+    scene.draw_lines_with(state, &lines(LineTopology::Strip), &mvp, &shader, &Thin);
+    scene.draw_lines_with(state, &lines(LineTopology::Loop), &mvp, &shader, &Dashed::EVEN);
+    scene.draw_lines_with(state, &lines(LineTopology::Pairs), &mvp, &shader, &Thick::new(700));
     let blended = State { depth: DepthState { compare: Compare::LessEqual, write: false }, ..state };
-    scene.draw_lines_with(blended, &lines(Joined::Pairs), &mvp, &Flat::unlit(Rgb888::GREEN), &Smooth::new(300));
+    scene.draw_lines_with(blended, &lines(LineTopology::Pairs), &mvp, &Flat::unlit(Rgb888::GREEN), &Smooth::new(300));
     scene.draw_points(state, &Points::new(ends.data()).expect("points"), &mvp, &shader, 5 * 256 + 77);
 }
 
@@ -145,7 +145,7 @@ fn thin_lines_are_those_of_the_rule_with_exact_depth_and_values() {
     let mut worst = [0_f64; 2];
     for _ in 0..200 {
         let ends = in_view(&mut rng, 8);
-        let lines = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("lines");
+        let lines = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Pairs, None).expect("lines");
         let seen = fragments(|scene, shader| scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Thin));
         let v = placed(&lines, &camera());
         let mut seen = seen.into_iter();
@@ -182,8 +182,8 @@ fn strips_and_loops_draw_each_pixel_of_a_joint_once() {
                 Vec3::new(angle.cos(), angle.sin(), Scalar::ZERO)
             })
             .collect();
-        let data = MeshData::new(Positions::Exact(&ends));
-        let circle = Lines::new(Joined::Loop, data).expect("a loop");
+        let data = Vertices::new(Positions::Exact(&ends));
+        let circle = Lines::new(data, LineTopology::Loop, None).expect("a loop");
         let seen = fragments(|scene, shader| scene.draw_lines_with(EVERYTHING, &circle, &camera(), shader, &Thin));
         let mut hits = BTreeMap::new();
         seen.iter().for_each(|(position, ..)| *hits.entry(*position).or_insert(0) += 1);
@@ -192,7 +192,7 @@ fn strips_and_loops_draw_each_pixel_of_a_joint_once() {
         let farthest = seen.iter().zip(seen.iter().cycle().skip(1)).map(apart).max();
         assert_eq!(farthest, Some(1), "{corners} corners");
         // The strip is the loop without the last line.
-        let open = Lines::new(Joined::Strip, data).expect("a strip");
+        let open = Lines::new(data, LineTopology::Strip, None).expect("a strip");
         let strip = fragments(|scene, shader| scene.draw_lines_with(EVERYTHING, &open, &camera(), shader, &Thin));
         assert_eq!(seen[..strip.len()], strip);
         assert!(strip.len() < seen.len());
@@ -205,7 +205,7 @@ fn dashes_are_the_pixels_of_the_pattern() {
     for _ in 0..50 {
         let ends = in_view(&mut rng, 2);
         let pattern = rng.next_u64() as u32;
-        let lines = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
+        let lines = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Pairs, None).expect("a line");
         let draw =
             |stroke: &dyn Fn(&mut Scene<'_, zstrip::target::FrameSlice<'_, Rgb565>>, &Seen<'_>)| fragments(stroke);
         let all = draw(&|scene, shader| scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Thin));
@@ -225,11 +225,11 @@ fn points_are_squares_at_their_depth() {
     let mut rng = Rng::new(24);
     for _ in 0..50 {
         let ends = in_view(&mut rng, 5);
-        let data = MeshData::new(Positions::Exact(&ends));
+        let data = Vertices::new(Positions::Exact(&ends));
         let points = Points::new(data).expect("points");
         let size = rng.below(4000) as u32;
         let seen = fragments(|scene, shader| scene.draw_points(EVERYTHING, &points, &camera(), shader, size));
-        let v = placed(&Lines::new(Joined::Strip, data).expect("lines"), &camera());
+        let v = placed(&Lines::new(data, LineTopology::Strip, None).expect("lines"), &camera());
         let screen = PixelRect { x: 0..i32::from(SCREEN.0), y: 0..i32::from(SCREEN.1) };
         let mut expected = Vec::new();
         for (k, v) in v.iter().enumerate() {
@@ -257,7 +257,7 @@ fn smooth_lines_cover_pixels_in_proportion() {
     let mut worst = 0_f64;
     for _ in 0..100 {
         let ends = in_view(&mut rng, 2);
-        let lines = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
+        let lines = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Pairs, None).expect("a line");
         let [a, b] = placed(&lines, &camera())[..] else { panic!("two ends") };
         let width = rng.pick(&[64, 128, 256, 400, 1280, 5000]);
         let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| {
@@ -324,7 +324,7 @@ fn thick_lines_are_rectangles() {
     let mut rng = Rng::new(26);
     for _ in 0..100 {
         let ends = in_view(&mut rng, 2);
-        let lines = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
+        let lines = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Pairs, None).expect("a line");
         let [a, b] = placed(&lines, &camera())[..] else { panic!("two ends") };
         let width = rng.pick(&[64, 256, 700, 2560, 10_000]);
         let seen =
@@ -353,8 +353,8 @@ fn thick_lines_are_rectangles() {
 #[test]
 fn a_stroke_that_changes_between_strips_is_an_error() {
     let ends = [Vec3::ZERO, Vec3::from_milli(500, 500, 0)];
-    let lines = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
-    let other = Lines::new(Joined::Loop, MeshData::new(Positions::Exact(&ends))).expect("a line");
+    let lines = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Pairs, None).expect("a line");
+    let other = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Loop, None).expect("a line");
     let (mut color, mut depth, mut records) = ([0; 160 * 10], [0; 160 * 10], [0; 200]);
     let renderer = zstrip::Renderer::<Rgb565>::new(Size::new(SCREEN.0.into(), SCREEN.1.into()))
         .expect("a renderer")
@@ -379,7 +379,7 @@ fn depth_decides_between_lines_and_faces() {
     let mesh = MeshData { topology: zstrip::mesh::Topology::Quads, ..data };
     let mesh = zstrip::mesh::Mesh::new(mesh).expect("a mesh");
     let ends = [Vec3::from_milli(-900, 0, 500), Vec3::from_milli(900, 0, -500)];
-    let line = Lines::new(Joined::Pairs, MeshData::new(Positions::Exact(&ends))).expect("a line");
+    let line = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Pairs, None).expect("a line");
     let draw = |first: bool| {
         let (picture, ..) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| {
             if first {

@@ -381,7 +381,7 @@ fn glass_model(turn: Angle16, k: u16) -> Affine {
 fn back_to_front(screen: (u16, u16), turn: Angle16) -> [u16; 5] {
     let lens = Lens::close(screen);
     let mut order = [0, 1, 2, 3, 4];
-    sort_back_to_front(&mut order, |k| view_depth(&lens.seen(|| glass_model(turn, k)), PANE.bounds()));
+    sort_back_to_front(&mut order, |k| view_depth(&lens.seen(|| glass_model(turn, *k)), PANE.bounds()));
     order
 }
 

@@ -2,18 +2,16 @@
 
 use super::{Rgb888, seen, torus, torus_model};
 use zstrip::math::{Angle16, Projective, Scalar, Vec3};
-use zstrip::mesh::{Joined, Lines, MeshData, Points, Positions};
+use zstrip::mesh::{LineTopology, Lines, Points, Positions, Vertices};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::span::{Compare, DepthBias, DepthState};
 use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thick};
 
 /// Three axes from the origin, as long as the torus is wide.
 pub static AXES: Lines<'static> = Lines::constant(
-    Joined::Pairs,
-    MeshData {
-        indices: Some(&[0, 1, 2, 3, 4, 5]),
+    Vertices {
         colors: Some(&[[90, 20, 20], [255, 60, 60], [20, 90, 20], [60, 255, 60], [30, 40, 110], [80, 120, 255]]),
-        ..MeshData::new(Positions::Exact(&[
+        ..Vertices::new(Positions::Exact(&[
             Vec3::from_milli(-1600, 0, 0),
             Vec3::from_milli(1600, 0, 0),
             Vec3::from_milli(0, -1600, 0),
@@ -22,6 +20,8 @@ pub static AXES: Lines<'static> = Lines::constant(
             Vec3::from_milli(0, 0, 1600),
         ]))
     },
+    LineTopology::Pairs,
+    None,
 );
 
 /// How many points there are.
@@ -43,11 +43,12 @@ const fn spiral() -> [Vec3; POINTS] {
 }
 
 /// The points of a spiral around the torus.
-pub static SPIRAL: Points<'static> = Points::constant(MeshData::new(Positions::Exact(&SPIRAL_POINTS)));
+pub static SPIRAL: Points<'static> = Points::constant(Vertices::new(Positions::Exact(&SPIRAL_POINTS)));
 static SPIRAL_POINTS: [Vec3; POINTS] = spiral();
 
 /// A line through them.
-static THREAD: Lines<'static> = Lines::constant(Joined::Loop, MeshData::new(Positions::Exact(&SPIRAL_POINTS)));
+static THREAD: Lines<'static> =
+    Lines::constant(Vertices::new(Positions::Exact(&SPIRAL_POINTS)), LineTopology::Loop, None);
 
 /// Surfaces are pushed back, by a step and by what their depth changes over a pixel, so that lines on them are seen.
 pub const BEHIND_LINES: State = State { bias: DepthBias { constant: 1, slope: Scalar::ONE }, ..State::DEFAULT };

@@ -8,7 +8,7 @@ use crate::math::{Scalar, Vec3};
 use core::fmt;
 
 /// Where the vertices of a mesh are.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Positions<'a> {
     /// Fractions of a cube, 6 bytes a vertex: position = `offset` + `scale` · q / 32,768. The fastest and smallest.
     Quantized {
@@ -69,7 +69,7 @@ pub enum Topology {
 /// });
 /// assert_eq!(SQUARE.triangle_count(), 2);
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MeshData<'a> {
     /// Vertex positions, at most 65,535.
     pub positions: Positions<'a>,
@@ -110,7 +110,7 @@ impl<'a> MeshData<'a> {
 }
 
 /// A checked mesh. Copying it copies references only.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Mesh<'a> {
     data: MeshData<'a>,
     bounds: Bounds,

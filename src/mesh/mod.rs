@@ -8,6 +8,6 @@ mod order;
 
 pub use bounds::{Bounds, BoundsNode};
 pub use edges::{EdgesError, edges};
-pub use lines::{Joined, Lines, Points};
+pub use lines::{LineTopology, Lines, Points, Vertices};
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub use order::{sort_back_to_front, view_depth};

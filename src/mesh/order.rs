@@ -3,7 +3,8 @@
 use super::bounds::Bounds;
 use crate::math::Projective;
 
-/// How far away the middle of `bounds` is, as `mvp` sees it: w of its centre, 32.32, saturated.
+/// Returns the distance of the middle of `bounds` along the axis of a camera, as `mvp` sees it: w of its centre, 32.32, saturated.
+#[must_use]
 pub fn view_depth(mvp: &Projective, bounds: &Bounds) -> i64 {
     let [x, y, z] = bounds.center.to_bits();
     let row = mvp.to_rows()[3];
@@ -14,37 +15,37 @@ pub fn view_depth(mvp: &Projective, bounds: &Bounds) -> i64 {
     times(row[0], x).saturating_add(times(row[1], y)).saturating_add(times(row[2], z)).saturating_add(row[3])
 }
 
-/// Sorts the numbers of draws by their depth, the farthest first; equal depths by number.
+/// Sorts draws, or numbers of draws, by their depth, the farthest first; those of one depth keep their order.
 ///
-/// Blending needs this order, since a colour is mixed with what is already there; adding and multiplying alone do not. Do it
-/// once a frame, before the frame's closure, which has to draw the same each time it is called:
+/// Blending needs this order, since a colour is mixed with the one that is already there; adding and multiplying alone do not.
+/// A scene without a depth buffer needs it for all of its draws. Sort once per frame, before the frame's closure, which has to
+/// draw in one order each time it is called:
 ///
 /// 1. everything opaque, in any order, best from front to back;
-/// 2. what is transparent, from back to front, with [`DepthState::TEST`](crate::span::DepthState::TEST): it is hidden by
-///    what is before it, and hides nothing;
-/// 3. what is added, such as sparks.
+/// 2. everything transparent, from back to front, with [`DepthState::TEST`](crate::span::DepthState::TEST): opaque things in
+///    front hide it, and it hides nothing;
+/// 3. light that is added, such as sparks.
 ///
-/// Closed meshes that are transparent are best drawn twice, back faces first. The order from the frame before is a good one
-/// to start from: a sorted list takes one comparison a draw. (Insertion sort: with no memory of its own, and for tens of
-/// draws, not for thousands.)
+/// Closed meshes that are transparent are best drawn twice, back faces first.
+///
+/// Insertion sort: it needs no memory, and `depth` is called once per comparison. Starting from the order of the previous frame, a
+/// list that is still sorted takes one comparison per draw. For tens or hundreds of draws, not for thousands.
 ///
 /// ```
 /// use zstrip::mesh::sort_back_to_front;
-/// let depths = [3, 9, 1];
-/// let mut order = [0, 1, 2];
-/// sort_back_to_front(&mut order, |draw| depths[usize::from(draw)]);
-/// assert_eq!(order, [1, 0, 2]);
+/// let mut order = [(20, "house"), (300, "hill"), (7, "tree")];
+/// sort_back_to_front(&mut order, |(distance, _)| *distance);
+/// assert_eq!(order.map(|(_, name)| name), ["hill", "house", "tree"]);
 /// ```
-/// With [`view_depth`] for depths, that is `sort_back_to_front(&mut order, |k| view_depth(&mvps[k], mesh.bounds()))`.
-pub fn sort_back_to_front(order: &mut [u16], depth: impl Fn(u16) -> i64) {
+/// With [`view_depth`] for depths and an order of numbers, that is
+/// `sort_back_to_front(&mut order, |k| view_depth(&mvps[*k], mesh.bounds()))`.
+pub fn sort_back_to_front<T>(order: &mut [T], depth: impl Fn(&T) -> i64) {
     for end in 2..=order.len() {
         let Some(mut sorted) = order.get_mut(..end) else { return };
-        let Some(&draw) = sorted.last() else { return };
-        let new = depth(draw);
+        let Some(new) = sorted.last().map(&depth) else { return };
         while let Some((place, before)) = sorted.split_last_mut() {
             let Some(previous) = before.last_mut() else { break };
-            let old = depth(*previous);
-            if old > new || (old == new && *previous < draw) {
+            if depth(previous) >= new {
                 break;
             }
             core::mem::swap(place, previous);
@@ -67,9 +68,9 @@ mod tests {
             for spread in [1, 4, 1000] {
                 let depths: Vec<i64> = (0..length).map(|_| rng.below(spread) as i64).collect();
                 let mut order: Vec<u16> = (0..length).rev().collect();
-                sort_back_to_front(&mut order, |k| depths[usize::from(k)]);
-                let mut expected: Vec<u16> = (0..length).collect();
-                expected.sort_by_key(|&k| (-depths[usize::from(k)], k));
+                let mut expected = order.clone();
+                sort_back_to_front(&mut order, |k| depths[usize::from(*k)]);
+                expected.sort_by_key(|&k| -depths[usize::from(k)]);
                 assert_eq!(order, expected, "{depths:?}");
             }
         }

@@ -15,7 +15,7 @@ pub(crate) use clip::{CLIPPED_CORNERS, ClipVertex, DepthSlab, Outcode, Polygon, 
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
-pub use painters_order::{Order, SortError, Sortable, far_to_near, painters_order};
+pub use painters_order::{SortError, SortReport, SortScratch, painters_order};
 pub use project::{DepthScale, ScreenVertex};
 pub(crate) use project::{inverse_w, signed_area, small};
 pub use shader::{Face, Side, VertexRef, VertexShader};

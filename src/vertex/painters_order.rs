@@ -11,61 +11,54 @@ use crate::math::Projective;
 use crate::mesh::Mesh;
 use core::fmt;
 
-/// Puts items with larger keys first: objects by their distance, for instance. Items with the same key come in any order,
-/// but always the same.
-///
-/// ```
-/// let mut order = [(20, "house"), (300, "hill"), (7, "tree")];
-/// zstrip::vertex::far_to_near(&mut order, |(distance, _)| *distance);
-/// assert_eq!(order.map(|(_, name)| name), ["hill", "house", "tree"]);
-/// ```
+/// Sorts triangles by their farthest vertices, the farthest first. Equal ones come in any order, but always in that.
 ///
 /// # Source
 /// Williams 1964, "Algorithm 232: heapsort".
-pub fn far_to_near<T>(items: &mut [T], key: impl Fn(&T) -> i32) {
-    for root in (0..items.len() / 2).rev() {
-        sift(items, root, items.len(), &key);
+fn far_to_near(triangles: &mut [SortScratch]) {
+    for root in (0..triangles.len() / 2).rev() {
+        sift(triangles, root, triangles.len());
     }
-    for end in (1..items.len()).rev() {
-        swap(items, 0, end);
-        sift(items, 0, end, &key);
+    for end in (1..triangles.len()).rev() {
+        swap(triangles, 0, end);
+        sift(triangles, 0, end);
     }
 }
 
-/// Lets an item sink until none below it in the heap, which ends at `end`, has a smaller key.
-fn sift<T>(items: &mut [T], mut root: usize, end: usize, key: &impl Fn(&T) -> i32) {
-    let at = |items: &[T], k: usize| items.get(k).map_or(i32::MAX, key);
+/// Lets a triangle sink until none below it in the heap, which ends at `end`, is nearer.
+fn sift(triangles: &mut [SortScratch], mut root: usize, end: usize) {
+    let at = |triangles: &[SortScratch], k: usize| triangles.get(k).map_or(u16::MAX, |triangle| triangle.depths().1);
     loop {
         let left = 2 * root + 1;
         if left >= end {
             return;
         }
         let right = left + 1;
-        let least = if right < end && at(items, right) < at(items, left) { right } else { left };
-        if at(items, root) <= at(items, least) {
+        let least = if right < end && at(triangles, right) < at(triangles, left) { right } else { left };
+        if at(triangles, root) <= at(triangles, least) {
             return;
         }
-        swap(items, root, least);
+        swap(triangles, root, least);
         root = least;
     }
 }
 
-fn swap<T>(items: &mut [T], a: usize, b: usize) {
-    if let Ok([a, b]) = items.get_disjoint_mut([a, b]) {
+fn swap(triangles: &mut [SortScratch], a: usize, b: usize) {
+    if let Ok([a, b]) = triangles.get_disjoint_mut([a, b]) {
         core::mem::swap(a, b);
     }
 }
 
-/// A triangle among those that are sorted: memory that the caller lends, with nothing in it to be set.
+/// Memory for one triangle that [`painters_order`] sorts: the caller lends it, `SortScratch::default()` each.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Sortable {
+pub struct SortScratch {
     corners: [u16; 3],
     /// Whether it was moved before another one already.
     moved: bool,
     v: [ScreenVertex; 3],
 }
 
-impl Sortable {
+impl SortScratch {
     /// Depth of the nearest and of the farthest vertex.
     fn depths(&self) -> (u16, u16) {
         let [a, b, c] = &self.v;
@@ -148,13 +141,13 @@ impl fmt::Display for SortError {
 
 impl core::error::Error for SortError {}
 
-/// What sorting came to.
+/// Result of [`painters_order`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Order {
+pub struct SortReport {
     /// Indices written, three a triangle, back to front.
     pub indices: usize,
-    /// Pairs that no order is right for: triangles through one another, or each covering the next one in a ring.
+    /// Pairs of triangles that no order is right for: they go through one another, or each covers the next one in a ring.
     pub unresolved: u32,
 }
 
@@ -173,9 +166,9 @@ pub fn painters_order(
     mesh: &Mesh<'_>,
     mvp: &Projective,
     viewport: &Viewport,
-    memory: &mut [Sortable],
+    memory: &mut [SortScratch],
     indices: &mut [u16],
-) -> Result<Order, SortError> {
+) -> Result<SortReport, SortError> {
     if mesh.data().face_normals.is_some() {
         return Err(SortError::FaceNormals);
     }
@@ -200,10 +193,10 @@ pub fn painters_order(
         });
         let instead = seen.unwrap_or(ScreenVertex::new(0, 0, u16::MAX));
         v.iter_mut().for_each(|v| *v = Some(v.unwrap_or(instead)));
-        *triangle = Sortable { corners, moved: false, v: v.map(Option::unwrap_or_default) };
+        *triangle = SortScratch { corners, moved: false, v: v.map(Option::unwrap_or_default) };
     }
-    far_to_near(triangles, |triangle| i32::from(triangle.depths().1));
-    let mut order = Order { indices: 3 * count, unresolved: 0 };
+    far_to_near(triangles);
+    let mut order = SortReport { indices: 3 * count, unresolved: 0 };
     for next in 0..count {
         order.unresolved = order.unresolved.wrapping_add(settle(triangles, next));
     }
@@ -216,7 +209,7 @@ pub fn painters_order(
 }
 
 /// Finds the triangle that is to be drawn next, and puts it in its place; pairs that stay wrong are counted.
-fn settle(triangles: &mut [Sortable], next: usize) -> u32 {
+fn settle(triangles: &mut [SortScratch], next: usize) -> u32 {
     // Each triangle is moved once at most, so this ends.
     'again: loop {
         let Some(first) = triangles.get(next).copied() else { return 0 };
