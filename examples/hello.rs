@@ -24,7 +24,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let renderer = Renderer::<Rgb888>::new(Size::new(320, 240))?;
     let mut renderer = renderer.with_depth(&mut depth)?.with_records(&mut records);
 
-    let camera = Projective::perspective(Angle16::from_degrees(45), (320, 240), Scalar::ONE, Scalar::from_num(20))?;
+    let camera =
+        Projective::perspective(Angle16::from_degrees(45), Size::new(320, 240), Scalar::ONE, Scalar::from_num(20))?;
     let view = Affine::look_at(Vec3::from_ints(2, 3, 4), Vec3::ZERO, Vec3::Y)?;
     let light = Light::new(Vec3::from_ints(1, 3, 2), Rgb888::CSS_DARK_GRAY, Rgb888::CSS_DIM_GRAY);
     // Made here: the closure is called for each strip.

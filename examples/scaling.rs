@@ -249,7 +249,12 @@ mod counting {
         for (width, height, heights) in SCREENS {
             let screen = (width, height);
             let far = Scalar::from_bits(16 << 16);
-            let camera = Projective::perspective(Angle16::from_degrees(60), screen, Scalar::ONE, far);
+            let camera = Projective::perspective(
+                Angle16::from_degrees(60),
+                Size::new(screen.0.into(), screen.1.into()),
+                Scalar::ONE,
+                far,
+            );
             let camera = &camera.expect("near is before far");
             for rows in heights {
                 Shot { screen, camera, mesh: None }.report(memory, rows, "none", 0);

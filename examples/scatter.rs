@@ -8,6 +8,7 @@ mod scenes;
 
 use host::program::{Demo, show};
 use std::process::ExitCode;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Points, Positions, Vertices};
@@ -70,7 +71,12 @@ impl Demo for Scatter {
 
     fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
         let turn = Angle16(frame.wrapping_mul(64) as u16) + Angle16::from_degrees(32);
-        let camera = Projective::perspective(Angle16::from_degrees(40), screen, Scalar::ONE, Scalar::from_num(10));
+        let camera = Projective::perspective(
+            Angle16::from_degrees(40),
+            Size::new(screen.0.into(), screen.1.into()),
+            Scalar::ONE,
+            Scalar::from_num(10),
+        );
         let view = Affine::translation(Vec3::from_milli(0, 130, -5000))
             * Affine::rotation_x(Angle16::from_degrees(24))
             * Affine::rotation_y(turn);

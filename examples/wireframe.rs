@@ -9,6 +9,7 @@ mod scenes;
 use host::program::{Demo, show};
 use scenes::wires::BEHIND_LINES;
 use std::process::ExitCode;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::light::Light;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -131,7 +132,12 @@ impl Demo for Wireframe {
         let model = Affine::translation(Vec3::from_milli(0, 150, -6000))
             * Affine::rotation_x(Angle16::from_degrees(28))
             * Affine::rotation_y(turn);
-        let camera = Projective::perspective(Angle16::from_degrees(32), screen, Scalar::ONE, Scalar::from_num(12));
+        let camera = Projective::perspective(
+            Angle16::from_degrees(32),
+            Size::new(screen.0.into(), screen.1.into()),
+            Scalar::ONE,
+            Scalar::from_num(12),
+        );
         self.mvp = camera.expect("a camera") * model;
         let light = Light::from_channels(Vec3::from_ints(2, 4, 3), [190, 200, 205], [50, 50, 55]);
         self.light = light.to_object(&model);

@@ -19,7 +19,7 @@
 //! let mut renderer =
 //!     Renderer::<Rgb565Be>::new(Size::new(320, 240))?.with_depth(&mut depth)?.with_records(&mut records);
 //!
-//! let camera = Projective::perspective(Angle16::from_degrees(60), (320, 240), Scalar::ONE, Scalar::from_num(100))?;
+//! let camera = Projective::perspective(Angle16::from_degrees(60), Size::new(320, 240), Scalar::ONE, Scalar::from_num(100))?;
 //! let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(Angle16::from_degrees(15));
 //! let (mvp, shader) = (camera * model, Flat::unlit(Rgb888::CSS_ORANGE));
 //!

@@ -5,6 +5,7 @@ mod support;
 
 use support::{difference, strips, whole};
 use zstrip::color::{PixelFormat, Rgb565Be, Rgba8888};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
@@ -290,7 +291,9 @@ fn fog_leaves_what_it_should_at_every_depth() {
 #[test]
 fn fog_mixes_colours_by_distance() {
     let (near, far) = (Scalar::ONE, Scalar::from_num(20));
-    let camera = Projective::perspective(Angle16::from_degrees(60), SCREEN, near, far).expect("a camera");
+    let camera =
+        Projective::perspective(Angle16::from_degrees(60), Size::new(SCREEN.0.into(), SCREEN.1.into()), near, far)
+            .expect("a camera");
     let curve = FogCurve::Exponential { density: Scalar::from_num(0.2) };
     let table = FogTable::perspective(near, far, curve).expect("planes");
     let fog = Rgb888::new(180, 190, 200);

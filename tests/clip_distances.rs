@@ -6,6 +6,7 @@ mod support;
 use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{strips, vector};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
@@ -63,7 +64,12 @@ impl<const CLIP: usize> Shader<Rgb565> for Cut<CLIP> {
 }
 
 fn camera() -> Projective {
-    let lens = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::from_num(0.5), Scalar::from_num(50));
+    let lens = Projective::perspective(
+        Angle16::from_degrees(60),
+        Size::new(SCREEN.0.into(), SCREEN.1.into()),
+        Scalar::from_num(0.5),
+        Scalar::from_num(50),
+    );
     lens.expect("a camera") * Affine::translation(Vec3::from_ints(0, 0, -3))
 }
 

@@ -73,7 +73,8 @@ fn random_soups_have_exactly_the_right_pixels_and_depths() {
 
 #[test]
 fn clamped_meshes_are_not_culled_beyond_the_far_plane() {
-    let camera = Projective::perspective(Angle16::from_degrees(60), (1, 1), Scalar::ONE, Scalar::from_num(100));
+    let camera =
+        Projective::perspective(Angle16::from_degrees(60), Size::new(1, 1), Scalar::ONE, Scalar::from_num(100));
     let camera = camera.expect("a camera");
     // Twice: the bounds of a single square are not looked at.
     let squares = [SQUARE, SQUARE].concat();
@@ -99,7 +100,8 @@ fn ground_as_large_as_the_world_is_not_culled() {
     let ground = [[-1, 1], [1, 1], [1, -1], [-1, -1]].map(|[x, z]| Vec3::from_ints(x * 30_000, 0, z * 30_000));
     let ground = [ground, ground].concat();
     let mesh = Mesh::new(quad(&ground)).expect("a mesh");
-    let camera = Projective::perspective(Angle16::from_degrees(90), (1, 1), Scalar::ONE, Scalar::from_num(5000));
+    let camera =
+        Projective::perspective(Angle16::from_degrees(90), Size::new(1, 1), Scalar::ONE, Scalar::from_num(5000));
     let (eye, target) = (Vec3::from_ints(28_000, 20, 28_000), Vec3::from_ints(29_000, 20, 28_000));
     let mvp = camera.expect("a camera") * Affine::look_at(eye, target, Vec3::Y).expect("a view");
     let (pixels, stats) = lit(|scene| scene.draw(&mesh, &mvp, &white()));

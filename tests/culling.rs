@@ -27,7 +27,12 @@ fn random_camera(rng: &mut Rng) -> (Projective, f64) {
         Projective::orthographic((-half, half), (-half, half), (near, end))
     } else {
         let size = (rng.between(1, 1024) as u16, rng.between(1, 1024) as u16);
-        Projective::perspective(Angle16::from_degrees(rng.between(3, 170)), size, near, end)
+        Projective::perspective(
+            Angle16::from_degrees(rng.between(3, 170)),
+            Size::new(size.0.into(), size.1.into()),
+            near,
+            end,
+        )
     };
     (lens.expect("a camera") * rigid(rng, far), far)
 }
@@ -191,8 +196,9 @@ fn hierarchy_draws_the_same_picture_and_culls_something() {
     let (mut culled, mut saved) = (0, 0);
     for (seed, records) in (0..24).flat_map(|seed| [(seed, 0), (seed, 5000)]) {
         let mut rng = Rng::new(seed);
-        let camera = Projective::perspective(Angle16::from_degrees(50), (64, 48), Scalar::ONE, Scalar::from_num(60))
-            .expect("a camera");
+        let camera =
+            Projective::perspective(Angle16::from_degrees(50), Size::new(64, 48), Scalar::ONE, Scalar::from_num(60))
+                .expect("a camera");
         let eye = Vec3::new(scalar(&mut rng, 20.0), scalar(&mut rng, 3.0), Scalar::ZERO);
         let mvp = camera * Affine::rotation_y(Angle16(rng.between(-6000, 6000) as u16)) * Affine::translation(-eye);
         let draw = |mesh| {
@@ -221,8 +227,9 @@ fn hierarchy_of_many_leaves_draws_all_that_are_seen() {
         };
         (0..LEAVES).flat_map(corners).collect::<Vec<_>>()
     };
-    let camera = Projective::perspective(Angle16::from_degrees(60), (64, 64), Scalar::ONE, Scalar::from_num(60))
-        .expect("a camera");
+    let camera =
+        Projective::perspective(Angle16::from_degrees(60), Size::new(64, 64), Scalar::ONE, Scalar::from_num(60))
+            .expect("a camera");
     for (far, seen) in [(false, 100), (true, 34)] {
         let points = squares(far);
         let plain = MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&points)) };
@@ -252,8 +259,9 @@ fn scenes_may_leave_out_what_is_not_visible() {
     let torus = &scenes::torus::MESH;
     let at = |x: i16, z: i16| Affine::translation(Vec3::from_ints(x, 0, z));
     let places = [at(0, -4), at(-40, -5), at(1, 4), at(3, -6), at(0, -80)];
-    let camera = Projective::perspective(Angle16::from_degrees(60), (64, 48), Scalar::ONE, Scalar::from_num(50))
-        .expect("a camera");
+    let camera =
+        Projective::perspective(Angle16::from_degrees(60), Size::new(64, 48), Scalar::ONE, Scalar::from_num(50))
+            .expect("a camera");
     let frame = |records, ask: bool| {
         let mut left_out = 0;
         let (picture, _) = strips::<Rgb565>((64, 48), 8, records, Rgb565::BLACK, |scene| {
@@ -281,7 +289,8 @@ fn scenes_may_leave_out_what_is_not_visible() {
 /// up to four vertices are not looked at.
 #[test]
 fn far_corners_of_a_large_world_are_seen_from_the_front_and_culled_behind() {
-    let lens = Projective::perspective(Angle16::from_degrees(60), (512, 512), Scalar::ONE, Scalar::from_num(1000));
+    let lens =
+        Projective::perspective(Angle16::from_degrees(60), Size::new(512, 512), Scalar::ONE, Scalar::from_num(1000));
     let lens = lens.expect("a camera");
     let (mut rng, mut culled) = (Rng::new(8), 0);
     for case in 0..150 {

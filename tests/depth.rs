@@ -45,7 +45,12 @@ impl Decals {
     }
 
     fn draw<F: Framebuffer<Format = Rgb565>>(&self, scene: &mut Scene<'_, F>, state: State) {
-        let camera = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::from_num(50));
+        let camera = Projective::perspective(
+            Angle16::from_degrees(60),
+            Size::new(SCREEN.0.into(), SCREEN.1.into()),
+            Scalar::ONE,
+            Scalar::from_num(50),
+        );
         let mvp = camera.expect("a camera") * Affine::translation(Vec3::from_milli(0, -1500, -7000));
         let mesh = |points| Mesh::new(MeshData::new(Positions::Exact(points))).expect("a mesh");
         scene.draw_with(BOTH_SIDES, &mesh(&self.floor), &mvp, &Flat::unlit(Rgb888::BLUE));
@@ -152,7 +157,7 @@ fn size_of_a_bin_is_that_of_all_distances_with_its_depth() {
 fn depths_of_a_frame_are_those_of_the_helper() {
     let (near, far) = (Scalar::from_num(0.5), Scalar::from_num(800));
     let precision = DepthPrecision::new(near, far).expect("a camera");
-    let camera = Projective::perspective(Angle16::from_degrees(60), (8, 8), near, far).expect("a camera");
+    let camera = Projective::perspective(Angle16::from_degrees(60), Size::new(8, 8), near, far).expect("a camera");
     let depth_at = |distance: Scalar, state: State| {
         // A wall over the whole view.
         let (z, side) = (-distance, distance + distance);
@@ -239,7 +244,8 @@ fn uniform_depth_of_vertices_is_within_half_a_step() {
         let near = Scalar::from_bits(rng.between(1 << 10, 1 << 18));
         let far =
             Scalar::from_bits(rng.between(near.to_bits() + (1 << 12), i32::MAX) >> rng.between(0, 8)).max(near + near);
-        let camera = Projective::perspective(Angle16::from_degrees(60), (320, 240), near, far).expect("a camera");
+        let camera =
+            Projective::perspective(Angle16::from_degrees(60), Size::new(320, 240), near, far).expect("a camera");
         let scale = Scalar::from_bits(rng.between(1 << 10, 1 << 20));
         let distance = Scalar::from_bits(rng.between(near.to_bits(), far.to_bits().min(1 << 29)));
         let turn = Affine::rotation_x(Angle16(rng.between(0, 65_535) as u16));
@@ -272,7 +278,8 @@ fn uniform_depth_of_vertices_is_within_half_a_step() {
 #[test]
 fn uniform_depth_bends_within_a_face() {
     let far = Scalar::from_num(100);
-    let camera = Projective::perspective(Angle16::from_degrees(90), (9, 9), Scalar::ONE, far).expect("a camera");
+    let camera =
+        Projective::perspective(Angle16::from_degrees(90), Size::new(9, 9), Scalar::ONE, far).expect("a camera");
     // A wall from distance 2, on the left, to 8, on the right.
     let corner = |side: i16, up: i16, distance: i16| Vec3::from_ints(side * distance, up * distance, -distance);
     let (a, b) = ([corner(-1, -1, 2), corner(-1, 1, 2)], [corner(1, -1, 8), corner(1, 1, 8)]);

@@ -154,7 +154,8 @@ fn wrong_viewports_and_screens_are_refused_with_their_size() {
 fn wrong_cameras_are_refused_with_the_offending_numbers() {
     let (one, two) = (Scalar::ONE, Scalar::from_num(2));
     let right = Angle16::from_degrees(90);
-    let perspective = |angle, aspect, near, far| told(Projective::perspective(angle, aspect, near, far));
+    let perspective =
+        |angle, (width, height), near, far| told(Projective::perspective(angle, Size::new(width, height), near, far));
     use ProjectionError::*;
     assert_eq!(perspective(right, (4, 3), Scalar::ZERO, one), NearNotPositive { near: Scalar::ZERO });
     assert_eq!(perspective(right, (4, 3), -one, one), NearNotPositive { near: -one });

@@ -364,7 +364,7 @@ fn points_are_projected_to_where_vertices_would_be() {
         let mut rng = Rng::new(seed);
         let camera = Projective::perspective(
             Angle16::from_degrees(rng.between(20, 120)),
-            (rng.between(10, 300) as u16, rng.between(10, 300) as u16),
+            Size::new(rng.between(10, 300) as u32, rng.between(10, 300) as u32),
             Scalar::ONE,
             Scalar::ONE * 50,
         )
@@ -415,8 +415,13 @@ fn points_are_projected_to_where_vertices_would_be() {
 
 #[test]
 fn points_have_the_depth_of_vertices_on_either_scale() {
-    let camera =
-        Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
+    let camera = Projective::perspective(
+        Angle16::from_degrees(60),
+        Size::new(SCREEN.0.into(), SCREEN.1.into()),
+        Scalar::ONE,
+        Scalar::ONE * 9,
+    )
+    .expect("a camera");
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -4));
     let viewport = Viewport::full(Size::new(SCREEN.0.into(), SCREEN.1.into())).expect("a viewport");
     for depth_scale in [DepthScale::Perspective, DepthScale::Uniform { far: Scalar::ONE * 9 }] {
@@ -444,8 +449,13 @@ fn points_have_the_depth_of_vertices_on_either_scale() {
 fn label_at_a_projected_point_is_hidden_by_what_is_in_front_of_the_point() {
     let square =
         Mesh::new(MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&SQUARE)) }).expect("a mesh");
-    let camera =
-        Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::ONE * 9).expect("a camera");
+    let camera = Projective::perspective(
+        Angle16::from_degrees(60),
+        Size::new(SCREEN.0.into(), SCREEN.1.into()),
+        Scalar::ONE,
+        Scalar::ONE * 9,
+    )
+    .expect("a camera");
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -2));
     for (z, visible) in [(300, true), (-300, false)] {
         let point = Vec3::from_milli(-250, 0, z);

@@ -5,6 +5,7 @@ mod support;
 
 use reference::rng::Rng;
 use support::{strips, whole};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::light::{DirectionalLight, Light, Lighting, Material, PointLight, Viewer};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -436,7 +437,12 @@ fn lit_pictures_do_not_depend_on_strips() {
     let lit = lighting().on(&material, &Affine::IDENTITY, mesh.bounds());
     let far = without_points(&lighting()).on(&material, &Affine::IDENTITY, mesh.bounds());
     // Cut by the side of a perspective camera's near plane too.
-    let camera = Projective::perspective(Angle16::from_degrees(70), SCREEN, Scalar::from_num(0.6), Scalar::from_num(9));
+    let camera = Projective::perspective(
+        Angle16::from_degrees(70),
+        Size::new(SCREEN.0.into(), SCREEN.1.into()),
+        Scalar::from_num(0.6),
+        Scalar::from_num(9),
+    );
     let mvp = camera.expect("a camera")
         * Affine::translation(Vec3::from_milli(0, 0, -900))
         * Affine::rotation_y(Angle16::from_degrees(50));

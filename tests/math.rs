@@ -6,6 +6,7 @@ mod support;
 use reference::rng::Rng;
 use std::f64::consts::TAU;
 use support::{angle, apply, matrix, rigid, scalar, vector};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3, Wide};
 
 const STEP: f64 = 1.0 / 65_536.0;
@@ -187,7 +188,8 @@ fn perspective_maps_near_to_0_and_far_to_1() {
         let (near, far) = (Scalar::from_num(near), Scalar::from_num(far.min(32_000.0)));
         let fov = Angle16(rng.between(400, 32_000) as u16);
         let (width, height) = (rng.between(1, 2000) as u16, rng.between(1, 2000) as u16);
-        let m = matrix(&Projective::perspective(fov, (width, height), near, far).expect("a camera"));
+        let m =
+            matrix(&Projective::perspective(fov, Size::new(width.into(), height.into()), near, far).expect("a camera"));
         let (n, f) = (near.to_num::<f64>(), far.to_num::<f64>());
         for (distance, depth) in [(n, 0.0), (f, 1.0), ((n + f) / 2.0, f * (f - n) / 2.0 / ((f - n) * (n + f) / 2.0))] {
             let [_, _, z, w] = apply(&m, [0.0, 0.0, -distance, 1.0]);
@@ -271,7 +273,8 @@ fn scales_and_saturation() {
 fn transforms_are_constants() {
     const NEAR: Scalar = Scalar::ONE;
     const FAR: Scalar = Scalar::from_bits(100 << 16);
-    const CAMERA: Projective = match Projective::perspective(Angle16::from_degrees(60), (320, 240), NEAR, FAR) {
+    const CAMERA: Projective = match Projective::perspective(Angle16::from_degrees(60), Size::new(320, 240), NEAR, FAR)
+    {
         Ok(camera) => camera,
         Err(_) => panic!("not a camera"),
     };
@@ -290,8 +293,8 @@ fn transforms_are_constants() {
 #[test]
 fn points_are_transformed_as_by_f64() {
     let near = Scalar::from_num(0.5);
-    let camera =
-        Projective::perspective(Angle16::from_degrees(70), (4, 3), near, Scalar::from_num(40)).expect("a camera");
+    let camera = Projective::perspective(Angle16::from_degrees(70), Size::new(4, 3), near, Scalar::from_num(40))
+        .expect("a camera");
     let model = Affine::translation(Vec3::from_ints(1, -2, -9)) * Affine::rotation_x(Angle16::from_degrees(33));
     let point = Vec3::from_milli(1250, -3700, 812);
     assert_eq!(model * point, model.transform_point(point));

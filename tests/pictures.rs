@@ -20,6 +20,7 @@ use std::fmt::Write;
 use support::strips;
 use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::Drawable;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb888, RgbColor};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices};
@@ -147,7 +148,7 @@ fn floor_is_clipped_at_the_near_plane() {
     let corners = [(-1, 2), (1, 2), (1, -20), (-1, -20)].map(|(x, z)| Vec3::from_ints(x, -1, z));
     let path = Mesh::new(MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&corners)) });
     let path = path.expect("a square");
-    let lens = Projective::perspective(Angle16::from_degrees(90), (16, 8), Scalar::ONE, Scalar::from_num(100));
+    let lens = Projective::perspective(Angle16::from_degrees(90), Size::new(16, 8), Scalar::ONE, Scalar::from_num(100));
     let lens = lens.expect("a camera");
     assert_pattern(
         &[
@@ -389,7 +390,8 @@ fn texture_is_a_checkerboard_whose_cells_shrink_with_distance() {
     let uv = [[0, 0], [2, 0], [2, 2], [0, 2]].map(|uv| uv.map(Scalar::from_num));
     let data = MeshData { topology: Topology::Quads, uvs: Some(&uv), ..MeshData::new(Positions::Exact(&corners)) };
     let floor = Mesh::new(data).expect("a square");
-    let lens = Projective::perspective(Angle16::from_degrees(90), (24, 12), Scalar::ONE, Scalar::from_num(100));
+    let lens =
+        Projective::perspective(Angle16::from_degrees(90), Size::new(24, 12), Scalar::ONE, Scalar::from_num(100));
     let above = lens.expect("a camera") * Affine::translation(Vec3::from_milli(0, -100, 0));
     assert_pattern(
         &[

@@ -133,7 +133,12 @@ fn objects(
             Projective::orthographic(sides, sides, (Scalar::ZERO, Scalar::from_num(far)))
         } else {
             let angle = Angle16::from_degrees(rng.between(10, 120));
-            Projective::perspective(angle, size, Scalar::from_num(near), Scalar::from_num(far))
+            Projective::perspective(
+                angle,
+                Size::new(size.0.into(), size.1.into()),
+                Scalar::from_num(near),
+                Scalar::from_num(far),
+            )
         };
         let camera = camera.unwrap_or_else(|error| panic!("{case}: {error}"));
         let aside = vector(&mut rng, distance / 4.0);

@@ -124,7 +124,12 @@ fn in_view(rng: &mut Rng, count: usize) -> Vec<Vec3> {
 }
 
 fn camera() -> Projective {
-    let camera = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::from_num(10));
+    let camera = Projective::perspective(
+        Angle16::from_degrees(60),
+        Size::new(SCREEN.0.into(), SCREEN.1.into()),
+        Scalar::ONE,
+        Scalar::from_num(10),
+    );
     camera.expect("a camera") * Affine::translation(Vec3::from_ints(0, 0, -3))
 }
 

@@ -3,6 +3,7 @@
 use super::kept::kept;
 use super::{UNLIT, landscape, pot, tiles};
 use zstrip::color::{PixelFormat, Rgba8888};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::light::{DirectionalLight, Light, Lighting, LitMaterial, Material, PointLight, Viewer};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
@@ -50,7 +51,8 @@ impl Lens {
     #[inline(never)]
     fn new(screen: (u16, u16), near: Scalar, far: Scalar) -> Self {
         let camera =
-            Projective::perspective(Angle16::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
+            Projective::perspective(Angle16::from_degrees(45), Size::new(screen.0.into(), screen.1.into()), near, far)
+                .unwrap_or(Projective::IDENTITY);
         let [[x, ..], [_, y, ..], [.., z, w], _] = camera.to_rows();
         Self { x, y, z: [z, w] }
     }

@@ -106,7 +106,8 @@ fn in_place<T>(make: impl FnOnce() -> T) -> T {
 /// A camera with a vertical field of view of 60 degrees.
 #[inline(never)]
 pub fn camera((width, height): (u16, u16), near: Scalar, far: Scalar) -> Projective {
-    Projective::perspective(Angle16::from_degrees(60), (width, height), near, far).unwrap_or(Projective::IDENTITY)
+    Projective::perspective(Angle16::from_degrees(60), Size::new(width.into(), height.into()), near, far)
+        .unwrap_or(Projective::IDENTITY)
 }
 
 /// Object space → clip space: the camera of most scenes, and what it is multiplied by.

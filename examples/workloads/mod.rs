@@ -177,7 +177,7 @@ pub fn tiny(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
 
 /// The compiler makes it: 128-bit arithmetic stays out of the firmware.
 const CAMERA: Projective = {
-    match Projective::perspective(Angle16::from_degrees(60), (WIDTH as u16, HEIGHT as u16), NEAR, FAR) {
+    match Projective::perspective(Angle16::from_degrees(60), Size::new(WIDTH as u32, HEIGHT as u32), NEAR, FAR) {
         Ok(camera) => camera,
         Err(_) => panic!("not a camera"),
     }

@@ -6,13 +6,15 @@ use super::error::ProjectionError;
 use super::format::{Scalar, Wide};
 use super::vector::Vec3;
 use core::ops::Mul;
+use embedded_graphics_core::geometry::Size;
 
 /// A 4×4 matrix of 32.32 entries, applied to column vectors; clip space is -w ≤ x, y ≤ w, 0 ≤ z ≤ w.
 ///
 /// ```
+/// use zstrip::embedded_graphics_core::geometry::Size;
 /// use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 /// let near = Scalar::from_num(0.5);
-/// let camera = Projective::perspective(Angle16::from_degrees(60), (320, 240), near, Scalar::from_num(100))?;
+/// let camera = Projective::perspective(Angle16::from_degrees(60), Size::new(320, 240), near, Scalar::from_num(100))?;
 /// let view = Affine::look_at(Vec3::from_ints(0, 2, 5), Vec3::ZERO, Vec3::Y)?;
 /// let mvp = camera * view * Affine::rotation_y(Angle16::from_degrees(30));
 /// # let _ = mvp;
@@ -73,7 +75,7 @@ impl Projective {
 
     /// A perspective camera at the origin that looks along -z.
     ///
-    /// `field_of_view` is the vertical opening angle, `aspect` width and height of the viewport in any unit. Depth is
+    /// `field_of_view` is the vertical opening angle, `aspect` width and height of the screen or viewport, or any two numbers in their ratio. Depth is
     /// 0 at distance `near` and 1 at `far`.
     ///
     /// # Errors
@@ -81,7 +83,7 @@ impl Projective {
     #[inline(never)]
     pub const fn perspective(
         field_of_view: Angle16,
-        aspect: (u16, u16),
+        aspect: Size,
         near: Scalar,
         far: Scalar,
     ) -> Result<Self, ProjectionError> {
@@ -95,12 +97,12 @@ impl Projective {
         if field_of_view.0 < 2 || field_of_view.0 >= 0x8000 {
             return Err(ProjectionError::FieldOfView { angle: field_of_view });
         }
-        if aspect.0 == 0 || aspect.1 == 0 {
-            return Err(ProjectionError::Aspect { width: aspect.0 as u32, height: aspect.1 as u32 });
+        if aspect.width == 0 || aspect.height == 0 {
+            return Err(ProjectionError::Aspect { width: aspect.width, height: aspect.height });
         }
         let half = Angle16(field_of_view.0 / 2);
         let (sin, cos) = (half.sin_q30() as i128, half.cos_q30() as i128);
-        let x = ratio(cos * aspect.1 as i128, sin * aspect.0 as i128);
+        let x = ratio(cos * aspect.height as i128, sin * aspect.width as i128);
         let y = ratio(cos, sin);
         // z = far (-ze - near) / (far - near), w = -ze: 0 on the near plane, w on the far one.
         let a = ratio(f, n - f);

@@ -59,6 +59,7 @@ mod tests {
     use super::*;
     use crate::math::random::Rng;
     use crate::math::{Affine, Angle16, Scalar, Vec3};
+    use embedded_graphics_core::geometry::Size;
     use std::vec::Vec;
 
     #[test]
@@ -79,7 +80,8 @@ mod tests {
     #[test]
     fn depth_is_the_distance_before_the_camera() {
         let camera =
-            Projective::perspective(Angle16::from_degrees(60), (4, 3), Scalar::ONE, Scalar::from_num(100)).unwrap();
+            Projective::perspective(Angle16::from_degrees(60), Size::new(4, 3), Scalar::ONE, Scalar::from_num(100))
+                .unwrap();
         let center = Vec3::from_milli(300, -200, 500);
         let bounds = Bounds { center, half: Vec3::ZERO };
         for distance in [-20, 0, 3, 90] {
