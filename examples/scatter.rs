@@ -10,7 +10,7 @@ use host::program::{Demo, show};
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Points, Positions, Vertices};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
@@ -113,7 +113,7 @@ impl Demo for Scatter {
         let colors = Some(&self.colors[..]);
         let points = |at| Points::new(Vertices { colors, ..Vertices::new(Positions::Exact(at)) });
         let (Ok(points), Ok(shadows)) = (points(&self.points), points(&self.shadows)) else { return };
-        scene.draw_points(State::DEFAULT, &shadows, &self.mvp, &Flat::unlit(Rgb888::new(40, 40, 48)), 600);
+        scene.draw_points(&shadows, &self.mvp, &Flat::unlit(Rgb888::new(40, 40, 48)), Pixels::from_bits(600));
         if mode == 1 {
             let (ends, colors): (Vec<_>, Vec<_>) = (self.points.iter().zip(&self.shadows).zip(&self.colors))
                 .flat_map(|((point, shadow), color)| [(*point, *color), (*shadow, color.map(|c| c / 4))])
@@ -125,9 +125,9 @@ impl Demo for Scatter {
         }
         let size = if mode == 2 { 1800 } else { 900 };
         // A rim first: the square itself is at the same depth.
-        scene.draw_points(State::DEFAULT, &points, &self.mvp, &Flat::unlit(Rgb888::new(8, 10, 12)), size + 400);
+        scene.draw_points(&points, &self.mvp, &Flat::unlit(Rgb888::new(8, 10, 12)), Pixels::from_bits(size + 400));
         let inside = State { depth: DepthState { compare: Compare::LessEqual, write: true }, ..State::DEFAULT };
-        scene.draw_points(inside, &points, &self.mvp, &Flat::colors_unlit(), size);
+        scene.draw_points_with(inside, &points, &self.mvp, &Flat::colors_unlit(), Pixels::from_bits(size));
         // The plot's frame, over all.
         let (width, height) = scene.screen();
         let mut canvas = scene.canvas();

@@ -17,7 +17,7 @@ use scenes::wires;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::frame::Renderer;
-use zstrip::math::{Angle16, Projective, Scalar, Vec3};
+use zstrip::math::{Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Positions, Vertices};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::target::Strip;
@@ -61,7 +61,7 @@ impl Ends {
             let half = ((angle.cos().to_bits() * length) >> 9, (angle.sin().to_bits() * length) >> 9);
             for (end, sign) in [(0, -1), (1, 1)] {
                 let (x, y) = (center.0 + sign * half.0 + 37, center.1 + sign * half.1 + 91);
-                ends.screen[k][end] = ScreenPoint::new(x, y);
+                ends.screen[k][end] = ScreenPoint::new(Pixels::from_bits(x), Pixels::from_bits(y));
                 // 256 · 160 units are half the width.
                 let z = 20_000 + 300 * (k as i32) + 5000 * sign;
                 ends.space[2 * k + end] =
@@ -89,11 +89,11 @@ fn on_canvas<K: Stroke>(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>, st
 }
 
 fn flat(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
-    scene.draw_lines(&input.lines, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE));
+    scene.draw_lines(&input.lines, &Projective::IDENTITY, &Flat::unlit(Rgb888::WHITE), &Thin);
 }
 
 fn gouraud(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
-    scene.draw_lines(&input.lines, &Projective::IDENTITY, &Gouraud::colors_unlit());
+    scene.draw_lines(&input.lines, &Projective::IDENTITY, &Gouraud::colors_unlit(), &Thin);
 }
 
 fn torus(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
@@ -102,7 +102,7 @@ fn torus(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
 }
 
 fn lines_of_torus(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
-    scene.draw_lines(scenes::torus::lines(), &input.torus, &Flat::unlit(Rgb888::WHITE));
+    scene.draw_lines(scenes::torus::lines(), &input.torus, &Flat::unlit(Rgb888::WHITE), &Thin);
 }
 
 /// Name, drawing, rows of a strip, lines.

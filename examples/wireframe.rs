@@ -166,7 +166,7 @@ impl Demo for Wireframe {
                 let state = State { depth: blended, ..State::DEFAULT };
                 scene.draw_lines_with(state, &lines, &self.mvp, &ink, &Smooth::new(360));
             }
-            3 => scene.draw_lines(&lines, &self.mvp, &white),
+            3 => scene.draw_lines(&lines, &self.mvp, &white, &Thin),
             _ => {
                 scene.draw_with(BEHIND_LINES, &mesh, &self.mvp, &DepthOnly);
                 if mode == 0 {

@@ -12,6 +12,7 @@ use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::FramebufferRenderer;
 use zstrip::internals::{Line, PixelRect};
+use zstrip::math::Pixels;
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::{FrameSlice, Framebuffer};
 use zstrip::vertex::{VertexRef, VertexShader};
@@ -22,7 +23,7 @@ const EVERYWHERE: PixelRect = PixelRect { x: 0..SCREEN.0 as i32, y: 0..SCREEN.1 
 
 fn point(rng: &mut Rng) -> ScreenPoint {
     let far = rng.pick(&[20_000, 20_000, 20_000, 200_000, 40_000_000]);
-    ScreenPoint::new(rng.between(-far / 8, far), rng.between(-far / 8, far))
+    ScreenPoint::new(Pixels::from_bits(rng.between(-far / 8, far)), Pixels::from_bits(rng.between(-far / 8, far)))
 }
 
 fn color(rng: &mut Rng) -> Rgb888 {
@@ -44,7 +45,7 @@ fn draw_any<F: Framebuffer>(scene: &mut Scene<'_, F>, seed: u64) {
             3 => canvas.gradient_line(corners[0], corners[1], &Thick::new(rng.below(3000) as u32)),
             4 => canvas.gradient_line(corners[0], corners[1], &Smooth::new(rng.below(3000) as u32)),
             5 => canvas.outline(&points, color(rng), &Dashed(rng.next_u64() as u32)),
-            6 => canvas.point(points[0], rng.below(3000) as u32, color(rng)),
+            6 => canvas.point(points[0], Pixels::from_bits(rng.below(3000) as i32), color(rng)),
             7 => {
                 let corner = Point::new(rng.between(-20, 60), rng.between(-20, 60));
                 let area = Rectangle::new(corner, Size::new(rng.below(40) as u32, rng.below(40) as u32));
@@ -100,7 +101,9 @@ fn polygons_are_exact_and_neighbours_share_their_edges() {
     for _ in 0..200 {
         let grid = rng.pick(&[1, 64, 128]);
         let bits: Vec<_> = (0..4).map(|_| [(); 2].map(|()| rng.between(-2000, 16_000) / grid * grid)).collect();
-        let corners = |k: [usize; 3]| k.map(|k| (ScreenPoint::new(bits[k][0], bits[k][1]), []));
+        let corners = |k: [usize; 3]| {
+            k.map(|k| (ScreenPoint::new(Pixels::from_bits(bits[k][0]), Pixels::from_bits(bits[k][1])), []))
+        };
         let found = hits(|canvas, shader| canvas.polygon_with(&corners([0, 1, 2]), shader, 0));
         let triangle = exact::widen([bits[0], bits[1], bits[2]]);
         let mut expected = Vec::new();
@@ -114,7 +117,8 @@ fn polygons_are_exact_and_neighbours_share_their_edges() {
                 canvas.polygon_with(&corners([0, 1, 3]), shader, 0);
                 canvas.polygon_with(&corners([1, 2, 3]), shader, 0);
             });
-            let fan: Vec<_> = bits.iter().map(|p| (ScreenPoint::new(p[0], p[1]), [])).collect();
+            let fan: Vec<_> =
+                bits.iter().map(|p| (ScreenPoint::new(Pixels::from_bits(p[0]), Pixels::from_bits(p[1])), [])).collect();
             let fan = hits(|canvas, shader| canvas.polygon_with(&fan, shader, 0));
             assert_eq!(two, fan, "seed {}: {bits:?}", rng.seed());
             assert!(fan.windows(2).all(|pair| pair[0] != pair[1]), "a pixel twice: {bits:?}");
@@ -129,7 +133,8 @@ fn gradients_are_planes_of_colour() {
     for _ in 0..100 {
         let bits = [(); 3].map(|()| [(); 2].map(|()| rng.between(0, 12_000)));
         let colors = [(); 3].map(|()| color(&mut rng));
-        let corners = [0, 1, 2].map(|k| (ScreenPoint::new(bits[k][0], bits[k][1]), colors[k]));
+        let corners = [0, 1, 2]
+            .map(|k| (ScreenPoint::new(Pixels::from_bits(bits[k][0]), Pixels::from_bits(bits[k][1])), colors[k]));
         let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| scene.canvas().gradient(&corners));
         exact::for_each_pixel(exact::widen(bits), SCREEN.0.into(), SCREEN.1.into(), |x, y| {
             let channel = |of: fn(&Rgb888) -> u8| {
@@ -165,7 +170,7 @@ fn lines_are_those_of_the_rule_and_outlines_close() {
         for closed in [false, true] {
             let mut expected = vec![0; 64 * 48];
             for k in 0..if closed { 4 } else { 3 } {
-                let [a, b] = [points[k], points[(k + 1) % 4]].map(|p| (p.x(), p.y()));
+                let [a, b] = [points[k], points[(k + 1) % 4]].map(|p| (p.x().to_bits(), p.y().to_bits()));
                 for (x, y) in Line::new(a, b).pixels(&EVERYWHERE).1 {
                     expected[(y * 64 + x) as usize] = 255;
                 }
@@ -187,7 +192,7 @@ fn shapes_look_as_they_should() {
         let mut canvas = scene.canvas();
         canvas.rectangle(&Rectangle::new(Point::new(-3, 1), Size::new(5, 3)), Rgb888::WHITE);
         canvas.line(ScreenPoint::center(3, 0), ScreenPoint::center(15, 4), Rgb888::WHITE);
-        canvas.point(ScreenPoint::corner(4, 6), 512, Rgb888::WHITE);
+        canvas.point(ScreenPoint::corner(4, 6), Pixels::from_bits(512), Rgb888::WHITE);
         let diamond = [(11, 4), (14, 6), (11, 8), (8, 6)].map(|(x, y)| ScreenPoint::corner(x, y));
         canvas.polygon(&diamond, Rgb888::WHITE);
         canvas.set_scissor(Some(&Rectangle::new(Point::new(0, 8), Size::new(4, 9))));

@@ -12,7 +12,7 @@ use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::{FramebufferRenderer, RamBudget, Renderer};
-use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Vertices};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{DepthState, Shader};
@@ -63,7 +63,7 @@ where
     scene.draw_lines_with(state, &lines, mvp, &Flat::unlit(Rgb888::CSS_TEAL), &Dashed(0xF0F0_3333));
     scene.draw_lines_with(state, &lines, &turned, &Flat::unlit(Rgb888::CSS_GOLD), &Smooth::px(2));
     let points = Points::new(data).expect("vertices are points");
-    scene.draw_points(state, &points, &turned, &Gouraud::colors_unlit(), 700);
+    scene.draw_points_with(state, &points, &turned, &Gouraud::colors_unlit(), Pixels::from_bits(700));
     let mut canvas = scene.canvas();
     canvas.set_depth(9000, depth);
     canvas.rectangle(&Rectangle::new(Point::new(50, 3), Size::new(9, 40)), Rgb888::CSS_PLUM);

@@ -22,7 +22,7 @@ use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::Drawable;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb888, RgbColor};
-use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices};
 use zstrip::shader::{Add, Blend, Flat, Gouraud, Textured};
 use zstrip::span::DepthState;
@@ -343,7 +343,7 @@ fn points_are_squares_about_their_vertices() {
         ],
         |scene| {
             scene.draw_with(BOTH_SIDES, &wall, &pixels(), &Flat::unlit(Rgb888::WHITE));
-            scene.draw_points(BOTH_SIDES, &points, &pixels(), &Gouraud::colors_unlit(), 4 << 8);
+            scene.draw_points_with(BOTH_SIDES, &points, &pixels(), &Gouraud::colors_unlit(), Pixels::from_bits(4 << 8));
         },
     );
 }

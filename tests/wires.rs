@@ -11,12 +11,12 @@ use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Line, PixelRect, Projected, Transform, square};
-use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, MeshData, Points, Positions, Vertices};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Framebuffer;
-use zstrip::vertex::{DepthRange, Face, ScreenVertex, VertexRef, VertexShader, Viewport};
+use zstrip::vertex::{DepthRange, Face, Perspective, ScreenVertex, VertexRef, VertexShader, Viewport};
 use zstrip::{Dashed, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 
 const SCREEN: (u16, u16) = (160, 120);
@@ -58,7 +58,13 @@ fn draw_all<F: Framebuffer>(scene: &mut Scene<'_, F>, ends: &Ends, turn: Angle16
     scene.draw_lines_with(state, &lines(LineTopology::Pairs), &mvp, &shader, &Thick::new(700));
     let blended = State { depth: DepthState { compare: Compare::LessEqual, write: false }, ..state };
     scene.draw_lines_with(blended, &lines(LineTopology::Pairs), &mvp, &Flat::unlit(Rgb888::GREEN), &Smooth::new(300));
-    scene.draw_points(state, &Points::new(ends.data()).expect("points"), &mvp, &shader, 5 * 256 + 77);
+    scene.draw_points_with(
+        state,
+        &Points::new(ends.data()).expect("points"),
+        &mvp,
+        &shader,
+        Pixels::from_bits(5 * 256 + 77),
+    );
 }
 
 #[test]
@@ -78,6 +84,71 @@ fn strips_and_records_do_not_matter() {
             assert_eq!(found, None, "seed {}, case {case}: {rows} rows, {records} records", rng.seed());
         }
     }
+}
+
+/// Shows one perspective-correct value, on lines that have a width.
+struct Correct;
+
+impl VertexShader for Correct {
+    type Varyings = Perspective<1, 2>;
+
+    fn vertex(&self, vertex: &VertexRef<'_>) -> Perspective<1, 2> {
+        Perspective::new([i32::from(vertex.color()[0]) << 8], [])
+    }
+}
+
+impl<P: PixelFormat<Raw = u16>> Shader<P> for Correct {
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<1, 2>>) -> Option<u16> {
+        Some(fragment.varyings.as_ref()[0] as u16)
+    }
+}
+
+#[test]
+fn perspective_correct_lines_are_drawn_alike_with_and_without_records() {
+    let mut rng = Rng::new(29);
+    let (mut lit, mut clipped) = (0, 0);
+    for case in 0..20 {
+        let ends = Ends::new(&mut rng, 40);
+        let lines = Lines::new(ends.data(), LineTopology::Pairs, None).expect("lines");
+        let mvp = Projective::from(Affine::rotation_z(support::angle(&mut rng)));
+        let draw = |records| {
+            strips::<Rgb565>(SCREEN, 24, records, Rgb565::BLACK, |scene| {
+                scene.draw_lines_with(State::DEFAULT, &lines, &mvp, &Correct, &Thick::new(900));
+            })
+        };
+        let ((expected, stats), (picture, _)) = (draw(10_000), draw(0));
+        assert_eq!(difference(&picture, &expected, SCREEN.0), None, "seed {}, case {case}", rng.seed());
+        lit += expected.iter().filter(|pixel| **pixel != 0).count();
+        clipped += stats.clipped;
+    }
+    assert!(lit > 5000 && clipped > 100, "{lit} pixels, {clipped} lines cut");
+}
+
+/// A line that goes away from the eye, as a whole and cut at the near plane.
+#[test]
+fn perspective_correct_values_of_a_line_that_is_cut_are_those_of_the_whole_line() {
+    // From w = 1/2 to w = 8 in one line; and with its start drawn out to w = 0, where the value goes on evenly in space.
+    let along = |w: f64| [(w - 0.5) / 8.0, (w - 0.5) / 8.0, (w - 0.25) * 0.5, w].map(Scalar::from_num);
+    let value = |w: f64| ((w + 1.0) * 20.0) as u8;
+    let picture = |from: f64| {
+        let positions = [along(from), along(8.0)];
+        let colors = [[value(from); 3], [value(8.0); 3]];
+        let data = Vertices { colors: Some(&colors), ..Vertices::new(Positions::Homogeneous(&positions)) };
+        let line = Lines::new(data, LineTopology::Pairs, None).expect("a line");
+        let (picture, ..) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| {
+            scene.draw_lines_with(EVERYTHING, &line, &Projective::IDENTITY, &Correct, &Thick::px(4));
+        });
+        picture
+    };
+    let (near, cut) = (picture(0.25), picture(-0.5));
+    let mut seen = 0;
+    for (k, (near, cut)) in near.iter().zip(&cut).enumerate() {
+        if *near != 0 && *cut != 0 {
+            seen += 1;
+            assert!(near.abs_diff(*cut) <= 24, "pixel {k}: {near} and {cut}");
+        }
+    }
+    assert!(seen > 60, "{seen}");
 }
 
 /// A fragment: where, its depth, its only varying.
@@ -233,7 +304,9 @@ fn points_are_squares_at_their_depth() {
         let data = Vertices::new(Positions::Exact(&ends));
         let points = Points::new(data).expect("points");
         let size = rng.below(4000) as u32;
-        let seen = fragments(|scene, shader| scene.draw_points(EVERYTHING, &points, &camera(), shader, size));
+        let seen = fragments(|scene, shader| {
+            scene.draw_points_with(EVERYTHING, &points, &camera(), shader, Pixels::from_bits(size as i32))
+        });
         let v = placed(&Lines::new(data, LineTopology::Strip, None).expect("lines"), &camera());
         let screen = PixelRect { x: 0..i32::from(SCREEN.0), y: 0..i32::from(SCREEN.1) };
         let mut expected = Vec::new();
@@ -298,13 +371,13 @@ fn wide_lines_from_far_away_are_where_they_should_be() {
         let b = [0, 1].map(|k| f64::from([x, y][k]) + on * way[k]);
         let [a, b] = [a.map(f64::from), b].map(|p| p.map(|c| (256.0 * c).round() as i32));
         let width = rng.pick(&[256, 1280, 20_000, 200_000]);
-        let [from, to] = [a, b].map(|p| ScreenPoint::new(p[0], p[1]));
+        let [from, to] = [a, b].map(|p| ScreenPoint::new(Pixels::from_bits(p[0]), Pixels::from_bits(p[1])));
         let smooth = case % 2 == 0;
         let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| match smooth {
             true => scene.canvas().line_with(from, to, Rgb888::WHITE, &Smooth::new(width)),
             false => scene.canvas().line_with(from, to, Rgb888::WHITE, &Thick::new(width)),
         });
-        let [a, b] = [from, to].map(|p| [f64::from(p.x()) / 256.0, f64::from(p.y()) / 256.0]);
+        let [a, b] = [from, to].map(|p| [p.x().to_num::<f64>(), p.y().to_num()]);
         for (k, [red, ..]) in picture.iter().enumerate() {
             let pixel = (k as i32 % i32::from(SCREEN.0), k as i32 / i32::from(SCREEN.0));
             let exact = coverage(a, b, f64::from(width) / 256.0, pixel);
@@ -370,7 +443,7 @@ fn a_stroke_that_changes_between_strips_is_an_error() {
     let sink = |_: &zstrip::target::StripPixels<'_, Rgb565>| Ok::<(), core::convert::Infallible>(());
     let result = renderer.frame_to(sink, &mut color, Rgb565::BLACK, |scene| {
         calls += 1;
-        scene.draw_lines(if calls < 4 { &lines } else { &other }, &camera(), &Flat::unlit(Rgb888::RED));
+        scene.draw_lines(if calls < 4 { &lines } else { &other }, &camera(), &Flat::unlit(Rgb888::RED), &Thin);
     });
     assert_eq!(result, Err(zstrip::frame::FrameError::SceneChanged { draw: 0 }));
     assert_eq!(calls, 4);
@@ -388,11 +461,11 @@ fn depth_decides_between_lines_and_faces() {
     let draw = |first: bool| {
         let (picture, ..) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| {
             if first {
-                scene.draw_lines(&line, &camera(), &Flat::unlit(Rgb888::RED));
+                scene.draw_lines(&line, &camera(), &Flat::unlit(Rgb888::RED), &Thin);
             }
             scene.draw(&mesh, &camera(), &Flat::unlit(Rgb888::BLUE));
             if !first {
-                scene.draw_lines(&line, &camera(), &Flat::unlit(Rgb888::RED));
+                scene.draw_lines(&line, &camera(), &Flat::unlit(Rgb888::RED), &Thin);
             }
         });
         picture

@@ -1,7 +1,7 @@
 //! An artificial horizon: an instrument drawn on the screen's plane.
 
 use super::Rgb888;
-use zstrip::math::{Angle16, Scalar};
+use zstrip::math::{Angle16, Pixels, Scalar};
 use zstrip::{Canvas, Framebuffer, Scene, ScreenPoint, Smooth};
 
 const SKY: [Rgb888; 2] = [Rgb888::new(24, 72, 160), Rgb888::new(120, 184, 240)];
@@ -33,7 +33,10 @@ impl Dial {
         let (sin, cos) = (i64::from(self.turn.0), i64::from(self.turn.1));
         let (x, y) = (i64::from(16 * x), i64::from(16 * y + self.down));
         let place = |v: i64| ((v * i64::from(self.radius) + (1 << 27)) >> 28) as i32;
-        ScreenPoint::new(self.center.0 + place(x * cos - y * sin), self.center.1 + place(x * sin + y * cos))
+        ScreenPoint::new(
+            Pixels::from_bits(self.center.0 + place(x * cos - y * sin)),
+            Pixels::from_bits(self.center.1 + place(x * sin + y * cos)),
+        )
     }
 }
 
@@ -83,8 +86,8 @@ fn wings<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial) {
         canvas.polyline(&wing, Rgb888::new(16, 16, 16), &Smooth::new(1500));
         canvas.polyline(&wing, YELLOW, &Smooth::new(900));
     }
-    canvas.point(dial.at(0, 0), 1400, Rgb888::new(16, 16, 16));
-    canvas.point(dial.at(0, 0), 900, YELLOW);
+    canvas.point(dial.at(0, 0), Pixels::from_bits(1400), Rgb888::new(16, 16, 16));
+    canvas.point(dial.at(0, 0), Pixels::from_bits(900), YELLOW);
 }
 
 /// Sky and ground, each from the horizon to far away.

@@ -1,11 +1,11 @@
 //! Lines and points in space: a wireframe with its hidden lines removed, axes, a cloud of points.
 
 use super::{Rgb888, seen, torus, torus_model};
-use zstrip::math::{Angle16, Projective, Scalar, Vec3};
+use zstrip::math::{Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Points, Positions, Vertices};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
 use zstrip::span::{Compare, DepthBias, DepthState};
-use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thick};
+use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thick, Thin};
 
 /// Three axes from the origin, as long as the torus is wide.
 pub static AXES: Lines<'static> = Lines::constant(
@@ -69,7 +69,7 @@ pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 #[inline(never)]
 fn torus_lines<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
     scene.draw_with(BEHIND_LINES, &torus::MESH, mvp, &DepthOnly);
-    scene.draw_lines(torus::lines(), mvp, &Flat::unlit(Rgb888::new(150, 220, 255)));
+    scene.draw_lines(torus::lines(), mvp, &Flat::unlit(Rgb888::new(150, 220, 255)), &Thin);
 }
 
 #[inline(never)]
@@ -84,7 +84,7 @@ fn hidden_axes<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
 
 #[inline(never)]
 fn spiral_points<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    scene.draw_points(State::DEFAULT, &SPIRAL, mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), 3 << 8);
+    scene.draw_points(&SPIRAL, mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), Pixels::from_num(3));
 }
 
 #[inline(never)]

@@ -10,8 +10,8 @@ use crate::raster::PixelRect;
 use crate::span::Shader;
 use crate::target::{Framebuffer, PackedVertex};
 use crate::vertex::{
-    CLIPPED_CORNERS, ClipVertex, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face, MAX_DISTANCES, Outcode,
-    Polygon, PolygonCorner, Projected, Transform, Varyings, VertexRef, VertexShader, inverse_w, weighted,
+    CLIPPED_CORNERS, ClipCorner, ClipVertex, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face, MAX_DISTANCES,
+    Outcode, Polygon, PolygonCorner, Projected, Transform, Varyings, VertexRef, VertexShader, inverse_w, weighted,
 };
 use core::ops::Range;
 
@@ -112,7 +112,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Takes triangles one by one.
     #[inline(never)]
     pub(super) fn triangles(&mut self, numbers: Range<usize>) {
-        if S::CULL_DISTANCES > 0 || !self.scene.has_vertices() {
+        if S::CULL_DISTANCES > 0 || !self.scene.keeps_vertices() {
             self.each_triangle(numbers);
         } else {
             self.scan(numbers);
@@ -239,7 +239,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// The vertex stage's result for a vertex, from the records if it is there.
     #[inline]
     fn packed_vertex(&mut self, index: u16) -> PackedVertex {
-        if !self.scene.has_vertices() {
+        if !self.scene.keeps_vertices() {
             return self.shade(index.into());
         }
         let packed = self.scene.records.packed_vertex(index.into());
@@ -267,7 +267,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     pub(super) fn shade(&mut self, index: usize) -> PackedVertex {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
         let packed = self.stage().project(index);
-        if self.scene.has_vertices() {
+        if self.scene.keeps_vertices() {
             let varyings = self.vertex(index);
             self.scene.records.store_vertex::<S>(index, packed, &varyings);
         }
@@ -357,20 +357,28 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.draw(triangle, &mut varyings, self.face(triangle));
     }
 
-    /// The varyings at a corner of a clipped triangle.
-    #[inline(never)]
+    /// Returns the varyings at a corner of a clipped triangle.
     fn corner_varyings(&self, corners: [u16; 3], corner: &FanCorner) -> S::Varyings {
+        let varyings = self.weighted_varyings(corners, &corner.weights, corner.inverse_w);
+        // Without records they are rounded as the records would, so that the picture is the same.
+        if self.scene.is_recording() { varyings } else { rounded::<S>(&varyings) }
+    }
+
+    /// Returns the varyings at a point that the clipper made, before they are packed.
+    #[inline(never)]
+    fn weighted_varyings(&self, corners: [u16; 3], weights: &[i32; 3], inverse_w: u32) -> S::Varyings {
         let vertex = |index: u16| self.shader.vertex(&VertexRef::new(self.mesh, usize::from(index)));
         let [i, j, k] = corners;
-        let mut varyings: S::Varyings = weighted(&corner.weights, &[vertex(i), vertex(j), vertex(k)]);
+        let mut varyings: S::Varyings = weighted(weights, &[vertex(i), vertex(j), vertex(k)]);
         if S::Varyings::PERSPECTIVE > 0 {
-            varyings.set_inverse_w(corner.inverse_w);
+            varyings.set_inverse_w(inverse_w);
         }
-        if self.scene.is_recording() {
-            return varyings;
-        }
-        // What the records would keep of them, so that the picture is the same without.
-        rounded::<S>(&varyings)
+        varyings
+    }
+
+    /// Returns the varyings at the end of a line that was cut.
+    pub(super) fn end_varyings(&self, [i, j]: [u16; 2], end: &ClipCorner) -> S::Varyings {
+        rounded::<S>(&self.weighted_varyings([i, j, j], &end.weights, inverse_w(&end.vertex)))
     }
 
     /// Whether one of the cull distances is negative at all corners.
@@ -416,12 +424,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
     /// The varyings of a vertex, with 1 / w if they take it.
     #[inline]
-    pub(super) fn vertex(&self, index: usize) -> S::Varyings {
+    fn vertex(&self, index: usize) -> S::Varyings {
         self.stage().varyings(index)
     }
 
-    fn varyings(&self, index: u16) -> S::Varyings {
-        if self.scene.has_vertices() {
+    /// Returns the varyings of a vertex, as the records give them back.
+    pub(super) fn varyings(&self, index: u16) -> S::Varyings {
+        if self.scene.keeps_vertices() {
             return self.scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.vertex(usize::from(index)))
@@ -476,7 +485,7 @@ fn project_corners(
 
 /// The varyings as the records would give them back.
 #[inline(never)]
-pub(super) fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
+fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let mut words = S::Varyings::ZERO;
     let words: &mut [u32] = bytemuck::cast_slice_mut(words.as_mut());
     let words = words.get_mut(..S::WORDS).unwrap_or_default();

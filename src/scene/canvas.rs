@@ -4,6 +4,7 @@ use super::painter::RasterHooks;
 use super::scene::Scene;
 use super::state::{Cull, State};
 use super::stroke::{Stroke, Thin, block};
+use crate::math::Pixels;
 use crate::raster::{PixelRect, pixel_rect, square};
 use crate::shader::{Flat, Gouraud};
 use crate::span::{DepthState, Shader};
@@ -13,17 +14,32 @@ use embedded_graphics_core::geometry::Point;
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 use embedded_graphics_core::primitives::Rectangle;
 
-/// A point on the screen: x to the right and y down from the top left corner, in 24.8 px. The centre of a pixel is at .5.
+/// A point on the screen: x to the right and y down from the top left corner. The centre of a pixel is at .5.
+///
+/// ```
+/// use zstrip::ScreenPoint;
+/// use zstrip::embedded_graphics_core::geometry::Point;
+/// use zstrip::math::Pixels;
+/// assert_eq!(ScreenPoint::from(Point::new(3, 4)), ScreenPoint::center(3, 4));
+/// assert_eq!(ScreenPoint::new(Pixels::from_num(3.5), Pixels::from_num(4.5)), ScreenPoint::center(3, 4));
+/// assert_eq!(Point::from(ScreenPoint::corner(3, 4)), Point::new(3, 4));
+/// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct ScreenPoint {
+    // Raw 24.8 px.
     x: i32,
     y: i32,
 }
 
 impl ScreenPoint {
-    /// From coordinates in 24.8 px; those beyond ±32,767 px stop there.
-    pub const fn new(x: i32, y: i32) -> Self {
+    /// From coordinates; those beyond ±32,767 px stop there.
+    #[must_use]
+    pub const fn new(x: Pixels, y: Pixels) -> Self {
+        Self::from_raw(x.to_bits(), y.to_bits())
+    }
+
+    /// From raw 24.8 bits, clamped alike.
+    const fn from_raw(x: i32, y: i32) -> Self {
         const fn stop(c: i32) -> i32 {
             const LIMIT: i32 = (1 << 23) - 1;
             if c > LIMIT {
@@ -38,23 +54,56 @@ impl ScreenPoint {
     }
 
     /// The top left corner of pixel (x, y): where a shape of whole pixels begins or ends.
+    #[must_use]
     pub const fn corner(x: i16, y: i16) -> Self {
-        Self::new(256 * x as i32, 256 * y as i32)
+        Self::from_raw(256 * x as i32, 256 * y as i32)
     }
 
     /// The centre of pixel (x, y): where a line begins or ends.
+    #[must_use]
     pub const fn center(x: i16, y: i16) -> Self {
-        Self::new(256 * x as i32 + 128, 256 * y as i32 + 128)
+        Self::from_raw(256 * x as i32 + 128, 256 * y as i32 + 128)
     }
 
-    /// To the right, 24.8 px.
-    pub const fn x(self) -> i32 {
-        self.x
+    /// Distance from the left edge of the screen.
+    #[must_use]
+    pub const fn x(self) -> Pixels {
+        Pixels::from_bits(self.x)
     }
 
-    /// Down, 24.8 px.
-    pub const fn y(self) -> i32 {
-        self.y
+    /// Distance from the top edge of the screen.
+    #[must_use]
+    pub const fn y(self) -> Pixels {
+        Pixels::from_bits(self.y)
+    }
+}
+
+/// The centre of a pixel; coordinates beyond ±32,767 px stop there.
+impl From<Point> for ScreenPoint {
+    fn from(pixel: Point) -> Self {
+        let center = |c: i32| c.clamp(-(1 << 15), 1 << 15) * 256 + 128;
+        Self::from_raw(center(pixel.x), center(pixel.y))
+    }
+}
+
+/// The place of a vertex, for shapes that are drawn about it.
+impl From<ScreenVertex> for ScreenPoint {
+    fn from(vertex: ScreenVertex) -> Self {
+        Self::from_raw(vertex.x, vertex.y)
+    }
+}
+
+/// The pixel that a point lies in.
+impl From<ScreenPoint> for Point {
+    fn from(point: ScreenPoint) -> Self {
+        Self::new(point.x >> 8, point.y >> 8)
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for ScreenPoint {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "({}, {})/256 px", self.x, self.y);
     }
 }
 
@@ -96,9 +145,21 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// # Ok::<(), zstrip::frame::RendererError>(())
     /// ```
     pub fn canvas(&mut self) -> Canvas<'_, 'a, F> {
+        self.canvas_with(0, DepthState::OFF)
+    }
+
+    /// The screen's plane at a depth: shapes are drawn where that is nearer than what is there, and leave it.
+    ///
+    /// [`project`](Self::project) tells the depth of a point. Without a depth buffer this is [`canvas`](Self::canvas).
+    pub fn canvas_at(&mut self, z: u16) -> Canvas<'_, 'a, F> {
+        self.canvas_with(z, DepthState::LESS)
+    }
+
+    /// The screen's plane at a depth, with a depth test of one's own.
+    pub fn canvas_with(&mut self, z: u16, depth: DepthState) -> Canvas<'_, 'a, F> {
         let rows = if self.is_recording() { 0..0 } else { self.target.rows.clone() };
         let clip = self.clip_rect(&rows);
-        Canvas { clip: clip.clone(), all: clip, scene: self, state: PAINTED, z: 0 }
+        Canvas { clip: clip.clone(), all: clip, scene: self, state: State { depth, ..PAINTED }, z }
     }
 }
 
@@ -108,7 +169,7 @@ fn word(color: Rgb888) -> u32 {
 }
 
 impl<F: Framebuffer> Canvas<'_, '_, F> {
-    /// Draws at a depth from here on, and by a depth test: what is nearer in the scene stays in front.
+    /// Draws at another depth from here on, by a depth test of one's own; the scissor stays.
     pub const fn set_depth(&mut self, z: u16, depth: DepthState) {
         self.z = z;
         self.state.depth = depth;
@@ -124,9 +185,9 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         self.block(&pixels(area), color.into());
     }
 
-    /// Draws a square with sides of `size` px, in 24.8: a marker.
-    pub fn point(&mut self, center: ScreenPoint, size: u32, color: impl Into<Rgb888>) {
-        self.block(&square((center.x, center.y), size), color.into());
+    /// Draws a square with sides of `size`: a marker.
+    pub fn point(&mut self, center: ScreenPoint, size: Pixels, color: impl Into<Rgb888>) {
+        self.block(&square((center.x, center.y), size.to_bits().max(0) as u32), color.into());
     }
 
     fn block(&mut self, rect: &PixelRect, color: Rgb888) {

@@ -2,13 +2,13 @@
 
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::Painter;
-use super::scene::{Phase, Scene, fingerprint};
+use super::scene::{Draw, Phase, Primitives, Scene};
 use super::state::State;
 use crate::math::Projective;
 use crate::mesh::Mesh;
 use crate::span::Shader;
-use crate::target::{Framebuffer, TriangleRecord, Triangles, VERTEX_WORDS};
-use crate::vertex::{MAX_DISTANCES, Transform, Varyings};
+use crate::target::{Framebuffer, TriangleRecord, Triangles};
+use crate::vertex::{Transform, Varyings};
 
 impl<F: Framebuffer> Scene<'_, F> {
     /// Draws a mesh: back faces culled, nearer fragments win, clipped at the near and the far plane.
@@ -26,7 +26,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         self.draw_by(&state, &AssemblyHooks::of(&state), mesh, mvp, shader);
     }
 
-    // In its caller: a call less that is on the stack of everything below.
+    // Inlined, so that its frame is not on the stack under the whole draw.
     #[inline(always)]
     fn draw_by<S: Shader<F::Format>>(
         &mut self,
@@ -36,56 +36,41 @@ impl<F: Framebuffer> Scene<'_, F> {
         mvp: &Projective,
         shader: &S,
     ) {
-        const {
-            assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
-            assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
-            assert!(S::ZERO_BITS == 0 || S::Varyings::PERSPECTIVE == 0, "perspective takes all bits of varyings");
-            assert!(S::CLIP_DISTANCES + S::CULL_DISTANCES <= MAX_DISTANCES, "at most 4 clip and cull distances");
-            assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
-        };
-        let stride = S::WORDS + VERTEX_WORDS;
+        let draw = Draw::new::<S>(state, hooks.depth_scale, mesh, mvp, Primitives::Triangles);
         if F::RECORDS && self.phase == Phase::Replay {
-            let print = fingerprint(state, mesh, mvp, &self.viewport, stride);
-            if self.find_draw(print, mesh.vertex_count(), stride) {
+            if self.find_draw(&draw) {
                 self.replay(state, hooks, shader);
             }
         } else {
-            self.assemble(state, hooks, mesh, mvp, shader, stride);
+            self.assemble(&draw, hooks, shader);
         }
     }
 
-    /// Records a draw, or draws it directly.
+    /// Records the triangles of a draw, or draws them directly: stages 1 to 7.
     #[inline(never)]
-    fn assemble<S: Shader<F::Format>>(
-        &mut self,
-        state: &State,
-        hooks: &AssemblyHooks<F, S>,
-        mesh: &Mesh<'_>,
-        mvp: &Projective,
-        shader: &S,
-        stride: usize,
-    ) {
-        // 1. Culling of whole meshes.
+    fn assemble<S: Shader<F::Format>>(&mut self, draw: &Draw<'_>, hooks: &AssemblyHooks<F, S>, shader: &S) {
+        let (state, mesh) = (draw.state, draw.mesh);
+        // Stage 1, bounds.
         let mut transform = Transform::default();
-        if self.begin_draw(state, mesh, mvp, stride, S::DISPLACES, &mut transform) {
-            if let Some(scale) = hooks.depth_scale {
-                scale(&mut transform, state.depth_scale);
-            }
-            let clip = self.clip_rect(&self.band);
-            let culling = state.culling();
-            let mut assembly =
-                Assembly { scene: self, state, hooks, mesh, shader, transform: &transform, culling, clip };
-            match mesh.data().hierarchy {
-                Some(nodes) if !S::DISPLACES => assembly.parts(nodes, mvp),
-                _ => {
-                    if F::RECORDS {
-                        assembly.shade_all();
-                    }
-                    assembly.triangles(0..mesh.triangle_count());
-                }
-            }
-            self.end_draw();
+        if !self.begin_draw(draw, Some(&mut transform)) {
+            return;
         }
+        let clip = self.clip_rect(&self.band);
+        let culling = state.culling();
+        let mut assembly = Assembly { scene: self, state, hooks, mesh, shader, transform: &transform, culling, clip };
+        match mesh.data().hierarchy {
+            // Parts of a mesh: the vertices of a part are shaded when its triangles ask for them.
+            Some(nodes) if !S::DISPLACES => assembly.parts(nodes, draw.mvp),
+            _ => {
+                // Stage 2, vertices: all at once, where their results are kept.
+                if F::RECORDS {
+                    assembly.shade_all();
+                }
+                // Stages 3 to 7.
+                assembly.triangles(0..mesh.triangle_count());
+            }
+        }
+        self.end_draw();
     }
 
     /// Draws the recorded triangles of this draw in the current strip.

@@ -4,32 +4,44 @@
 //! all of them, which takes some 30 instructions for one that lies elsewhere, and no memory. A vertex is shaded when
 //! the first strip meets it.
 
-use super::assembly::{Assembly, AssemblyHooks, rounded};
+use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::{Painter, RasterHooks};
-use super::scene::{Phase, Scene, fingerprint};
+use super::scene::{Draw, Phase, Primitives, Scene};
 use super::state::State;
-use super::stroke::{Stroke, Thin, block};
-use crate::math::Projective;
-use crate::mesh::{Lines, Mesh, Points, Positions};
+use super::stroke::{Stroke, block};
+use crate::math::{Pixels, Projective};
+use crate::mesh::{Lines, Points};
 use crate::raster::{PixelRect, square};
 use crate::span::Shader;
-use crate::target::{Framebuffer, PackedVertex, VERTEX_WORDS};
-use crate::vertex::{
-    DepthSlab, Face, Outcode, ScreenMatrix, ScreenVertex, Side, Transform, Varyings, VertexRef, VertexShader,
-    clip_line, weighted,
-};
+use crate::target::{Framebuffer, PackedVertex};
+use crate::vertex::{DepthSlab, Face, Outcode, ScreenMatrix, ScreenVertex, Side, Transform, clip_line};
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
-    /// Draws lines of one pixel's width: nearer fragments win, clipped at the near and the far plane.
+    /// Draws lines with a stroke: nearer fragments win, clipped at the near and the far plane.
     ///
     /// `mvp` takes object space to clip space: camera · view · model. To the shader, a line is a face without a normal that
     /// shows its front; its first end is the provoking vertex. Varyings are interpolated along the line, linearly on the
     /// screen.
-    pub fn draw_lines<S: Shader<F::Format>>(&mut self, lines: &Lines<'_>, mvp: &Projective, shader: &S) {
-        self.draw_lines_with(State::default(), lines, mvp, shader, &Thin);
+    ///
+    /// ```
+    /// # use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+    /// # use zstrip::{Framebuffer, Scene, math::Projective, mesh::Lines, shader::Flat};
+    /// use zstrip::Thin;
+    /// # fn f(scene: &mut Scene<'_, impl Framebuffer>, axes: &Lines<'_>, mvp: &Projective) {
+    /// scene.draw_lines(axes, mvp, &Flat::unlit(Rgb888::WHITE), &Thin);
+    /// # }
+    /// ```
+    pub fn draw_lines<S: Shader<F::Format>, K: Stroke>(
+        &mut self,
+        lines: &Lines<'_>,
+        mvp: &Projective,
+        shader: &S,
+        stroke: &K,
+    ) {
+        self.draw_lines_with(State::DEFAULT, lines, mvp, shader, stroke);
     }
 
-    /// Draws lines by other rules, with a stroke of one's choice.
+    /// Draws lines with a stroke, by the rules of `state`.
     ///
     /// **Lines on a surface.** A line has the depth of its own points; the surface it outlines has that of its pixels' centres,
     /// up to half a pixel away in x and in y. So push the surface back, by one step and once its slope, and nothing of its
@@ -52,89 +64,75 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         shader: &S,
         stroke: &K,
     ) {
-        if self.begin_walk(&state, lines.vertices(), mvp, stride::<S>(), lines.count(), stroke.reach(), S::DISPLACES) {
-            Walk::new(self, &state, lines.vertices(), mvp, shader).lines(lines, stroke);
+        let primitives = Primitives::Lines { count: lines.count(), reach: stroke.reach() };
+        let draw = Draw::new::<S>(&state, Some(Transform::set_depth_scale), lines.vertices(), mvp, primitives);
+        if self.begin_lines(&draw) {
+            LineDraw::new(self, &draw, shader).lines(lines, stroke);
         }
     }
 
-    /// Draws points as squares with sides of `size` px, in 24.8, about the vertices, each at the depth of its vertex. To
-    /// the shader, a point is a face as a line is. A point before the near or beyond the far plane is not drawn.
+    /// Draws points as squares with sides of `size`: nearer fragments win.
+    ///
+    /// A square lies about its vertex and has the vertex's depth. To the shader, a point is a face as a line is. A point in
+    /// front of the near plane or beyond the far plane is not drawn.
+    ///
+    /// ```
+    /// # use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+    /// # use zstrip::{Framebuffer, Scene, math::Projective, mesh::Points, shader::Flat};
+    /// use zstrip::math::Pixels;
+    /// # fn f(scene: &mut Scene<'_, impl Framebuffer>, stars: &Points<'_>, mvp: &Projective) {
+    /// scene.draw_points(stars, mvp, &Flat::unlit(Rgb888::WHITE), Pixels::from_num(3));
+    /// # }
+    /// ```
     pub fn draw_points<S: Shader<F::Format>>(
+        &mut self,
+        points: &Points<'_>,
+        mvp: &Projective,
+        shader: &S,
+        size: Pixels,
+    ) {
+        self.draw_points_with(State::DEFAULT, points, mvp, shader, size);
+    }
+
+    /// Draws points as squares with sides of `size`, by the rules of `state`.
+    pub fn draw_points_with<S: Shader<F::Format>>(
         &mut self,
         state: State,
         points: &Points<'_>,
         mvp: &Projective,
         shader: &S,
-        size: u32,
+        size: Pixels,
     ) {
-        let reach = (size.min(1 << 24) >> 9) as i32 + 1;
-        let count = points.vertices().vertex_count();
-        if self.begin_walk(&state, points.vertices(), mvp, stride::<S>(), count, reach, S::DISPLACES) {
-            Walk::new(self, &state, points.vertices(), mvp, shader).points(size);
+        let size = size.to_bits().max(0) as u32;
+        let primitives = Primitives::Points { reach: (size.min(1 << 24) >> 9) as i32 + 1 };
+        let draw = Draw::new::<S>(&state, Some(Transform::set_depth_scale), points.vertices(), mvp, primitives);
+        if self.begin_lines(&draw) {
+            LineDraw::new(self, &draw, shader).points(size);
         }
     }
 
-    /// Starts a draw of `count` lines or points whose pixels are up to `reach` px away; whether it has to be walked over
-    /// now.
-    #[expect(clippy::too_many_arguments, reason = "what the fingerprint is made of")]
+    /// Begins a draw of lines or points, and returns whether any of them may be drawn in this strip. While a band is recorded,
+    /// they only get room for their vertices.
     #[inline(never)]
-    fn begin_walk(
-        &mut self,
-        state: &State,
-        vertices: &Mesh<'_>,
-        mvp: &Projective,
-        stride: usize,
-        count: usize,
-        reach: i32,
-        displaced: bool,
-    ) -> bool {
-        // No mesh has that many triangles and a reach.
-        let kind = (count as u32).rotate_left(8) ^ !(reach as u32);
-        let print = fingerprint(state, vertices, mvp, &self.viewport, stride) ^ kind;
+    fn begin_lines(&mut self, draw: &Draw<'_>) -> bool {
         if F::RECORDS && self.phase == Phase::Replay {
-            return self.find_draw(print, vertices.vertex_count(), stride) && !self.records.is_draw_empty();
+            return self.find_draw(draw) && !self.records.is_draw_empty();
         }
-        self.count_draw();
-        let recording = self.is_recording();
-        if self.overflowed() {
+        let visible = self.begin_draw(draw, None);
+        if self.is_recording() {
+            if visible {
+                self.end_draw();
+            }
             return false;
         }
-        let bounded = !displaced && !matches!(vertices.data().positions, Positions::Homogeneous(_));
-        let rect = self.clip_rect(&self.band);
-        let (x, y) = (rect.x.start - reach..rect.x.end + reach, rect.y.start - reach..rect.y.end + reach);
-        let planes = state.range.clamped();
-        let mut view = ScreenMatrix::EMPTY;
-        view.set_from(mvp, &self.viewport);
-        let culled = bounded && !view.sees(vertices.bounds(), &x, &y, planes);
-        self.stats.culled = self.stats.culled.wrapping_add(u32::from(culled));
-        if recording {
-            let count = if culled { 0 } else { vertices.vertex_count() };
-            self.records.begin_draw(print, count, stride);
-            self.records.end_draw();
-            return false;
-        }
-        if F::RECORDS && !culled {
-            self.records.begin_direct(vertices.vertex_count(), stride);
-        }
-        !culled
+        visible
     }
 }
 
-/// Words of a vertex in the records.
-fn stride<S: VertexShader>() -> usize {
-    const {
-        assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
-        assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
-    };
-    S::WORDS + VERTEX_WORDS
-}
-
-/// A walk over the lines or points of a draw, in a strip.
-struct Walk<'s, 'a, F, S> {
+/// The lines or points of a draw, in a strip.
+struct LineDraw<'s, 'a, F, S> {
     scene: &'s mut Scene<'a, F>,
-    state: &'s State,
-    vertices: &'s Mesh<'s>,
-    mvp: &'s Projective,
+    draw: &'s Draw<'s>,
     shader: &'s S,
     /// Pixels of the strip that may be drawn.
     clip: PixelRect,
@@ -142,16 +140,10 @@ struct Walk<'s, 'a, F, S> {
     transform: Option<Transform>,
 }
 
-impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
-    fn new(
-        scene: &'s mut Scene<'a, F>,
-        state: &'s State,
-        vertices: &'s Mesh<'s>,
-        mvp: &'s Projective,
-        shader: &'s S,
-    ) -> Self {
+impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
+    fn new(scene: &'s mut Scene<'a, F>, draw: &'s Draw<'s>, shader: &'s S) -> Self {
         let clip = scene.clip_rect(&scene.target.rows);
-        Self { scene, state, vertices, mvp, shader, clip, transform: None }
+        Self { scene, draw, shader, clip, transform: None }
     }
 
     #[inline(never)]
@@ -205,12 +197,12 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
 
     #[inline(never)]
     fn points(&mut self, size: u32) {
-        for index in 0..self.vertices.vertex_count() {
+        for index in 0..self.draw.mesh.vertex_count() {
             self.scene.stats.points = self.scene.stats.points.wrapping_add(1);
             let packed = self.packed_vertex(index);
             let place = if packed.is_on_screen() {
                 Some(packed.screen())
-            } else if packed.outcode() & !self.state.range.clamped().0 == 0 {
+            } else if packed.outcode() & !self.draw.state.range.clamped().0 == 0 {
                 let assembly = self.assembly();
                 assembly.transform.project(&assembly.transformed(index))
             } else {
@@ -237,37 +229,40 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     /// The vertex stage.
     #[inline(never)]
     fn assembly(&mut self) -> Assembly<'_, 'a, F, S> {
-        let Self { scene, state, vertices, mvp, shader, clip, transform } = self;
+        let Self { scene, draw, shader, clip, transform } = self;
         let transform = transform.get_or_insert_with(|| {
-            let mut transform = Transform::new(mvp, &scene.viewport, vertices, S::DISPLACES);
-            transform.set_depth_scale(state.depth_scale);
+            let (mut screen, mut transform) = (ScreenMatrix::EMPTY, Transform::default());
+            screen.set_from(draw.mvp, &scene.viewport);
+            draw.set_transform(&screen, &mut transform);
             transform
         });
         Assembly {
             scene,
-            state,
+            state: draw.state,
             hooks: &const { AssemblyHooks::ANY },
-            mesh: vertices,
+            mesh: draw.mesh,
             shader,
             transform,
-            culling: state.culling(),
+            culling: draw.state.culling(),
             clip: clip.clone(),
         }
     }
 
-    fn varyings(&self, index: u16) -> S::Varyings {
-        if self.scene.has_vertices() {
+    /// Returns the varyings of a vertex.
+    fn varyings(&mut self, index: u16) -> S::Varyings {
+        if self.scene.keeps_vertices() {
+            // The transform may not have been made, nor is it wanted.
             return self.scene.records.varyings::<S>(index);
         }
-        rounded::<S>(&self.shader.vertex(&VertexRef::new(self.vertices, usize::from(index))))
+        self.assembly().varyings(index)
     }
 
     fn face(&self, [a, b]: [u16; 2], number: usize) -> u32 {
-        self.shader.face(&Face::new(self.vertices, number, [a, b, b], Side::Front))
+        self.shader.face(&Face::new(self.draw.mesh, number, [a, b, b], Side::Front))
     }
 
     fn painter(&mut self) -> Painter<'_, 'a, F, S> {
-        self.scene.painter(&self.clip, self.state, &const { RasterHooks::ANY }, self.shader)
+        self.scene.painter(&self.clip, self.draw.state, &const { RasterHooks::ANY }, self.shader)
     }
 
     #[inline(never)]
@@ -285,13 +280,13 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
     /// A line with an end outside: cut anew in each strip, which keeps the records as they are.
     #[inline(never)]
     fn clip<K: Stroke>(&mut self, codes: [u8; 2], corners: [u16; 2], number: usize, stroke: &K) {
-        if codes[0] & codes[1] & !self.state.range.clamped().0 != 0 {
+        if codes[0] & codes[1] & !self.draw.state.range.clamped().0 != 0 {
             self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             return;
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1]);
-        for part in [DepthSlab::Inside].into_iter().chain(self.state.range.clamped_slabs(all)) {
+        for part in [DepthSlab::Inside].into_iter().chain(self.draw.state.range.clamped_slabs(all)) {
             if let Some(ends) = self.cut(corners, all, part) {
                 self.draw(&ends, corners, number, stroke);
             }
@@ -306,9 +301,6 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> Walk<'s, 'a, F, S> {
         let [i, j] = corners.map(usize::from);
         let [a, b] = clip_line([assembly.transformed(i), assembly.transformed(j)], codes, part)?;
         let (from, to) = (assembly.transform.project(&a.vertex)?, assembly.transform.project(&b.vertex)?);
-        let (first, last) = (assembly.vertex(i), assembly.vertex(j));
-        // What the records would keep of the varyings, as for ends that are not cut.
-        let at = |weights| rounded::<S>(&weighted(weights, &[first, last, last]));
-        Some([(from, at(&a.weights)), (to, at(&b.weights))])
+        Some([(from, assembly.end_varyings(corners, &a)), (to, assembly.end_varyings(corners, &b))])
     }
 }

@@ -449,15 +449,15 @@ impl<'a> Records<'a> {
     }
 
     /// Lends all the words to the vertices of one draw that is drawn directly, if they fit.
-    pub(crate) fn begin_direct(&mut self, vertices: usize, stride: usize) {
+    pub(crate) fn keep_vertices(&mut self, vertices: usize, stride: usize) {
         // Behind the end: all vertices read as unshaded.
         *self.layout = Layout { vertices: self.words.len(), ..Layout::default() };
         self.reserve(vertices, stride);
     }
 
-    /// Whether there is a place for each vertex of the current draw.
+    /// Returns whether there is room for each vertex of the current draw.
     #[inline]
-    pub(crate) fn has_vertices(&self) -> bool {
+    pub(crate) fn keeps_vertices(&self) -> bool {
         self.layout.stride > 0
     }
 

@@ -11,7 +11,7 @@ mod varyings;
 mod viewport;
 
 pub use clip::DepthRange;
-pub(crate) use clip::{CLIPPED_CORNERS, ClipVertex, DepthSlab, Outcode, Polygon, PolygonCorner, weighted};
+pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, DepthSlab, Outcode, Polygon, PolygonCorner, weighted};
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
