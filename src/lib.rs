@@ -65,7 +65,8 @@
 //!   `b` first. Clip space is -w ≤ x, y ≤ w, 0 ≤ z ≤ w, as in Direct3D, Vulkan and wgpu. On the screen x points right and y
 //!   down, in pixels from the top left corner; the centre of a pixel is at .5.
 //! - **Numbers.** [`Scalar`](math::Scalar) is 16.16, an entry of a [`Projective`](math::Projective) matrix 32.32, a
-//!   position on the screen 24.8. Vectors and affine transforms saturate. Normals are 2.14, colours 8 bits a channel.
+//!   position on the screen 24.8. Vectors and transforms saturate; a `Scalar`'s own operators overflow as integers do: they
+//!   panic in debug builds and wrap in release builds. [`SaturatingScalar`](math::SaturatingScalar) does neither. Normals are 2.14, colours 8 bits a channel.
 //! - **Angles** are binary: 65,536 make a turn.
 //! - **Depth** is 16-bit, 0 at the near plane, 65,535 at the far plane, and linear on the screen. Strips are cleared to
 //!   65,535. A fragment is drawn where it is nearer than what is there; [`DepthState`](span::DepthState) knows the other
@@ -108,6 +109,10 @@ pub mod prelude;
 // The crates whose types stand in signatures.
 pub use bytemuck;
 pub use embedded_graphics_core;
+pub use fixed;
+#[cfg(feature = "micromath")]
+pub use micromath;
+
 pub use frame::Renderer;
 pub use scene::{Canvas, Cull, Dashed, Scene, ScreenPoint, Smooth, State, Stroke, Thick, Thin, Winding};
 pub use target::Framebuffer;

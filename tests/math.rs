@@ -305,3 +305,182 @@ fn points_are_transformed_as_by_f64() {
         assert!((found.to_num::<f64>() - exact).abs() < 1e-9, "{found} for {exact}");
     }
 }
+
+#[test]
+fn angles_have_the_operators_of_numbers_and_print_as_degrees() {
+    let mut angle = Angle16(65_000);
+    angle += Angle16(1000);
+    assert_eq!(angle, Angle16(464));
+    angle -= Angle16(1000);
+    assert_eq!(angle, Angle16(65_000));
+    assert_eq!((Angle16(0x3000) * 3, Angle16(0x3000) * -1), (Angle16(0x9000), Angle16(0xD000)));
+    assert_eq!((Angle16(0xFFFF) / 2, Angle16(0x8000) / -2), (Angle16(0x7FFF), Angle16(0xC000)));
+    assert_eq!(Angle16(0xFFFF) / i32::MIN, Angle16(0));
+    let quarter = Angle16(0x4000);
+    assert_eq!((format!("{quarter}"), format!("{quarter:?}")), ("90°".into(), "Angle16(16384 = 90°)".into()));
+    assert_eq!(format!("{:.2}", Angle16(1)), "0.01°");
+    for units in 0..=u16::MAX {
+        let angle = Angle16(units);
+        assert_eq!(angle.to_degrees().to_num::<f64>(), f64::from(units) * 360.0 / 65_536.0);
+        assert_eq!(Angle16::from_degrees_fixed(angle.to_degrees()), angle);
+    }
+    let mut rng = Rng::new(11);
+    for case in 0..10_000 {
+        let degrees = Scalar::from_bits(rng.between(i32::MIN, i32::MAX));
+        let exact = (degrees.to_num::<f64>() / 360.0).rem_euclid(1.0) * 65_536.0;
+        let off = (f64::from(Angle16::from_degrees_fixed(degrees).0) - exact).abs();
+        assert!(off <= 0.5 || off >= 65_535.5, "case {case}: {degrees}");
+    }
+}
+
+#[test]
+fn vectors_are_scaled_and_divided_and_saturate() {
+    let mut v = Vec3::from_ints(3, -6, 0);
+    v += Vec3::X;
+    v -= Vec3::Y;
+    v *= Scalar::from_num(2);
+    assert_eq!(v, Vec3::from_ints(8, -14, 0));
+    v /= Scalar::from_num(-4);
+    assert_eq!(v, Vec3::from_milli(-2000, 3500, 0));
+    assert_eq!(Vec3::from_ints(8, -14, 0) / Scalar::ZERO, Vec3::new(Scalar::MAX, Scalar::MIN, Scalar::ZERO));
+    assert_eq!(Vec3::from_ints(8, -14, 0) / Scalar::DELTA, Vec3::new(Scalar::MAX, Scalar::MIN, Scalar::ZERO));
+    let seed = 5;
+    let mut rng = Rng::new(seed);
+    for case in 0..10_000 {
+        let mut number = || Scalar::from_bits(rng.between(i32::MIN, i32::MAX) >> rng.between(0, 30));
+        let (v, divisor) = (Vec3::new(number(), number(), number()), number());
+        if divisor == 0 {
+            continue;
+        }
+        for (quotient, part) in (v / divisor).to_bits().into_iter().zip(v.to_bits()) {
+            let exact = f64::from(part) / f64::from(divisor.to_bits()) * 65_536.0;
+            let exact = exact.trunc().clamp(f64::from(i32::MIN), f64::from(i32::MAX));
+            assert_eq!(f64::from(quotient), exact, "seed {seed}, case {case}: {v:?} / {divisor}");
+        }
+    }
+}
+
+/// The determinant of the matrix without row `i` and column `j`, with its sign.
+fn cofactor<const N: usize>(m: &[[i128; N]; N], i: usize, j: usize) -> i128 {
+    let rest = |skipped: usize| (0..N).filter(move |k| *k != skipped);
+    let minor: Vec<Vec<i128>> = rest(i).map(|row| rest(j).map(|column| m[row][column]).collect()).collect();
+    let det2 = |a: &[i128], b: &[i128], p: usize, q: usize| a[p] * b[q] - a[q] * b[p];
+    let value = match &minor[..] {
+        [a, b] => det2(a, b, 0, 1),
+        [a, b, c] => a[0] * det2(b, c, 1, 2) - a[1] * det2(b, c, 0, 2) + a[2] * det2(b, c, 0, 1),
+        _ => unreachable!("3×3 or 4×4"),
+    };
+    if (i + j) % 2 == 0 { value } else { -value }
+}
+
+/// `num / den`, and whether a number is within half a unit of it.
+fn is_nearest(found: i128, num: i128, den: i128) -> bool {
+    2 * (found * den - num).abs() <= den.abs()
+}
+
+#[test]
+fn inverses_of_affine_transforms_are_the_exact_ones_rounded() {
+    let seed = 21;
+    let mut rng = Rng::new(seed);
+    let (mut some, mut none) = (0, 0);
+    for case in 0..20_000 {
+        let shift = rng.between(0, 30);
+        let mut number = || rng.between(i32::MIN, i32::MAX) >> shift;
+        let m: [[i32; 4]; 3] = core::array::from_fn(|_| core::array::from_fn(|_| number()));
+        let row = |k: usize| Vec3::from_bits([m[k][0], m[k][1], m[k][2]]);
+        let transform = Affine::from_rows(row(0), row(1), row(2), Vec3::from_bits([m[0][3], m[1][3], m[2][3]]));
+        let matrix: [[i128; 3]; 3] = core::array::from_fn(|i| core::array::from_fn(|j| m[i][j].into()));
+        let det: i128 = (0..3).map(|j| matrix[0][j] * cofactor(&matrix, 0, j)).sum();
+        let exact = |i: usize, j: usize| match j {
+            3 => -(0..3).map(|k| cofactor(&matrix, k, i) * i128::from(m[k][3])).sum::<i128>() << 16,
+            _ => cofactor(&matrix, j, i) << 32,
+        };
+        match transform.inverse() {
+            Some(inverse) => {
+                some += 1;
+                for (i, row) in inverse.to_rows().iter().enumerate() {
+                    for (j, entry) in row.iter().enumerate() {
+                        let nearest = is_nearest(i128::from(*entry), exact(i, j), det);
+                        assert!(nearest, "seed {seed}, case {case}: {m:?}, entry ({i}, {j}) is {entry}");
+                    }
+                }
+            }
+            None => {
+                none += 1;
+                let fits = |i: usize, j: usize| (exact(i, j) / det).abs() < 1 << 31;
+                let all = det != 0 && (0..3).all(|i| (0..4).all(|j| fits(i, j)));
+                assert!(!all, "seed {seed}, case {case}: {m:?} has an inverse");
+            }
+        }
+    }
+    println!("{some} inverses, {none} transforms without one");
+    assert!(some > 5000 && none > 500, "{some}, {none}");
+}
+
+#[test]
+fn inverses_of_small_projective_transforms_are_the_exact_ones_rounded() {
+    let seed = 22;
+    let mut rng = Rng::new(seed);
+    let mut some = 0;
+    for case in 0..5000 {
+        let bits = rng.between(2, 15);
+        let rows: [[i64; 4]; 4] =
+            core::array::from_fn(|_| core::array::from_fn(|_| rng.between(-(1 << bits), 1 << bits).into()));
+        let m = rows.map(|row| row.map(i128::from));
+        let det: i128 = (0..4).map(|j| m[0][j] * cofactor(&m, 0, j)).sum();
+        let exact = |i: usize, j: usize| cofactor(&m, j, i) << 64;
+        match Projective::from_rows(rows).inverse() {
+            Some(inverse) => {
+                some += 1;
+                for (i, row) in inverse.to_rows().iter().enumerate() {
+                    for (j, entry) in row.iter().enumerate() {
+                        let (found, off) = (i128::from(*entry), exact(i, j) % det);
+                        // In two steps: the product of quotient and determinant would not fit.
+                        let floor = (exact(i, j) - off) / det;
+                        assert!(is_nearest(found - floor, off, det), "seed {seed}, case {case}: {rows:?} ({i}, {j})");
+                    }
+                }
+            }
+            None => assert!(
+                det == 0 || (0..4).any(|i| (0..4).any(|j| (exact(i, j) / det).abs() >= i128::from(i64::MAX))),
+                "seed {seed}, case {case}: {rows:?}"
+            ),
+        }
+    }
+    assert!(some > 4000, "{some}");
+}
+
+/// Off by half a unit each, the entries of the inverse may leave half of a row's sum in each entry of the product.
+#[test]
+fn cameras_and_large_matrices_are_undone() {
+    let seed = 23;
+    let mut rng = Rng::new(seed);
+    for case in 0..2000 {
+        let camera = if case % 2 == 0 {
+            let angle = Angle16::from_degrees(rng.between(5, 170));
+            let lens = Projective::perspective(angle, Size::new(320, 240), Scalar::ONE, Scalar::from_num(100));
+            lens.expect("a camera") * (Affine::translation(Vec3::from_ints(3, -2, -9)) * rigid(&mut rng, 4.0))
+        } else {
+            let mut entry = || i64::from(rng.between(i32::MIN, i32::MAX)) << 8;
+            Projective::from_rows(core::array::from_fn(|_| core::array::from_fn(|_| entry())))
+        };
+        let inverse = camera.inverse().unwrap_or_else(|| panic!("seed {seed}, case {case}: {camera:?}"));
+        let (a, b) = (camera.to_rows(), inverse.to_rows());
+        for (i, row) in a.iter().enumerate() {
+            let bound = row.iter().map(|entry| i128::from(entry.unsigned_abs())).sum::<i128>() / 2 + 1;
+            for j in 0..4 {
+                let product: i128 = (0..4).map(|k| i128::from(row[k]) * i128::from(b[k][j])).sum();
+                let one = i128::from(i == j) << 64;
+                assert!((product - one).abs() <= bound, "seed {seed}, case {case}: {camera:?} ({i}, {j})");
+            }
+        }
+    }
+    assert_eq!(Projective::from_rows([[i64::MIN; 4]; 4]).inverse(), None);
+    assert_eq!(Projective::IDENTITY.inverse(), Some(Projective::default()));
+    // The largest determinants that there are.
+    let (p, m) = (i64::MAX, i64::MIN);
+    let hadamard = Projective::from_rows([[p, p, p, p], [p, m, p, m], [p, p, m, m], [p, m, m, p]]);
+    let inverse = hadamard.inverse().expect("an inverse").to_rows();
+    // A quarter of 2⁶⁴ / 2⁶³, which is half a unit.
+    assert!(inverse.as_flattened().iter().all(|entry| entry.abs() <= 1), "{inverse:?}");
+}

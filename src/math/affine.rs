@@ -23,6 +23,13 @@ pub struct Affine {
 
 const ONE: i32 = 1 << 16;
 
+impl Default for Affine {
+    /// [`IDENTITY`](Affine::IDENTITY).
+    fn default() -> Self {
+        Self::IDENTITY
+    }
+}
+
 impl Affine {
     /// Leaves everything where it is.
     pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0]] };
@@ -161,6 +168,63 @@ impl Affine {
         Self { rows }
     }
 
+    /// Returns the transform that undoes this one.
+    ///
+    /// `None` where there is none (the determinant is 0), or where an entry of it does not fit 16.16. For rotations and
+    /// translations [`inverse_rigid`](Self::inverse_rigid) is much shorter.
+    ///
+    /// # Format
+    /// Each entry is that of the exact inverse of these entries, rounded to nearest: within 2⁻¹⁷. Minors are below 2⁶³, the
+    /// determinant below 2⁹⁶, what is divided below 2¹¹⁴.
+    ///
+    /// # Source
+    /// Cramer's rule.
+    ///
+    /// ```
+    /// use zstrip::math::{Affine, Scalar, Vec3};
+    /// let model = Affine::translation(Vec3::from_ints(1, 2, 3)) * Affine::scale(Scalar::from_num(4));
+    /// let back = model.inverse().unwrap();
+    /// assert_eq!(back * Vec3::from_ints(5, 2, 3), Vec3::X);
+    /// assert_eq!(Affine::scale(Scalar::ZERO).inverse(), None);
+    /// ```
+    #[must_use]
+    pub const fn inverse(&self) -> Option<Self> {
+        let r = &self.rows;
+        // Row i, column j of the adjugate: the minor without row j and column i, in cyclic order.
+        let mut adjugate = [[0_i128; 3]; 3];
+        let mut i = 0;
+        while i < 3 {
+            let mut j = 0;
+            while j < 3 {
+                let (a, b) = (&r[(j + 1) % 3], &r[(j + 2) % 3]);
+                let (p, q) = ((i + 1) % 3, (i + 2) % 3);
+                adjugate[i][j] = a[p] as i128 * b[q] as i128 - a[q] as i128 * b[p] as i128;
+                j += 1;
+            }
+            i += 1;
+        }
+        let determinant =
+            r[0][0] as i128 * adjugate[0][0] + r[0][1] as i128 * adjugate[1][0] + r[0][2] as i128 * adjugate[2][0];
+        let mut rows = [[0; 4]; 3];
+        let mut i = 0;
+        while i < 3 {
+            let a = &adjugate[i];
+            let moved = a[0] * r[0][3] as i128 + a[1] * r[1][3] as i128 + a[2] * r[2][3] as i128;
+            // Raw: minor / 2³² over determinant / 2⁴⁸, times 2¹⁶; the translation's product has 16 bits more already.
+            let numerators = [a[0] << 32, a[1] << 32, a[2] << 32, -(moved << 16)];
+            let mut j = 0;
+            while j < 4 {
+                rows[i][j] = match quotient(numerators[j], determinant) {
+                    Some(entry) => entry,
+                    None => return None,
+                };
+                j += 1;
+            }
+            i += 1;
+        }
+        Some(Self { rows })
+    }
+
     /// `M p + t`, rounded down, saturating.
     pub const fn transform_point(&self, point: Vec3) -> Vec3 {
         let p = point.to_bits();
@@ -194,6 +258,15 @@ impl Affine {
     const fn row_times(&self, i: usize, v: [i32; 3]) -> i64 {
         let r = &self.rows[i];
         ((r[0] as i64 * v[0] as i64) >> 2) + ((r[1] as i64 * v[1] as i64) >> 2) + ((r[2] as i64 * v[2] as i64) >> 2)
+    }
+}
+
+/// `num / den` rounded to nearest; `None` for a zero `den`, and what does not fit 32 bits.
+const fn quotient(num: i128, den: i128) -> Option<i32> {
+    let (num, den) = if den < 0 { (-num, -den) } else { (num, den) };
+    match (2 * num + den).checked_div_euclid(2 * den) {
+        Some(quotient) if quotient >= i32::MIN as i128 && quotient <= i32::MAX as i128 => Some(quotient as i32),
+        _ => None,
     }
 }
 

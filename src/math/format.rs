@@ -3,7 +3,22 @@
 use fixed::types::{I16F16, I24F8, I32F32};
 
 /// Object and world coordinates, lengths, factors: 16.16, -32768 to 32767.99998 in steps of 2⁻¹⁶.
+///
+/// Its operators are those of the crate `fixed`, and overflow as integers do: a sum, difference or product that does not fit
+/// panics where overflow checks are on (debug builds), and wraps where they are off (release builds). Division by 0 panics in
+/// both. [`Vec3`](crate::math::Vec3), [`Affine`](crate::math::Affine) and [`Projective`](crate::math::Projective) saturate
+/// instead, and so does [`SaturatingScalar`]; `Scalar::checked_add` and its kind tell.
 pub type Scalar = I16F16;
+
+/// A [`Scalar`] whose operators saturate: at ±32,768 a sum stays there, instead of a panic or a wrong sign.
+///
+/// ```
+/// use zstrip::fixed::Saturating;
+/// use zstrip::math::{SaturatingScalar, Scalar};
+/// let speed: SaturatingScalar = Saturating(Scalar::from_num(20_000));
+/// assert_eq!((speed + speed).0, Scalar::MAX);
+/// ```
+pub type SaturatingScalar = fixed::Saturating<Scalar>;
 
 /// Entries of a [`Projective`](crate::math::Projective) matrix: 32.32.
 pub type Wide = I32F32;

@@ -9,6 +9,7 @@ mod error;
 mod exponential;
 mod format;
 mod inverse_sqrt;
+mod long;
 #[cfg(feature = "micromath")]
 mod micromath;
 mod precision;
@@ -27,7 +28,7 @@ pub use angle::Angle16;
 pub(crate) use division::{divide, divide_modulo, divided};
 pub use error::ProjectionError;
 pub(crate) use exponential::exp_negative;
-pub use format::{Pixels, Scalar, Wide};
+pub use format::{Pixels, SaturatingScalar, Scalar, Wide};
 pub(crate) use inverse_sqrt::unit_vector;
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;

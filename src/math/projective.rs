@@ -4,6 +4,7 @@ use super::affine::Affine;
 use super::angle::Angle16;
 use super::error::ProjectionError;
 use super::format::{Scalar, Wide};
+use super::long::Long;
 use super::vector::Vec3;
 use core::ops::Mul;
 use embedded_graphics_core::geometry::Size;
@@ -46,6 +47,18 @@ const fn ratio(num: i128, den: i128) -> i64 {
     match ((num << 33) + den).checked_div_euclid(2 * den) {
         Some(quotient) => saturate(quotient),
         None => 0,
+    }
+}
+
+/// `b[s] c[t] - b[t] c[s]`: below 2¹²⁷, since no product but that of two -2⁶³ reaches 2¹²⁶.
+const fn minor_of(b: [i64; 4], c: [i64; 4], s: usize, t: usize) -> i128 {
+    b[s] as i128 * c[t] as i128 - b[t] as i128 * c[s] as i128
+}
+
+impl Default for Projective {
+    /// [`IDENTITY`](Projective::IDENTITY).
+    fn default() -> Self {
+        Self::IDENTITY
     }
 }
 
@@ -161,6 +174,81 @@ impl Projective {
             i += 1;
         }
         Self { rows }
+    }
+
+    /// Returns the transform that undoes this one: from the screen back to the world, for instance.
+    ///
+    /// `None` where there is none (the determinant is 0), or where an entry of it does not fit 32.32: a camera whose near plane
+    /// is below 2⁻³² of what it divides by.
+    ///
+    /// # Format
+    /// Each entry is that of the exact inverse of these entries, rounded to nearest: within 2⁻³³. Determinants are taken in
+    /// 320 bits: some thousand instructions, for a call per frame or per touch.
+    ///
+    /// # Source
+    /// Cramer's rule.
+    ///
+    /// ```
+    /// use zstrip::embedded_graphics_core::geometry::Size;
+    /// use zstrip::math::{Angle16, Projective, Scalar, Vec3};
+    /// let lens = Projective::perspective(Angle16::from_degrees(60), Size::new(4, 3), Scalar::ONE, Scalar::from_num(9))?;
+    /// // A point of clip space, divided by its w before: on the near plane, in the middle of the picture.
+    /// let [x, y, z, w] = lens.inverse().unwrap().transform_point(Vec3::ZERO);
+    /// assert_eq!((x / w, y / w), (0.into(), 0.into()));
+    /// assert!((z / w).abs_diff((-1).into()) < 1e-6);
+    /// # Ok::<(), zstrip::math::ProjectionError>(())
+    /// ```
+    #[must_use]
+    pub const fn inverse(&self) -> Option<Self> {
+        let mut cofactors = [[Long::ZERO; 4]; 4];
+        let mut i = 0;
+        while i < 4 {
+            let mut j = 0;
+            while j < 4 {
+                cofactors[i][j] = self.cofactor(i, j);
+                j += 1;
+            }
+            i += 1;
+        }
+        let mut determinant = Long::ZERO;
+        let mut j = 0;
+        while j < 4 {
+            determinant = determinant.plus(cofactors[0][j].times(self.rows[0][j]));
+            j += 1;
+        }
+        if determinant.is_zero() {
+            return None;
+        }
+        let mut rows = [[0; 4]; 4];
+        let mut i = 0;
+        while i < 4 {
+            let mut j = 0;
+            while j < 4 {
+                // Raw: cofactor / 2⁹⁶ over determinant / 2¹²⁸, times 2³².
+                rows[i][j] = match Long::ratio(cofactors[j][i], determinant) {
+                    Some(entry) => entry,
+                    None => return None,
+                };
+                j += 1;
+            }
+            i += 1;
+        }
+        Some(Self { rows })
+    }
+
+    /// Returns the signed determinant of the matrix without a row and a column.
+    ///
+    /// # Format
+    /// Minors of 2×2 are below 2¹²⁷, six of their products with entries below 2¹⁹³.
+    const fn cofactor(&self, row: usize, column: usize) -> Long {
+        // Cyclic order keeps the sign of 3×3 determinants, and makes that of the others (-1)^(row + column).
+        let (a, b, c) = (self.rows[(row + 1) & 3], self.rows[(row + 2) & 3], self.rows[(row + 3) & 3]);
+        let (p, q, r) = ((column + 1) & 3, (column + 2) & 3, (column + 3) & 3);
+        let sum = Long::of(minor_of(b, c, q, r))
+            .times(a[p])
+            .plus(Long::of(minor_of(b, c, r, p)).times(a[q]))
+            .plus(Long::of(minor_of(b, c, p, q)).times(a[r]));
+        if (row + column) & 1 == 0 { sum } else { sum.negated() }
     }
 
     /// `self` after an affine transform: `const` version of `self * model`.

@@ -1,7 +1,7 @@
 //! Three-dimensional vectors in 16.16.
 
 use super::format::Scalar;
-use core::ops::{Add, Mul, Neg, Sub};
+use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A point or direction: three [`Scalar`]s. Arithmetic saturates, so nothing here can panic or wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -146,5 +146,43 @@ impl Mul<Scalar> for Vec3 {
     type Output = Self;
     fn mul(self, factor: Scalar) -> Self {
         Self::new(self.x.saturating_mul(factor), self.y.saturating_mul(factor), self.z.saturating_mul(factor))
+    }
+}
+
+impl AddAssign for Vec3 {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
+    }
+}
+
+impl SubAssign for Vec3 {
+    fn sub_assign(&mut self, other: Self) {
+        *self = *self - other;
+    }
+}
+
+impl MulAssign<Scalar> for Vec3 {
+    fn mul_assign(&mut self, factor: Scalar) {
+        *self = *self * factor;
+    }
+}
+
+impl Div<Scalar> for Vec3 {
+    type Output = Self;
+    /// Divides each component, rounded towards 0. Divided by 0, a component becomes the largest or smallest number, 0 stays 0.
+    fn div(self, divisor: Scalar) -> Self {
+        let quotient = |component: Scalar| match (i64::from(component.to_bits()) << 16)
+            .checked_div(i64::from(divisor.to_bits()))
+        {
+            Some(quotient) => saturate(quotient),
+            None => saturate(i64::from(component.to_bits()) << 32),
+        };
+        Self::new(quotient(self.x), quotient(self.y), quotient(self.z))
+    }
+}
+
+impl DivAssign<Scalar> for Vec3 {
+    fn div_assign(&mut self, divisor: Scalar) {
+        *self = *self / divisor;
     }
 }
