@@ -132,6 +132,8 @@ impl VertexShader for Ramp {
 }
 
 impl Shader<Rgba8888> for Ramp {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<[u8; 4]> {
         let [r, g, b] = self.0;
         Some([r, g, b, (fragment.position.0 * 6) as u8])

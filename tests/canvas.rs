@@ -81,6 +81,8 @@ impl VertexShader for Count<'_> {
 }
 
 impl Shader<Gray8> for Count<'_> {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u8> {
         self.0.borrow_mut().push(fragment.position);
         Some(255)

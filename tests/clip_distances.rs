@@ -55,6 +55,8 @@ impl<const CLIP: usize> VertexShader for Cut<CLIP> {
 }
 
 impl<const CLIP: usize> Shader<Rgb565> for Cut<CLIP> {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<u16> {
         let (x, y) = fragment.position;
         let seen = &mut self.seen.borrow_mut()[(y * 64 + x) as usize];
@@ -175,6 +177,8 @@ impl VertexShader for RightOf {
 }
 
 impl Shader<Rgb565> for RightOf {
+    type Setup = ();
+
     fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         Some(1)
     }

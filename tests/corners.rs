@@ -125,6 +125,8 @@ impl VertexShader for Normal {
 }
 
 impl Shader<Rgb565> for Normal {
+    type Setup = ();
+
     fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         Some(1)
     }

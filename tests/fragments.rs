@@ -43,6 +43,8 @@ impl<const N: usize> Shader<Rgb565> for Varied<N>
 where
     [i32; N]: Varyings,
 {
+    type Setup = ();
+
     fn fragment(&self, _: &Fragment<'_, [i32; N]>) -> Option<u16> {
         Some(1)
     }
@@ -104,6 +106,8 @@ impl VertexShader for Chequers {
 }
 
 impl Shader<Rgb565> for Chequers {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         let (x, y) = fragment.position;
         self.0.borrow_mut().push((x, y, fragment.depth, fragment.side, fragment.flat));

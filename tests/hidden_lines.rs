@@ -38,6 +38,8 @@ impl VertexShader for Drawn<'_> {
 }
 
 impl Shader<Rgb565> for Drawn<'_> {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         self.0.borrow_mut().insert((fragment.flat, fragment.position));
         Some(1)

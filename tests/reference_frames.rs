@@ -122,6 +122,8 @@ impl VertexShader for Ids {
 }
 
 impl Shader<Rgb888> for Ids {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<[u8; 3]> {
         let [_, r, g, b] = fragment.flat.to_be_bytes();
         Some([r, g, b])

@@ -66,6 +66,8 @@ impl VertexShader for Source {
 }
 
 impl<P: PixelFormat> Shader<P> for Source {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
         Some(P::pack_rgba(rgba(fragment.varyings, fragment.position), fragment.position))
     }
@@ -83,6 +85,8 @@ impl VertexShader for Recorder<'_> {
 }
 
 impl Shader<Gray8> for Recorder<'_> {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<u8> {
         let (position, depth, varyings) = (fragment.position, fragment.depth, *fragment.varyings);
         self.0.borrow_mut().push(Hit { position, depth, varyings, coverage: 0 });

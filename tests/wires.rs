@@ -98,6 +98,8 @@ impl VertexShader for Correct {
 }
 
 impl<P: PixelFormat<Raw = u16>> Shader<P> for Correct {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, Perspective<1, 2>>) -> Option<u16> {
         Some(fragment.varyings.as_ref()[0] as u16)
     }
@@ -175,6 +177,8 @@ fn value(index: usize) -> i32 {
 }
 
 impl Shader<Rgb565> for Seen<'_> {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 1]>) -> Option<u16> {
         self.0.borrow_mut().push((fragment.position, fragment.depth, fragment.varyings[0]));
         Some(1)

@@ -485,6 +485,8 @@ impl VertexShader for Ember {
 }
 
 impl Shader<Rgba8888> for Ember {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 2]>) -> Option<<Rgba8888 as PixelFormat>::Raw> {
         let [u, v] = fragment.varyings.map(|c| c >> 8);
         // 1 - r², squared: 0.16, 0.8 and 0.8 again.

@@ -88,6 +88,8 @@ impl VertexShader for Water {
 }
 
 impl<P: PixelFormat> Shader<P> for Water {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 2]>) -> Option<P::Raw> {
         let [lit, sky] = fragment.varyings.map(|c| (c >> 16).clamp(0, 255));
         // Glints where it is brightest.

@@ -20,7 +20,7 @@ use zstrip::light::Light;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud, Textured};
-use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
+use zstrip::span::{DepthState, DepthTest, Fragment, Shader, SpanOf};
 use zstrip::target::RecordsChoice;
 use zstrip::target::{Stats, Strip};
 use zstrip::target::{WithDepth, WithRecords};
@@ -217,14 +217,16 @@ impl VertexShader for FaceColors {
 }
 
 impl<P: PixelFormat> Shader<P> for FaceColors {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
         Shader::<P>::fragment(&self.0, fragment)
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
-        Shader::<P>::span(&self.0, face, span, test);
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        Shader::<P>::span(&self.0, span, test);
     }
 }
 
@@ -245,6 +247,8 @@ impl VertexShader for OwnFlat {
 }
 
 impl<P: PixelFormat> Shader<P> for OwnFlat {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
         let [_, r, g, b] = fragment.flat.to_be_bytes();
@@ -265,6 +269,8 @@ impl VertexShader for OwnGouraud {
 }
 
 impl<P: PixelFormat> Shader<P> for OwnGouraud {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
         let [r, g, b] = fragment.varyings;

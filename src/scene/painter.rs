@@ -4,10 +4,10 @@ use super::scene::{Scene, Target};
 use super::state::State;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
 use crate::span::{
-    DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragments, MAX_SPAN, Shader, Steps, TriangleSpan,
+    DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Primitive, Shader, Span, SpanOf, TriangleSetup,
 };
 use crate::target::Framebuffer;
-use crate::vertex::{MAX_IN_REGISTERS, PerspectiveSetup, ScreenVertex, Varyings, signed_area};
+use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, signed_area};
 
 /// What the triangles of a draw are drawn with. Public for [`Draw`](crate::scene::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -24,7 +24,7 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
 /// states ask for.
 pub struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
     /// 9. The spans of a triangle, by a depth test.
-    spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings>),
+    spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
     /// 8. What is added to depths.
     bias: Option<Bias>,
 }
@@ -59,21 +59,21 @@ fn biased(bias: &DepthBias, [a, b, c]: &[ScreenVertex; 3], depth: &PlaneEquation
 
 fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
-    set_up: &SetUp<'_, S::Varyings>,
+    set_up: &SetUp<'_, S::Varyings, S::Setup>,
 ) {
     painter.spans(set_up, DepthLess);
 }
 
 fn spans_over<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
-    set_up: &SetUp<'_, S::Varyings>,
+    set_up: &SetUp<'_, S::Varyings, S::Setup>,
 ) {
     painter.spans(set_up, DepthOff);
 }
 
 fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
-    set_up: &SetUp<'_, S::Varyings>,
+    set_up: &SetUp<'_, S::Varyings, S::Setup>,
 ) {
     match painter.test() {
         DepthState::LESS => painter.spans(set_up, DepthLess),
@@ -90,10 +90,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle.
     #[inline]
-    pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &mut [S::Varyings; 3], face: u32) {
+    pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area != 0 {
-            self.triangle_of_area(v, area, varyings, face);
+            self.triangle_of_area(v, area, varyings, flat);
         }
     }
 
@@ -103,27 +103,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         &mut self,
         v: &[ScreenVertex; 3],
         area: i64,
-        varyings: &mut [S::Varyings; 3],
-        face: u32,
+        varyings: &[S::Varyings; 3],
+        flat: u32,
     ) {
-        let side = self.state.side(area);
-        let mut set_up = SetUp {
-            v,
-            area,
-            face,
-            depth: PlaneEquation::default(),
-            // Not what varyings are going to be; but zeros, all in a row, would be a call.
-            steps: Steps {
-                dz_dx: 0,
-                corner: varyings[0],
-                d_dy: varyings[0],
-                d_dx: varyings[0],
-                words: [0; 3],
-                side,
-                level: 0,
-                perspective: <S::Varyings as Varyings>::PerspectiveSetup::NONE,
-            },
-        };
+        let primitive = Primitive::constant(S::Varyings::ZERO, flat, self.state.side(area), S::Setup::default());
+        let mut set_up = SetUp { v, area, depth: PlaneEquation::default(), primitive };
         self.set_up(&mut set_up, varyings);
         // 9. Spans, in a loop of its own for each kind of depth test.
         (self.hooks.spans)(self, &set_up);
@@ -132,43 +116,51 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// Stage 8, plane equations of depth and varyings; from here on, values are those at the screen's corner. In a function of
     /// its own, and in place, for the stack that it takes.
     #[inline(never)]
-    fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings>, varyings: &mut [S::Varyings; 3]) {
-        let SetUp { v, area, depth, steps, .. } = set_up;
-        steps.level = self.shader.level(varyings, area.unsigned_abs());
+    fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings, S::Setup>, varyings: &[S::Varyings; 3]) {
+        let SetUp { v, area, depth, primitive } = set_up;
+        let corners = varyings.each_ref();
         if S::Varyings::LEN == 0 && v[0].z == v[1].z && v[0].z == v[2].z {
             // A plane that is known, and no other.
             depth.base = u32::from(v[0].z) << 16;
         } else {
             let gradients = Gradients::new(v, *area, self.screen);
             *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
-            if S::Varyings::PERSPECTIVE > 0 {
-                homogenize(varyings, v, self.screen, &mut steps.perspective);
-            }
-            let values = [varyings[0].as_ref(), varyings[1].as_ref(), varyings[2].as_ref()];
-            widen(&gradients, &values, &mut steps.perspective);
-            let Steps { corner, d_dx, d_dy, .. } = &mut *steps;
-            let planes = corner.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut());
-            for (k, ((corner, dx), dy)) in planes.enumerate() {
+            let mut homogeneous;
+            let [a, b, c] = if S::Varyings::PERSPECTIVE > 0 {
+                homogeneous = *varyings;
+                homogenize(&mut homogeneous, v, self.screen, &mut primitive.perspective);
+                homogeneous.each_ref()
+            } else {
+                corners
+            };
+            let values = [a.as_ref(), b.as_ref(), c.as_ref()];
+            widen(&gradients, &values, &mut primitive.perspective);
+            let Primitive { at_origin, d_dx, d_dy, .. } = &mut *primitive;
+            let planes = at_origin.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut());
+            for (k, ((at_origin, dx), dy)) in planes.enumerate() {
                 let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
                 let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
-                (*corner, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
+                (*at_origin, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
             }
         }
-        steps.dz_dx = depth.dx;
+        primitive.dz_dx = depth.dx;
         if let Some(bias) = self.hooks.bias {
             let steps = bias(&self.state.bias, v, depth);
             depth.base = depth.base.wrapping_add((steps as u32) << 16);
         }
-        steps.words = self.shader.prepare(&mut steps.corner, &steps.d_dx);
+        let Primitive { at_origin, d_dx, flat, side, .. } = &*primitive;
+        let area = area.unsigned_abs();
+        let triangle = TriangleSetup { corners, area, flat: *flat, side: *side, at_origin, d_dx };
+        primitive.setup = self.shader.setup(&triangle);
     }
 
     /// 9. Spans, between two edges from row to row.
     #[inline(never)]
-    fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
+    fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
         if S::Varyings::LEN > MAX_IN_REGISTERS {
             return self.spans_apart(set_up, test);
         }
-        let SetUp { v, area, face, depth, steps } = set_up;
+        let SetUp { v, area, depth, primitive } = set_up;
         let columns = self.clip.x.clone();
         let width = usize::from(self.screen.0);
         let first = self.target.rows.start;
@@ -195,7 +187,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
             let mut row = width.wrapping_mul((y - first) as usize);
             let mut end = if y < bend { bend.min(last) } else { last };
-            let mut depths = D::whole(self.target.depth, &mut nothing);
+            let mut depths = D::slots(self.target.depth, &mut nothing);
             let mut colors = framebuffer.rows(first as u32, width).unwrap_or_default();
             let mut right_end = columns.end;
             if width.wrapping_mul((end - first) as usize) > colors.len() {
@@ -215,12 +207,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 left.step();
                 if start < past {
                     let (at, length) = (row.wrapping_add(start as usize), (past - start) as usize);
-                    let Some(depth) = part(depths, at, length) else { return };
-                    let Some(color) = part(colors, at, length) else { return };
-                    let z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(start));
+                    let Some(depth) = subslice(depths, at, length) else { return };
+                    let Some(color) = subslice(colors, at, length) else { return };
+                    let z = z.wrapping_add_signed(primitive.dz_dx.wrapping_mul(start));
                     // 10, 11. Depth test and fragments.
-                    let span = TriangleSpan { color, depth, z, steps, position: (start, y) };
-                    self.shader.triangle_span(*face, span, test);
+                    self.shader.span(Span { color, depth, z, position: (start, y), primitive }, test);
                 }
                 y += 1;
                 row = row.wrapping_add(width);
@@ -233,52 +224,49 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// Stage 9 for many varyings, whose fragments take longer than all of this: nothing is kept from span to span but the edges, for
     /// the stack that it takes.
     #[inline(always)]
-    fn spans_apart<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings>, test: D) {
-        let mut nothing = [(); MAX_SPAN];
+    fn spans_apart<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
+        let mut nothing = [(); usize::MAX];
         let mut spans = Spans::new(set_up.v, set_up.area, &self.clip.y);
         let shader = self.shader;
         while spans.next_in(&self.clip.x) {
             // 10, 11. Depth test and fragments.
-            shader.span(set_up.face, self.span_at::<D>(set_up, &spans, &mut nothing), test);
+            shader.span(self.span_at::<D>(set_up, &spans, &mut nothing), test);
         }
     }
 
-    /// What there is to draw of a span.
+    /// Looks up the pixels of a span, and its first depth.
     #[inline(never)]
     fn span_at<'a, D: DepthTest>(
         &'a mut self,
-        set_up: &'a SetUp<'_, S::Varyings>,
+        set_up: &'a SetUp<'_, S::Varyings, S::Setup>,
         spans: &Spans<'_>,
-        nothing: &'a mut [(); MAX_SPAN],
-    ) -> Fragments<'a, F::Format, S::Varyings, D::Depth> {
+        nothing: &'a mut [()],
+    ) -> SpanOf<'a, F::Format, S, D> {
         let (y, x) = (spans.y, &spans.x);
-        let SetUp { depth: plane, steps, .. } = set_up;
+        let SetUp { depth: plane, primitive, .. } = set_up;
         let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);
         let color = self.target.framebuffer.span(y as u32, x.start as usize, x.len());
-        let depth = D::stored(self.target.depth, nothing, row.wrapping_add(x.start as usize), color.len());
+        let depths = D::slots(self.target.depth, nothing);
+        let depth = subslice(depths, row.wrapping_add(x.start as usize), color.len()).unwrap_or_default();
         // The half rounds.
         let z = plane.base.wrapping_add(1 << 15).wrapping_add_signed(plane.dy.wrapping_mul(y));
         let z = z.wrapping_add_signed(plane.dx.wrapping_mul(x.start));
-        let mut span = Fragments { color, depth, z, varyings: steps.corner, steps, position: (x.start, y) };
-        span.varyings.advance(&steps.d_dy, y);
-        span.varyings.advance(&steps.d_dx, x.start);
-        span
+        Span { color, depth, z, position: (x.start, y), primitive }
     }
 }
 
 /// A triangle, set up.
-pub(super) struct SetUp<'a, V: Varyings> {
+pub(super) struct SetUp<'a, V: Varyings, T> {
     v: &'a [ScreenVertex; 3],
     area: i64,
-    face: u32,
     depth: PlaneEquation,
-    steps: Steps<V>,
+    primitive: Primitive<V, T>,
 }
 
 /// `length` elements from `start` on, if there are: in two steps, each a comparison; a range is checked at both ends at once,
 /// which costs twice that.
 #[inline(always)]
-fn part<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]> {
+fn subslice<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]> {
     slice.get_mut(start..)?.get_mut(..length)
 }
 

@@ -4,11 +4,11 @@ use super::painter::{Painter, RasterHooks};
 use crate::color::PixelFormat;
 use crate::raster::{Along, Line, LinePixels, PixelRect, unit};
 use crate::span::{
-    Compare, Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Fragments, MAX_SPAN, Shader,
-    Steps,
+    Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Shader, Span, SpanOf,
+    TriangleSetup,
 };
 use crate::target::Framebuffer;
-use crate::vertex::{Face, ScreenVertex, Side, Varyings, VertexRef, VertexShader};
+use crate::vertex::{ScreenVertex, Side, Varyings, VertexShader, Wrapper};
 
 /// How a line is drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
 pub trait Stroke: Draw {}
@@ -23,7 +23,7 @@ pub trait Draw {
         &self,
         painter: &mut Painter<'_, '_, F, S>,
         ends: &[(ScreenVertex, S::Varyings); 2],
-        face: u32,
+        flat: u32,
     );
 }
 
@@ -98,9 +98,9 @@ impl Draw for Thin {
         &self,
         painter: &mut Painter<'_, '_, F, S>,
         ends: &[(ScreenVertex, S::Varyings); 2],
-        face: u32,
+        flat: u32,
     ) {
-        thin::<F, S, false>(painter, ends, face, 0);
+        thin::<F, S, false>(painter, ends, flat, 0);
     }
 }
 
@@ -114,9 +114,9 @@ impl Draw for Dashed {
         &self,
         painter: &mut Painter<'_, '_, F, S>,
         ends: &[(ScreenVertex, S::Varyings); 2],
-        face: u32,
+        flat: u32,
     ) {
-        thin::<F, S, true>(painter, ends, face, self.0);
+        thin::<F, S, true>(painter, ends, flat, self.0);
     }
 }
 
@@ -125,7 +125,7 @@ impl Draw for Dashed {
 fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     painter: &mut Painter<'_, '_, F, S>,
     ends: &[(ScreenVertex, S::Varyings); 2],
-    face: u32,
+    flat: u32,
     pattern: u32,
 ) {
     let [(a, from), (b, to)] = ends;
@@ -136,41 +136,45 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     }
     let along = Along::new(&line);
     let (z, dz) = along.value(i32::from(a.z), i32::from(b.z), 16);
-    let (mut values, mut d_dx) = (*from, S::Varyings::ZERO);
-    for ((value, step), to) in values.as_mut().iter_mut().zip(d_dx.as_mut()).zip(to.as_ref()) {
+    let (mut values, mut change) = (*from, S::Varyings::ZERO);
+    for ((value, step), to) in values.as_mut().iter_mut().zip(change.as_mut()).zip(to.as_ref()) {
         let (start, change) = along.value(*value, *to, 0);
         (*value, *step) = (start as i32, change);
     }
-    let mut moved = values;
-    let words = painter.shader.prepare(&mut moved, &d_dx);
-    let steps = Steps::linear(dz, d_dx, words, Side::Front);
+    let shader = painter.shader;
+    // The planes of a line change along its longer axis only. What a shader is told of is the change along the line.
+    let primitive = |at_origin: S::Varyings, d_dx: S::Varyings, d_dy: S::Varyings| {
+        let (area, side, at, corners) = (0, Side::Front, &at_origin, [from, to, to]);
+        let setup = shader.setup(&TriangleSetup { corners, area, flat, side, at_origin: at, d_dx: &change });
+        Primitive { dz_dx: dz, d_dx, d_dy, ..Primitive::constant(at_origin, flat, side, setup) }
+    };
     // With the half that rounds, and the bias.
     let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
-    let mut run = Run { pixels, z: z.wrapping_add(bias), values: moved, pattern, face, steps: &steps };
-    if DASHED {
-        run.pattern = pattern.rotate_right(skipped & 31);
-    }
-    // A first pixel that lies before the one that values are given for has those of the end; moved as the others.
+    let mut pixels = pixels;
+    let (mut z, mut pattern) =
+        (z.wrapping_add(bias), if DASHED { pattern.rotate_right(skipped & 31) } else { pattern });
+    let mut on = skipped.wrapping_sub(along.origin()) as i32;
     if skipped < along.origin() {
-        let mut first =
-            Run { pixels: LinePixels { left: 1, ..pixels }, z: (u32::from(a.z) << 16).wrapping_add(bias), ..run };
-        for (((value, from), moved), start) in
-            first.values.as_mut().iter_mut().zip(from.as_ref()).zip(moved.as_ref()).zip(values.as_ref())
-        {
-            *value = from.wrapping_add(moved.wrapping_sub(*start));
-        }
-        draw_run::<F, S, DASHED>(painter, &first);
-        run.pattern = run.pattern.rotate_right(1);
+        // A first pixel in front of the one that values are given for has those of the end.
+        let first = primitive(*from, S::Varyings::ZERO, S::Varyings::ZERO);
+        let z = (u32::from(a.z) << 16).wrapping_add(bias);
+        let pixel = LinePixels { left: 1, ..pixels };
+        draw_line::<F, S, DASHED>(painter, &LineRun { pixels: pixel, z, pattern, primitive: &first });
+        pattern = pattern.rotate_right(1);
         // The pixel is drawn.
-        let _ = run.pixels.next();
-    } else {
-        let on = skipped.wrapping_sub(along.origin()) as i32;
-        run.z = run.z.wrapping_add_signed(dz.wrapping_mul(on));
-        for (value, step) in run.values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-            *value = value.wrapping_add(step.wrapping_mul(on));
-        }
+        let _ = pixels.next();
+        on = 0;
     }
-    draw_run::<F, S, DASHED>(painter, &run);
+    z = z.wrapping_add_signed(dz.wrapping_mul(on));
+    let (x, y) = pixels.position;
+    let (mut d_dx, mut d_dy) = (S::Varyings::ZERO, S::Varyings::ZERO);
+    d_dx.advance(&change, pixels.straight.0);
+    d_dy.advance(&change, pixels.straight.1);
+    values.advance(&change, on);
+    values.advance(&d_dx, x.wrapping_neg());
+    values.advance(&d_dy, y.wrapping_neg());
+    let primitive = primitive(values, d_dx, d_dy);
+    draw_line::<F, S, DASHED>(painter, &LineRun { pixels, z, pattern, primitive: &primitive });
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
@@ -185,21 +189,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 }
 
 /// Pixels of a line, and what is interpolated over them.
-#[derive(Clone, Copy)]
-struct Run<'r, V: Varyings> {
+struct LineRun<'r, V: Varyings, T> {
     pixels: LinePixels,
+    /// Depth at the first pixel, 16.16, with the half that rounds.
     z: u32,
-    values: V,
+    /// Pattern of a dashed line, the lowest bit for the first pixel.
     pattern: u32,
-    face: u32,
-    steps: &'r Steps<V>,
+    primitive: &'r Primitive<V, T>,
 }
 
-/// Draws pixels, with a loop for each kind of test.
+/// Draws pixels of a line, with a loop for each kind of test.
 #[inline(never)]
-fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
+fn draw_line<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     painter: &mut Painter<'_, '_, F, S>,
-    run: &Run<'_, S::Varyings>,
+    run: &LineRun<'_, S::Varyings, S::Setup>,
 ) {
     let test = painter.test();
     let Painter { target, screen, shader, .. } = painter;
@@ -209,7 +212,7 @@ fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     };
     let depths = &mut *target.depth;
     match test {
-        DepthState { compare: Compare::Less, write: true } => {
+        DepthState::LESS => {
             run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, DepthLess);
         }
         DepthState::OFF => {
@@ -221,10 +224,10 @@ fn draw_run<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     }
 }
 
-impl<V: Varyings> Run<'_, V> {
-    /// Draws all of its pixels, each as a span of its own, into rows that lie one after the other.
+impl<V: Varyings, T> LineRun<'_, V, T> {
+    /// Draws all pixels, each as a span of its own, into rows that lie one after the other.
     #[inline(always)]
-    fn draw<P: PixelFormat, S: Shader<P, Varyings = V>, D: DepthTest, const DASHED: bool>(
+    fn draw<P: PixelFormat, S: Shader<P, Varyings = V, Setup = T>, D: DepthTest, const DASHED: bool>(
         &self,
         colors: &mut [P::Raw],
         depths: &mut [D::Depth],
@@ -238,12 +241,12 @@ impl<V: Varyings> Run<'_, V> {
         // The same place in colours and depths; in range, as the pixels are in the strip.
         let mut at = index((position.0, position.1 - first_row));
         let (straight_at, diagonal_at) = (index(straight), index(diagonal));
-        let Self { mut z, mut values, mut pattern, face, steps, .. } = *self;
+        let Self { mut z, mut pattern, primitive, .. } = *self;
         for _ in 0..left {
             if !DASHED || pattern & 1 != 0 {
                 if let (Some(color), Some(depth)) = (colors.get_mut(at), depths.get_mut(at)) {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
-                    shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
+                    shader.span(Span { color, depth, z, position, primitive }, test);
                 }
             }
             let (mut step, mut step_at) = (straight, straight_at);
@@ -257,20 +260,17 @@ impl<V: Varyings> Run<'_, V> {
             if DASHED {
                 pattern = pattern.rotate_right(1);
             }
-            z = z.wrapping_add_signed(steps.dz_dx);
-            for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-                *value = value.wrapping_add(*step);
-            }
+            z = z.wrapping_add_signed(primitive.dz_dx);
         }
     }
 
-    /// The same into any framebuffer.
-    fn draw_spans<F: Framebuffer, S: Shader<F::Format, Varyings = V>, const DASHED: bool>(
+    /// Draws all pixels into any framebuffer, each as a span of its own.
+    fn draw_spans<F: Framebuffer, S: Shader<F::Format, Varyings = V, Setup = T>, const DASHED: bool>(
         &self,
         painter: &mut Painter<'_, '_, F, S>,
     ) {
         let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
-        let Self { pixels, mut z, mut values, mut pattern, face, steps } = *self;
+        let Self { pixels, mut z, mut pattern, primitive } = *self;
         let test = DepthDyn::new(painter.test());
         for (x, y) in pixels {
             if !DASHED || pattern & 1 != 0 {
@@ -281,15 +281,11 @@ impl<V: Varyings> Run<'_, V> {
                 let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
                 if let [color] = color {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
-                    let position = (x, y);
-                    painter.shader.span(face, Fragments { color, depth, z, varyings: values, steps, position }, test);
+                    painter.shader.span(Span { color, depth, z, position: (x, y), primitive }, test);
                 }
             }
             pattern = pattern.rotate_right(1);
-            z = z.wrapping_add_signed(steps.dz_dx);
-            for (value, step) in values.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-                *value = value.wrapping_add(*step);
-            }
+            z = z.wrapping_add_signed(primitive.dz_dx);
         }
     }
 }
@@ -330,10 +326,10 @@ fn fill<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
     [a, b, c, d]: &[ScreenVertex; 4],
     [from, to]: [&S::Varyings; 2],
-    face: u32,
+    flat: u32,
 ) {
-    painter.triangle(&[*a, *b, *c], &mut [*from, *to, *to], face);
-    painter.triangle(&[*a, *c, *d], &mut [*from, *to, *from], face);
+    painter.triangle(&[*a, *b, *c], &[*from, *to, *to], flat);
+    painter.triangle(&[*a, *c, *d], &[*from, *to, *from], flat);
 }
 
 impl Draw for Thick {
@@ -346,11 +342,11 @@ impl Draw for Thick {
         &self,
         painter: &mut Painter<'_, '_, F, S>,
         ends: &[(ScreenVertex, S::Varyings); 2],
-        face: u32,
+        flat: u32,
     ) {
         let [(a, from), (b, to)] = ends;
         let corners = rectangle(a, b, unit(b.x - a.x, b.y - a.y), self.0 / 2, 0);
-        fill(painter, &corners, [from, to], face);
+        fill(painter, &corners, [from, to], flat);
     }
 }
 
@@ -364,7 +360,7 @@ impl Draw for Smooth {
         &self,
         painter: &mut Painter<'_, '_, F, S>,
         ends: &[(ScreenVertex, S::Varyings); 2],
-        face: u32,
+        flat: u32,
     ) {
         let [(a, from), (b, to)] = ends;
         let unit = unit(b.x - a.x, b.y - a.y);
@@ -377,7 +373,7 @@ impl Draw for Smooth {
             &mut Painter { target, screen: *screen, clip, state, shader: &shader, hooks: &const { RasterHooks::ANY } },
             &corners,
             [from, to],
-            face,
+            flat,
         );
     }
 }
@@ -433,40 +429,38 @@ struct Covered<'s, S> {
     coverage: Coverage,
 }
 
-impl<S: VertexShader> VertexShader for Covered<'_, S> {
-    type Varyings = S::Varyings;
-    const WORDS: usize = S::WORDS;
-    const ZERO_BITS: u32 = S::ZERO_BITS;
+impl<S: VertexShader> Wrapper for Covered<'_, S> {
+    type Inner = S;
 
-    fn vertex(&self, vertex: &VertexRef<'_>) -> S::Varyings {
-        self.shader.vertex(vertex)
-    }
-
-    fn face(&self, face: &Face<'_>) -> u32 {
-        self.shader.face(face)
+    fn inner(&self) -> &S {
+        self.shader
     }
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
-    fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
-        self.shader.level(corners, area)
+    type Setup = S::Setup;
+
+    #[inline(always)]
+    fn setup(&self, triangle: &TriangleSetup<'_, S::Varyings>) -> S::Setup {
+        self.shader.setup(triangle)
     }
 
-    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
         self.shader.fragment(fragment)
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, S::Varyings, D::Depth>, test: D) {
-        let Fragments { color, depth, mut z, mut varyings, steps, mut position } = span;
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        let mut varyings = span.varyings();
+        let Span { color, depth, mut z, mut position, primitive } = span;
         let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
         let (x, y) = (position.0 - origin.0, position.1 - origin.1);
         let at = |base: i32, step: (i32, i32)| {
             base.wrapping_add(step.0.wrapping_mul(x)).wrapping_add(step.1.wrapping_mul(y))
         };
         let (mut distance, mut way) = (at(self.coverage.distance, distance_step), at(self.coverage.way, way_step));
-        let (side, level) = (steps.side, steps.level);
-        let mut corrected = (S::Varyings::PERSPECTIVE > 0).then(|| Corrected::new(varyings, steps, position));
+        let Primitive { flat, side, dz_dx, ref setup, .. } = *primitive;
+        let mut corrected = (S::Varyings::PERSPECTIVE > 0).then(|| Corrected::new(primitive, position));
         for (color, stored) in color.iter_mut().zip(depth) {
             if let Some(corrected) = &mut corrected {
                 varyings = corrected.varyings();
@@ -477,19 +471,19 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
             let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
             let depth = (z >> 16) as u16;
             if across > 0 && along > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
-                let fragment = Fragment { flat: face, varyings: &varyings, position, depth, side, level };
-                if let Some(value) = self.shader.fragment(&fragment) {
+                let fragment = Fragment { flat, varyings: &varyings, position, depth, side, setup };
+                // A shader that blends does so with the pixel that is there.
+                let mut painted = *color;
+                if self.shader.paint(&fragment, &mut painted) {
                     test.write(depth, stored);
-                    *color = mix::<P>(*color, value, (across * along) >> 8);
+                    *color = mix::<P>(*color, painted, (across * along) >> 8);
                 }
             }
             position.0 = position.0.wrapping_add(1);
             distance = distance.wrapping_add(distance_step.0);
             way = way.wrapping_add(way_step.0);
-            z = z.wrapping_add_signed(steps.dz_dx);
-            for (value, step) in varyings.as_mut().iter_mut().zip(steps.d_dx.as_ref()) {
-                *value = value.wrapping_add(*step);
-            }
+            z = z.wrapping_add_signed(dz_dx);
+            varyings.step(&primitive.d_dx);
         }
     }
 }
@@ -512,33 +506,33 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
     rect: &PixelRect,
     z: u16,
     varyings: &S::Varyings,
-    face: u32,
+    flat: u32,
 ) {
     let rect = rect.intersection(painter.clip);
     if rect.is_empty() {
         return;
     }
-    let (mut values, d_dx) = (*varyings, S::Varyings::ZERO);
-    let words = painter.shader.prepare(&mut values, &d_dx);
-    let steps = Steps::linear(0, d_dx, words, Side::Front);
+    let (side, d_dx, corners) = (Side::Front, &S::Varyings::ZERO, [varyings; 3]);
+    let setup = painter.shader.setup(&TriangleSetup { corners, area: 0, flat, side, at_origin: varyings, d_dx });
+    let primitive = &Primitive::constant(*varyings, flat, side, setup);
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
     let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
-    let (test, mut nothing) = (painter.test(), [(); MAX_SPAN]);
+    let (test, mut nothing) = (painter.test(), [(); usize::MAX]);
     for y in rect.y {
         let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
         let color = painter.target.framebuffer.span(y as u32, column, length);
-        let (varyings, steps, position) = (values, &steps, (rect.x.start, y));
+        let position = (rect.x.start, y);
         if test == DepthState::OFF {
             let depth = nothing.get_mut(..color.len()).unwrap_or_default();
-            painter.shader.span(face, Fragments { color, depth, z, varyings, steps, position }, DepthOff);
+            painter.shader.span(Span { color, depth, z, position, primitive }, DepthOff);
             continue;
         }
         let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
-        let span = Fragments { color, depth, z, varyings, steps, position };
+        let span = Span { color, depth, z, position, primitive };
         match test {
-            DepthState { compare: Compare::Less, write: true } => painter.shader.span(face, span, DepthLess),
-            other => painter.shader.span(face, span, DepthDyn::new(other)),
+            DepthState::LESS => painter.shader.span(span, DepthLess),
+            other => painter.shader.span(span, DepthDyn::new(other)),
         }
     }
 }

@@ -1,9 +1,8 @@
 //! Blending: what becomes of a shader's colour and the one that is there.
 
 use crate::color::{PixelFormat, Rgba8888};
-use crate::math::Vec3;
-use crate::span::{Fragment, Shader};
-use crate::vertex::{Face, VertexRef, VertexShader};
+use crate::span::{Fragment, Shader, TriangleSetup};
+use crate::vertex::{VertexShader, Wrapper};
 
 /// A way to blend pixels of format `P`.
 ///
@@ -152,77 +151,32 @@ impl<S, M> Blend<S, M> {
     }
 }
 
-/// Hands the vertex stage of a wrapper to its `shader`.
-macro_rules! inner_vertex_stage {
-    () => {
-        type Varyings = S::Varyings;
-        const WORDS: usize = S::WORDS;
-        const ZERO_BITS: u32 = S::ZERO_BITS;
-        const DISPLACES: bool = S::DISPLACES;
-        const CLIP_DISTANCES: usize = S::CLIP_DISTANCES;
-        const CULL_DISTANCES: usize = S::CULL_DISTANCES;
+impl<S: VertexShader, M> Wrapper for Blend<S, M> {
+    type Inner = S;
 
-        #[inline]
-        fn distances(&self, vertex: &VertexRef<'_>) -> [i32; crate::vertex::MAX_DISTANCES] {
-            self.shader.distances(vertex)
-        }
-
-        #[inline]
-        fn vertex(&self, vertex: &VertexRef<'_>) -> S::Varyings {
-            self.shader.vertex(vertex)
-        }
-
-        #[inline]
-        fn displace(&self, vertex: &VertexRef<'_>) -> Vec3 {
-            self.shader.displace(vertex)
-        }
-
-        #[inline]
-        fn face(&self, face: &Face<'_>) -> u32 {
-            self.shader.face(face)
-        }
-
-        #[inline]
-        fn store(varyings: &S::Varyings, words: &mut [u32]) {
-            S::store(varyings, words);
-        }
-
-        #[inline]
-        fn load(words: &[u32]) -> S::Varyings {
-            S::load(words)
-        }
-    };
-}
-pub(super) use inner_vertex_stage;
-
-/// Hands on how the `shader` in a wrapper wants its varyings.
-macro_rules! inner_steps {
-    () => {
-        const STEP: usize = S::STEP;
-
-        #[inline(always)]
-        fn level(&self, corners: &[S::Varyings; 3], area: u64) -> u32 {
-            self.shader.level(corners, area)
-        }
-    };
-}
-pub(super) use inner_steps;
-
-impl<S: VertexShader, M> VertexShader for Blend<S, M> {
-    inner_vertex_stage!();
+    #[inline(always)]
+    fn inner(&self) -> &S {
+        &self.shader
+    }
 }
 
 impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<S, M> {
-    inner_steps!();
+    const STEP: usize = S::STEP;
+    type Setup = S::Setup;
+
+    #[inline(always)]
+    fn setup(&self, triangle: &TriangleSetup<'_, S::Varyings>) -> S::Setup {
+        self.shader.setup(triangle)
+    }
 
     /// Blended with black.
     #[inline]
-    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
         Some(self.mode.blend(self.shader.fragment(fragment)?, P::pack([0; 3])))
     }
 
     #[inline(always)]
-    fn paint(&self, fragment: &Fragment<'_, S::Varyings>, pixel: &mut P::Raw) -> bool {
+    fn paint(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>, pixel: &mut P::Raw) -> bool {
         match self.shader.fragment(fragment) {
             Some(source) => {
                 *pixel = self.mode.blend(source, *pixel);

@@ -1,7 +1,7 @@
 //! Depth without colour.
 
 use crate::color::PixelFormat;
-use crate::span::{DepthTest, Fragment, Fragments, Shader};
+use crate::span::{DepthTest, Fragment, Shader, Span, SpanOf};
 use crate::vertex::{VertexRef, VertexShader};
 
 /// Leaves depths and no colours: what is drawn with it hides what comes after, and shows what was there before. A mesh drawn
@@ -18,23 +18,25 @@ impl VertexShader for DepthOnly {
 }
 
 impl<P: PixelFormat> Shader<P> for DepthOnly {
+    type Setup = ();
+
     /// Not called: spans are drawn without fragments.
     fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
         None
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, _: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         if !D::ENABLED {
             return;
         }
-        let Fragments { depth, mut z, steps, .. } = span;
+        let Span { depth, mut z, primitive, .. } = span;
         for stored in depth {
             let depth = (z >> 16) as u16;
             if test.passes(depth, *stored) {
                 test.write(depth, stored);
             }
-            z = z.wrapping_add_signed(steps.dz_dx);
+            z = z.wrapping_add_signed(primitive.dz_dx);
         }
     }
 }

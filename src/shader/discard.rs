@@ -1,10 +1,8 @@
 //! Shaders that leave fragments out: the alpha test, and the screen door.
 
-use super::blend::{inner_steps, inner_vertex_stage};
 use crate::color::{PixelFormat, Rgba8888};
-use crate::math::Vec3;
-use crate::span::{Fragment, Shader};
-use crate::vertex::{Face, VertexRef, VertexShader};
+use crate::span::{Fragment, Shader, TriangleSetup};
+use crate::vertex::{VertexShader, Wrapper};
 
 /// Draws the fragments whose alpha is at least a threshold, opaque: leaves, fences, letters. No order of drawing is needed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -20,15 +18,26 @@ impl<S> AlphaTest<S> {
     }
 }
 
-impl<S: VertexShader> VertexShader for AlphaTest<S> {
-    inner_vertex_stage!();
+impl<S: VertexShader> Wrapper for AlphaTest<S> {
+    type Inner = S;
+
+    #[inline(always)]
+    fn inner(&self) -> &S {
+        &self.shader
+    }
 }
 
 impl<P: PixelFormat, S: Shader<Rgba8888>> Shader<P> for AlphaTest<S> {
-    inner_steps!();
+    const STEP: usize = S::STEP;
+    type Setup = S::Setup;
+
+    #[inline(always)]
+    fn setup(&self, triangle: &TriangleSetup<'_, S::Varyings>) -> S::Setup {
+        self.shader.setup(triangle)
+    }
 
     #[inline]
-    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
         let [r, g, b, alpha] = self.shader.fragment(fragment)?;
         if alpha >= self.threshold { Some(P::pack_at([r, g, b], fragment.position)) } else { None }
     }
@@ -52,15 +61,26 @@ impl<S> ScreenDoor<S> {
     }
 }
 
-impl<S: VertexShader> VertexShader for ScreenDoor<S> {
-    inner_vertex_stage!();
+impl<S: VertexShader> Wrapper for ScreenDoor<S> {
+    type Inner = S;
+
+    #[inline(always)]
+    fn inner(&self) -> &S {
+        &self.shader
+    }
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for ScreenDoor<S> {
-    inner_steps!();
+    const STEP: usize = S::STEP;
+    type Setup = S::Setup;
+
+    #[inline(always)]
+    fn setup(&self, triangle: &TriangleSetup<'_, S::Varyings>) -> S::Setup {
+        self.shader.setup(triangle)
+    }
 
     #[inline]
-    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
         let (x, y) = fragment.position;
         let row = PATTERN[(y & 3) as usize];
         let place = row >> (4 * (x & 3)) & 15;

@@ -2,7 +2,7 @@
 
 use crate::color::{PixelFormat, channels, packed, unpacked};
 use crate::light::Light;
-use crate::span::{DepthTest, Fragment, Fragments, Shader, flat_span};
+use crate::span::{DepthTest, Fragment, Shader, SpanOf, flat_span};
 use crate::vertex::{Face, VertexRef, VertexShader};
 
 /// Flat shading: each triangle in one colour, lit by its face normal.
@@ -59,13 +59,15 @@ impl VertexShader for Flat {
 }
 
 impl<P: PixelFormat> Shader<P> for Flat {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
         Some(P::pack_at(unpacked(fragment.flat), fragment.position))
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
-        flat_span(face, span, test);
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        flat_span(span, test);
     }
 }

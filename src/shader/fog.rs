@@ -5,11 +5,10 @@
 //! a small table takes it to the amount of fog, fine where depth is coarse: beyond 15/16 of the depth range, and again
 //! beyond 255/256.
 
-use super::blend::{inner_steps, inner_vertex_stage};
 use crate::color::PixelFormat;
-use crate::math::{ProjectionError, Scalar, Vec3, exp_negative};
-use crate::span::{Fragment, Shader};
-use crate::vertex::{Face, VertexRef, VertexShader};
+use crate::math::{ProjectionError, Scalar, exp_negative};
+use crate::span::{Fragment, Shader, TriangleSetup};
+use crate::vertex::{VertexShader, Wrapper};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
 /// How fog thickens with the distance from the camera's plane.
@@ -185,15 +184,26 @@ impl<'t, S> Fogged<'t, S> {
     }
 }
 
-impl<S: VertexShader> VertexShader for Fogged<'_, S> {
-    inner_vertex_stage!();
+impl<S: VertexShader> Wrapper for Fogged<'_, S> {
+    type Inner = S;
+
+    #[inline(always)]
+    fn inner(&self) -> &S {
+        &self.shader
+    }
 }
 
 impl<P: PixelFormat, S: Shader<P>> Shader<P> for Fogged<'_, S> {
-    inner_steps!();
+    const STEP: usize = S::STEP;
+    type Setup = S::Setup;
+
+    #[inline(always)]
+    fn setup(&self, triangle: &TriangleSetup<'_, S::Varyings>) -> S::Setup {
+        self.shader.setup(triangle)
+    }
 
     #[inline]
-    fn fragment(&self, fragment: &Fragment<'_, S::Varyings>) -> Option<P::Raw> {
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
         let left = u32::from(self.table.left(fragment.depth));
         Some(P::mix(self.shader.fragment(fragment)?, P::pack(self.color), left + (left >> 7)))
     }

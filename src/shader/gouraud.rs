@@ -1,11 +1,8 @@
 //! Colours a vertex, interpolated over the triangle.
 
-use crate::color::{PixelFormat, channels, load, squeeze, store, unsqueeze};
+use super::vertex_colors::VertexColors;
+use crate::color::{channels, load, squeeze, store};
 use crate::light::{Light, Lit};
-use crate::span::{
-    DepthTest, Fragment, Fragments, Shader, TriangleSpan, fragments, luma_span, packed_fragments, packed_span, prepare,
-    weighted,
-};
 use crate::vertex::{VertexRef, VertexShader};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
@@ -85,49 +82,4 @@ impl VertexShader for Gouraud {
     }
 }
 
-impl<P: PixelFormat> Shader<P> for Gouraud {
-    #[inline]
-    fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
-        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
-        let [r, g, b] = *fragment.varyings;
-        Some(P::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
-    }
-
-    /// What colours packed in a word want at hand in a register.
-    #[inline]
-    fn level(&self, _: &[[i32; 3]; 3], _: u64) -> u32 {
-        P::packed_mask()
-    }
-
-    #[inline]
-    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
-        if P::PACKED {
-            prepare::<P>(rgb, d_dx)
-        } else if P::IS_LUMA {
-            [weighted(*d_dx), 0, 0]
-        } else {
-            [0; 3]
-        }
-    }
-
-    #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, [i32; 3], D::Depth>, test: D) {
-        if P::PACKED {
-            packed_fragments(span, test);
-        } else if P::IS_LUMA {
-            let [step, ..] = span.steps.words;
-            luma_span(span, step, test);
-        } else {
-            fragments(self, face, span, test);
-        }
-    }
-
-    #[inline(always)]
-    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
-        if P::PACKED {
-            packed_span(span, test);
-        } else {
-            Shader::<P>::span(self, face, span.fragments(), test);
-        }
-    }
-}
+impl VertexColors for Gouraud {}

@@ -67,6 +67,8 @@ impl<T: PixelFormat, const N: usize> VertexShader for Matcap<'_, T, N> {
 }
 
 impl<P: PixelFormat, T: PixelFormat, const N: usize> Shader<P> for Matcap<'_, T, N> {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 2]>) -> Option<P::Raw> {
         let [u, v] = *fragment.varyings;

@@ -58,6 +58,7 @@ mod gouraud;
 mod matcap;
 mod shaded;
 mod textured;
+mod vertex_colors;
 
 pub use blend::{Add, AddAlpha, Alpha, Blend, BlendMode, Multiply, Opacity, Replace};
 pub use depth_only::DepthOnly;
@@ -68,3 +69,4 @@ pub use gouraud::Gouraud;
 pub use matcap::Matcap;
 pub use shaded::{PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
 pub use textured::{LitTexture, Textured};
+pub use vertex_colors::VertexColors;

@@ -1,11 +1,10 @@
 //! A material under any lights, per face, per vertex or per fragment.
 
-use crate::color::{PixelFormat, load, round, squeeze, store, unpacked, unsqueeze};
+use super::vertex_colors::VertexColors;
+use crate::color::{PixelFormat, load, round, squeeze, store, unpacked};
 use crate::light::LitMaterial;
 use crate::math::unit_vector;
-use crate::span::{
-    DepthTest, Fragment, Fragments, Shader, TriangleSpan, flat_span, fragments, packed_fragments, packed_span, prepare,
-};
+use crate::span::{DepthTest, Fragment, Shader, SpanOf, flat_span};
 use crate::vertex::{Face, Side, VertexRef, VertexShader};
 use core::marker::PhantomData;
 
@@ -92,14 +91,16 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerFace, D, P> {
 }
 
 impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Shaded<PerFace, D, P> {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<Format::Raw> {
         Some(Format::pack_at(unpacked(fragment.flat), fragment.position))
     }
 
     #[inline]
-    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 0], T::Depth>, test: T) {
-        flat_span(face, span, test);
+    fn span<T: DepthTest>(&self, span: SpanOf<'_, Format, Self, T>, test: T) {
+        flat_span(span, test);
     }
 }
 
@@ -131,41 +132,7 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerVertex, D, P> {
     }
 }
 
-impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Shaded<PerVertex, D, P> {
-    #[inline]
-    fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<Format::Raw> {
-        let [r, g, b] = *fragment.varyings;
-        Some(Format::pack_at([unsqueeze(r), unsqueeze(g), unsqueeze(b)], fragment.position))
-    }
-
-    #[inline]
-    fn level(&self, _: &[[i32; 3]; 3], _: u64) -> u32 {
-        Format::packed_mask()
-    }
-
-    #[inline]
-    fn prepare(&self, rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
-        if Format::PACKED { prepare::<Format>(rgb, d_dx) } else { [0; 3] }
-    }
-
-    #[inline]
-    fn span<T: DepthTest>(&self, face: u32, span: Fragments<'_, Format, [i32; 3], T::Depth>, test: T) {
-        if Format::PACKED {
-            packed_fragments(span, test);
-        } else {
-            fragments(self, face, span, test);
-        }
-    }
-
-    #[inline(always)]
-    fn triangle_span<T: DepthTest>(&self, face: u32, span: TriangleSpan<'_, Format, [i32; 3], T::Depth>, test: T) {
-        if Format::PACKED {
-            packed_span(span, test);
-        } else {
-            fragments(self, face, span.fragments(), test);
-        }
-    }
-}
+impl<const D: usize, const P: usize> VertexColors for Shaded<PerVertex, D, P> {}
 
 /// Normals as they are interpolated: the upper 14 bits and the sign of 63/64 of their length, so that no rounding makes
 /// them longer than 1. 2.29.
@@ -235,6 +202,8 @@ impl<const D: usize> VertexShader for Shaded<PerFragment, D, 0> {
 }
 
 impl<Format: PixelFormat, const D: usize> Shader<Format> for Shaded<PerFragment, D, 0> {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<Format::Raw> {
         let [x, y, z] = *fragment.varyings;
@@ -280,6 +249,8 @@ impl<const D: usize, const P: usize> VertexShader for Shaded<PerFragmentNear, D,
 }
 
 impl<Format: PixelFormat, const D: usize, const P: usize> Shader<Format> for Shaded<PerFragmentNear, D, P> {
+    type Setup = ();
+
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 6]>) -> Option<Format::Raw> {
         let [x, y, z, px, py, pz] = *fragment.varyings;

@@ -2,7 +2,7 @@
 
 use crate::color::PixelFormat;
 use crate::light::{Light, Lit};
-use crate::span::{DepthTest, Fragment, Fragments, STEP, Shader, fragments, texture_span};
+use crate::span::{DepthTest, Fragment, STEP, Shader, SpanOf, TriangleSetup, draw_fragments, texture_span};
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
 use crate::vertex::{Perspective, PerspectiveClass, PerspectiveSetup, VertexRef, VertexShader};
 use core::marker::PhantomData;
@@ -74,6 +74,15 @@ impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
         self.levels.get(level as usize)
     }
 
+    /// Chooses the level for a triangle; lines and points take the first one.
+    #[inline]
+    fn level_of<const N: usize>(&self, triangle: &TriangleSetup<'_, Perspective<2, N>>) -> u32 {
+        if self.levels.len() < 2 || triangle.area == 0 {
+            return 0;
+        }
+        self.level_for(triangle.corners.map(Perspective::corrected), triangle.area)
+    }
+
     /// The level whose texels have the size of pixels, or are up to half as large: from the areas of a triangle in texels
     /// and in pixels, by their numbers of bits.
     ///
@@ -104,18 +113,17 @@ impl<T, W, F> VertexShader for Textured<'_, T, W, F> {
 impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, T, W, F> {
     const STEP: usize = STEP;
 
+    /// Number of the level.
+    type Setup = u32;
+
     #[inline]
-    fn level(&self, corners: &[Perspective<2, 3>; 3], area: u64) -> u32 {
-        if self.levels.len() < 2 {
-            return 0;
-        }
-        let [a, b, c] = corners;
-        self.level_for([a.corrected(), b.corrected(), c.corrected()], area)
+    fn setup(&self, triangle: &TriangleSetup<'_, Perspective<2, 3>>) -> u32 {
+        self.level_of(triangle)
     }
 
     #[inline(always)]
-    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<P::Raw> {
-        let (texture, uv) = (self.level(fragment.level)?, fragment.varyings.corrected());
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>, u32>) -> Option<P::Raw> {
+        let (texture, uv) = (self.level(*fragment.setup)?, fragment.varyings.corrected());
         if P::ALPHA || P::DITHER.is_some() {
             return visible::<P>(F::rgba::<T, W>(texture, uv), fragment.position);
         }
@@ -123,15 +131,15 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
     }
 
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Perspective<2, 3>, D::Depth>, test: D) {
-        match self.level(span.steps.level) {
-            _ if P::ALPHA || P::DITHER.is_some() => fragments(self, face, span, test),
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        match self.level(span.primitive.setup) {
+            _ if P::ALPHA || P::DITHER.is_some() => draw_fragments(self, span, test),
             Some(texture)
-                if W::REPEATS && F::NEAREST && span.steps.perspective.class() != PerspectiveClass::Planes64 =>
+                if W::REPEATS && F::NEAREST && span.primitive.perspective.class() != PerspectiveClass::Planes64 =>
             {
                 texture_span(texture, span, test);
             }
-            _ => fragments(self, face, span, test),
+            _ => draw_fragments(self, span, test),
         }
     }
 }
@@ -194,18 +202,17 @@ fn under(channel: u8, light: i32) -> u8 {
 impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for LitTexture<'_, T, W, F> {
     const STEP: usize = STEP;
 
+    /// Number of the level.
+    type Setup = u32;
+
     #[inline]
-    fn level(&self, corners: &[LitVaryings; 3], area: u64) -> u32 {
-        if self.texture.levels.len() < 2 {
-            return 0;
-        }
-        let [a, b, c] = corners;
-        self.texture.level_for([a.corrected(), b.corrected(), c.corrected()], area)
+    fn setup(&self, triangle: &TriangleSetup<'_, LitVaryings>) -> u32 {
+        self.texture.level_of(triangle)
     }
 
     #[inline(always)]
-    fn fragment(&self, fragment: &Fragment<'_, LitVaryings>) -> Option<P::Raw> {
-        let [r, g, b, a] = F::rgba::<T, W>(self.texture.level(fragment.level)?, fragment.varyings.corrected());
+    fn fragment(&self, fragment: &Fragment<'_, LitVaryings, u32>) -> Option<P::Raw> {
+        let [r, g, b, a] = F::rgba::<T, W>(self.texture.level(*fragment.setup)?, fragment.varyings.corrected());
         let [lr, lg, lb] = fragment.varyings.linear() else { return None };
         visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
     }

@@ -50,47 +50,30 @@ impl Default for DepthState {
     }
 }
 
-/// Pixels that a span has at most: the widest screen.
-pub const MAX_SPAN: usize = crate::vertex::Viewport::MAX_SIZE as usize;
+/// Stored depths as the pixel loops see them. Depth tests implement it, and nothing else can.
+pub trait DepthStorage<Z>: Copy {
+    /// Returns the stored depths; or as many of `nothing`, where depth plays no part, so that the same loops do without a depth
+    /// buffer.
+    fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [Z];
+
+    /// Returns the test as a value, and depths as numbers, where depth plays a part: for long loops, of which three copies cost
+    /// more than the test does.
+    fn as_dyn(self, stored: &mut [Z]) -> Option<(DepthDyn, &mut [u16])>;
+}
 
 /// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
-pub trait DepthTest: Copy {
+pub trait DepthTest: DepthStorage<<Self as DepthTest>::Depth> {
     /// Whether depth plays a part at all; otherwise neither `passes` nor `write` has to be called.
     const ENABLED: bool;
 
-    /// What there is of a pixel's depth: `u16`, or nothing where depth plays no part, so that the same loops do without a
-    /// depth buffer.
+    /// Stored depth of a pixel: `u16`, or `()` where depth plays no part.
     type Depth: Copy;
-
-    /// What is stored of as many pixels from `start` on, or of fewer at the end of `depths`. `nothing` is for tests that
-    /// need none.
-    fn stored<'d>(
-        depths: &'d mut [u16],
-        nothing: &'d mut [(); MAX_SPAN],
-        start: usize,
-        length: usize,
-    ) -> &'d mut [Self::Depth];
-
-    /// What is stored of all pixels. `nothing` is for tests that need none.
-    fn whole<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [Self::Depth];
 
     /// Compares `z` with the stored depth.
     fn passes(self, z: u16, stored: Self::Depth) -> bool;
 
     /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
     fn write(self, z: u16, stored: &mut Self::Depth);
-
-    /// The same test as a value, and depths as numbers, where depth plays a part: for long loops, of which three copies cost
-    /// more than the test does.
-    fn any(self, stored: &mut [Self::Depth]) -> Option<(DepthDyn, &mut [u16])>;
-}
-
-/// Depths from `start` on, `length` of them or as many as there are.
-#[inline(always)]
-fn part(depths: &mut [u16], start: usize, length: usize) -> &mut [u16] {
-    // In two steps, each a comparison; a range is checked at both ends at once, which small cores pay twice for.
-    let depths = depths.get_mut(start..).unwrap_or_default();
-    depths.get_mut(..length).unwrap_or_default()
 }
 
 /// [`DepthState::LESS`].
@@ -103,16 +86,6 @@ impl DepthTest for DepthLess {
     type Depth = u16;
 
     #[inline(always)]
-    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
-        part(depths, start, length)
-    }
-
-    #[inline(always)]
-    fn whole<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
-        depths
-    }
-
-    #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
         z < stored
     }
@@ -121,9 +94,16 @@ impl DepthTest for DepthLess {
     fn write(self, z: u16, stored: &mut u16) {
         *stored = z;
     }
+}
+
+impl DepthStorage<u16> for DepthLess {
+    #[inline(always)]
+    fn slots<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+        depths
+    }
 
     #[inline(always)]
-    fn any(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
+    fn as_dyn(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
         Some((DepthDyn::new(DepthState::LESS), stored))
     }
 }
@@ -138,25 +118,22 @@ impl DepthTest for DepthOff {
     type Depth = ();
 
     #[inline(always)]
-    fn stored<'d>(_: &'d mut [u16], nothing: &'d mut [(); MAX_SPAN], _: usize, length: usize) -> &'d mut [()] {
-        nothing.get_mut(..length).unwrap_or_default()
-    }
-
-    #[inline(always)]
-    fn whole<'d>(_: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [()] {
-        nothing
-    }
-
-    #[inline(always)]
     fn passes(self, _: u16, (): ()) -> bool {
         true
     }
 
     #[inline(always)]
     fn write(self, _: u16, (): &mut ()) {}
+}
+
+impl DepthStorage<()> for DepthOff {
+    #[inline(always)]
+    fn slots<'d>(_: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [()] {
+        nothing
+    }
 
     #[inline(always)]
-    fn any(self, _: &mut [()]) -> Option<(DepthDyn, &mut [u16])> {
+    fn as_dyn(self, _: &mut [()]) -> Option<(DepthDyn, &mut [u16])> {
         None
     }
 }
@@ -195,16 +172,6 @@ impl DepthTest for DepthDyn {
     type Depth = u16;
 
     #[inline(always)]
-    fn stored<'d>(depths: &'d mut [u16], _: &'d mut [(); MAX_SPAN], start: usize, length: usize) -> &'d mut [u16] {
-        part(depths, start, length)
-    }
-
-    #[inline(always)]
-    fn whole<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
-        depths
-    }
-
-    #[inline(always)]
     fn passes(self, z: u16, stored: u16) -> bool {
         let difference = i32::from(z) - i32::from(stored);
         (difference.wrapping_sub(self.lowest) as u32) < self.count
@@ -216,9 +183,16 @@ impl DepthTest for DepthDyn {
             *stored = z;
         }
     }
+}
+
+impl DepthStorage<u16> for DepthDyn {
+    #[inline(always)]
+    fn slots<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+        depths
+    }
 
     #[inline(always)]
-    fn any(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
+    fn as_dyn(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
         Some((self, stored))
     }
 }
@@ -356,7 +330,7 @@ mod tests {
                 let test = DepthDyn::new(DepthState { compare, write: false });
                 assert_eq!(test.passes(z, stored), expected, "{z} {compare:?} {stored}");
             }
-            let less = DepthLess.any(&mut []).map(|(test, _)| test.passes(z, stored));
+            let less = DepthLess.as_dyn(&mut []).map(|(test, _)| test.passes(z, stored));
             assert_eq!(less, Some(DepthLess.passes(z, stored)));
         }
     }

@@ -1,5 +1,6 @@
 //! Span → pixels: the fragment stage's seam, the depth test, and the loops over pixels.
 
+mod color_setup;
 mod depth;
 mod depth_bias;
 mod luma;
@@ -10,13 +11,14 @@ mod solid;
 mod span;
 mod textured;
 
-pub use depth::{Compare, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, MAX_SPAN};
+pub use color_setup::ColorSetup;
+pub use depth::{Compare, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest};
 pub use depth_bias::DepthBias;
-pub(crate) use luma::{luma_span, weighted};
-pub(crate) use packed::{packed_fragments, packed_span, prepare};
+pub(crate) use luma::luma_span;
+pub(crate) use packed::packed_span;
 pub use perspective::Corrected;
-pub use shader::Shader;
-pub(crate) use shader::fragments;
+pub(crate) use shader::draw_fragments;
+pub use shader::{Shader, SpanOf};
 pub(crate) use solid::flat_span;
-pub use span::{Fragment, Fragments, Steps, TriangleSpan};
+pub use span::{Fragment, Primitive, Span, TriangleSetup};
 pub(crate) use textured::{STEP, texture_span};

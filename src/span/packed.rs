@@ -10,49 +10,19 @@
 //! Most spans of a mesh are short, so what is once a span counts: of a triangle's span nothing is passed on but where it is, and
 //! channels are worked out where registers are free.
 
+use super::color_setup::{ColorSetup, GROUP};
 use super::depth::{DepthOff, DepthTest, few_left, passing};
-use super::span::{Fragments, Steps, TriangleSpan};
-use crate::color::{PixelFormat, pack, spread, spread_step, word};
+use super::span::{Primitive, Span};
+use crate::color::{PixelFormat, spread, spread_step, word};
 use crate::math::SMALL_CORE;
+use crate::vertex::Varyings;
 use core::hint::black_box;
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// Pixels that a word is stepped over until its rounding is made up for, and until it is made anew.
-const GROUP: usize = 4;
 const RUN: usize = super::depth::RUN;
 
-/// Once a triangle: moves the channels so that cutting them rounds, and so that the errors of stepping cancel in the middle
-/// of a run. Yields the step of a word, and what leads from the end of a group to the first pixel of the next: within eight
-/// pixels, and in the middle of a run.
-#[inline(never)]
-pub(crate) fn prepare<P: PixelFormat>(rgb: &mut [i32; 3], d_dx: &[i32; 3]) -> [u32; 3] {
-    // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
-    let ([r, g, b], [dr, dg, db]) = (rgb, d_dx);
-    let [r_one, r_four, r_eight] = settle::<P>(0, r, *dr);
-    let [b_one, b_four, b_eight] = settle::<P>(2, b, *db);
-    let [g_one, g_four, g_eight] = settle::<P>(1, g, *dg);
-    let (step, four, eight) =
-        (pack(r_one, g_one, b_one), pack(r_four, g_four, b_four), pack(r_eight, g_eight, b_eight));
-    let correction = four.wrapping_sub(step.wrapping_mul(GROUP as u32));
-    [step, correction, eight.wrapping_sub(four << 1).wrapping_add(correction)]
-}
-
-/// [`prepare`] for a channel: moves it, and yields the changes of one pixel, of four and of eight, rounded to units of the word.
-#[inline(always)]
-fn settle<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i32; 3] {
-    let step = spread_step(P::DITHER, channel, step);
-    let (half, bits) = if channel == 1 { (1 << 13, 14) } else { (1 << 12, 13) };
-    let units = |change: i32| change.wrapping_add(half) >> bits;
-    let one = units(step);
-    let four = units(step.wrapping_mul(GROUP as i32));
-    let eight = units(step.wrapping_mul(2 * GROUP as i32));
-    let kept = (one + one + one + four + eight) << bits;
-    let lost = step.wrapping_mul(15).wrapping_sub(kept);
-    *value = value.wrapping_add(half + (lost >> 1));
-    // Channel by channel: all at once would need more registers than there are.
-    compiler_fence(Ordering::SeqCst);
-    [one, four, eight]
-}
+/// A primitive whose varyings are colours.
+type Colored = Primitive<[i32; 3], ColorSetup>;
 
 /// What a word of channels leaves out, 9 or 10 bits of each, with a bit above for what they carry into the word.
 ///
@@ -90,57 +60,49 @@ const LONG: usize = 512;
 /// off by at most 1/2, and by 1/16 from the records (1/8 for red, whose word is finer): in all, within 1 of 255 before the
 /// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(always)]
-pub(crate) fn packed_span<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
+pub(crate) fn packed_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
     drawn::<P, D, SMALL_CORE>(span, test);
-}
-
-/// [`packed_span`] of anything.
-#[inline(always)]
-pub(crate) fn packed_fragments<P: PixelFormat, D: DepthTest>(span: Fragments<'_, P, [i32; 3], D::Depth>, test: D) {
-    let Fragments { color, depth, z, varyings, steps, position } = span;
-    if let ([color], [depth]) = (&mut *color, &mut *depth) {
-        // A line's pixel.
-        let pen = Pen { z, dz_dx: 0, word: word(spread(P::DITHER, varyings)), step: 0, mask: P::packed_mask() };
-        return pen.dot::<P, D>(test, position, color, depth);
-    }
-    let ([mut r, mut g, mut b], [dr, dg, db], x) = (varyings, steps.d_dx, position.0);
-    r = r.wrapping_sub(dr.wrapping_mul(x));
-    g = g.wrapping_sub(dg.wrapping_mul(x));
-    b = b.wrapping_sub(db.wrapping_mul(x));
-    let steps = &Steps { corner: [r, g, b], d_dy: [0; 3], level: P::packed_mask(), ..*steps };
-    packed_span::<P, D>(TriangleSpan { color, depth, z, steps, position }, test);
 }
 
 /// Draws a span; less than a run of it in one loop, or in two: first depths and then colours, each with all of its values, and its
 /// parameters, in registers, even if they are few.
 #[inline(always)]
-fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
-    let TriangleSpan { color, depth, z, steps, position } = span;
+fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
+    let Span { color, depth, z, primitive, position } = span;
     let (x, y) = position;
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
         // A tip of a triangle.
-        let word = word_at::<P>(steps, x, y);
+        let word = word_at::<P>(primitive, x, y);
         // Small cores would keep the triangle's on the stack.
-        let mask = if SMALL_CORE { P::packed_mask() } else { steps.level };
+        let mask = if SMALL_CORE { P::packed_mask() } else { primitive.setup.mask };
         return Pen { z, dz_dx: 0, word, step: 0, mask }.dot::<P, D>(test, position, color, depth);
     }
     // Of what a short span does not need, nothing is even passed on.
     if color.len() >= RUN {
-        runs::<P, D, IN_TWO>(test, depth, z, steps, color, x, y);
+        runs::<P, D, IN_TWO>(test, depth, z, primitive, color, x, y);
     } else if !IN_TWO {
-        few_at::<P, D>(test, depth, z, steps, color, x, y);
+        few_at::<P, D>(test, depth, z, primitive, color, x, y);
     } else {
-        match few_left(test, depth, z, steps.dz_dx) {
-            0 => few_colors_at::<P>(color, steps, x, y),
-            left => some_at::<P, D>(test, depth, z, steps, color, x, y, left),
+        match few_left(test, depth, z, primitive.dz_dx) {
+            0 => few_colors_at::<P>(color, primitive, x, y),
+            left => some_at::<P, D>(test, depth, z, primitive, color, x, y, left),
         }
     }
 }
 
 /// The word of a pixel. Out of line: a loop over rows would keep all that it takes on the stack.
 #[inline(never)]
-fn word_at<P: PixelFormat>(steps: &Steps<[i32; 3]>, x: i32, y: i32) -> u32 {
-    word(spread(P::DITHER, steps.at((x, y))))
+fn word_at<P: PixelFormat>(primitive: &Colored, x: i32, y: i32) -> u32 {
+    word(channels_at::<P>(primitive, x, y))
+}
+
+/// The moved channels of a pixel, with room for dithering.
+#[inline(always)]
+fn channels_at<P: PixelFormat>(primitive: &Colored, x: i32, y: i32) -> [i32; 3] {
+    let mut channels = primitive.setup.at_origin;
+    channels.advance(&primitive.d_dy, y);
+    channels.advance(&primitive.d_dx, x);
+    spread(P::DITHER, channels)
 }
 
 /// Draws a span of at least a run.
@@ -149,20 +111,20 @@ fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     test: D,
     depth: &mut [D::Depth],
     z: u32,
-    steps: &Steps<[i32; 3]>,
+    primitive: &Colored,
     mut color: &mut [P::Raw],
     x: i32,
     y: i32,
 ) {
     if color.len() > LONG {
-        return long_span::<P, D, IN_TWO>(test, depth, z, steps, color, x, y);
+        return long_span::<P, D, IN_TWO>(test, depth, z, primitive, color, x, y);
     }
-    let first = spread(P::DITHER, steps.at((x, y)));
+    let first = channels_at::<P>(primitive, x, y);
     let addends = P::dither((x, y));
     let Some(mut depth) = depth.get_mut(..color.len()) else { return };
-    let [step, correction, middle] = steps.words;
-    let mut pen = Pen { z, dz_dx: steps.dz_dx, word: word(first), step, mask: steps.level };
-    let [dr, dg, db] = steps.d_dx;
+    let ColorSetup { step, correction, middle, .. } = primitive.setup;
+    let mut pen = Pen { z, dz_dx: primitive.dz_dx, word: word(first), step, mask: primitive.setup.mask };
+    let [dr, dg, db] = primitive.d_dx;
     let of_run = |channel, step| {
         spread_step(P::DITHER, channel, step).wrapping_mul(RUN as i32).wrapping_add(LOW_HALVES[channel])
     };
@@ -178,7 +140,7 @@ fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
         if passed == RUN {
             pen.colors::<P>([correction, middle], addends, colors);
         } else {
-            some::<P, D>(test, depths, pen.z, steps, colors, pen.word, addends, RUN - passed);
+            some::<P, D>(test, depths, pen.z, primitive, colors, pen.word, addends, RUN - passed);
             // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
             pen.dz_dx = black_box(pen.dz_dx);
         }
@@ -192,11 +154,11 @@ fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
         return;
     }
     if !IN_TWO {
-        return few::<P, D>(test, depth, pen.z, steps, color, pen.word, addends);
+        return few::<P, D>(test, depth, pen.z, primitive, color, pen.word, addends);
     }
     match few_left(test, depth, pen.z, pen.dz_dx) {
-        0 => few_colors::<P>(color, pen.word, steps, addends),
-        left => some::<P, D>(test, depth, pen.z, steps, color, pen.word, addends, left),
+        0 => few_colors::<P>(color, pen.word, primitive, addends),
+        left => some::<P, D>(test, depth, pen.z, primitive, color, pen.word, addends, left),
     }
 }
 
@@ -206,16 +168,16 @@ fn few_at<P: PixelFormat, D: DepthTest>(
     test: D,
     depth: &mut [D::Depth],
     z: u32,
-    steps: &Steps<[i32; 3]>,
+    primitive: &Colored,
     color: &mut [P::Raw],
     x: i32,
     y: i32,
 ) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
-    let word = word(spread(P::DITHER, steps.at((x, y))));
+    let word = word(channels_at::<P>(primitive, x, y));
     // What comes now is loaded now.
     compiler_fence(Ordering::SeqCst);
-    Pen::new(z, word, steps).few::<P, D>(test, steps, P::dither((x, y)), color, depth);
+    Pen::new(z, word, primitive).few::<P, D>(test, primitive, P::dither((x, y)), color, depth);
 }
 
 /// The same, from a word on.
@@ -224,30 +186,30 @@ fn few<P: PixelFormat, D: DepthTest>(
     test: D,
     depth: &mut [D::Depth],
     z: u32,
-    steps: &Steps<[i32; 3]>,
+    primitive: &Colored,
     color: &mut [P::Raw],
     word: u32,
     addends: &[u32; 8],
 ) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
-    Pen::new(z, word, steps).few::<P, D>(test, steps, addends, color, depth);
+    Pen::new(z, word, primitive).few::<P, D>(test, primitive, addends, color, depth);
 }
 
 /// Colours less than a run, from a pixel on.
 #[inline(never)]
-fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], steps: &Steps<[i32; 3]>, x: i32, y: i32) {
+fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], primitive: &Colored, x: i32, y: i32) {
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
-    let word = word(spread(P::DITHER, steps.at((x, y))));
-    Pen::new(0, word, steps).few::<P, DepthOff>(DepthOff, steps, P::dither((x, y)), color, nothing);
+    let word = word(channels_at::<P>(primitive, x, y));
+    Pen::new(0, word, primitive).few::<P, DepthOff>(DepthOff, primitive, P::dither((x, y)), color, nothing);
 }
 
 /// The same, from a word on.
 #[inline(never)]
-fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, steps: &Steps<[i32; 3]>, addends: &[u32; 8]) {
+fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, primitive: &Colored, addends: &[u32; 8]) {
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
-    Pen::new(0, word, steps).few::<P, DepthOff>(DepthOff, steps, addends, color, nothing);
+    Pen::new(0, word, primitive).few::<P, DepthOff>(DepthOff, primitive, addends, color, nothing);
 }
 
 /// Draws less than a run, from a pixel on, of which the depths have been tested but for the last ones.
@@ -258,13 +220,13 @@ fn some_at<P: PixelFormat, D: DepthTest>(
     test: D,
     depths: &mut [D::Depth],
     z: u32,
-    steps: &Steps<[i32; 3]>,
+    primitive: &Colored,
     colors: &mut [P::Raw],
     x: i32,
     y: i32,
     left: usize,
 ) {
-    some_here::<P, D>(test, depths, z, steps, colors, || word_at::<P>(steps, x, y), P::dither((x, y)), left);
+    some_here::<P, D>(test, depths, z, primitive, colors, || word_at::<P>(primitive, x, y), P::dither((x, y)), left);
 }
 
 /// The same for up to a run, from a word on.
@@ -275,13 +237,13 @@ fn some<P: PixelFormat, D: DepthTest>(
     test: D,
     depths: &mut [D::Depth],
     z: u32,
-    steps: &Steps<[i32; 3]>,
+    primitive: &Colored,
     colors: &mut [P::Raw],
     word: u32,
     addends: &[u32; 8],
     left: usize,
 ) {
-    some_here::<P, D>(test, depths, z, steps, colors, || word, addends, left);
+    some_here::<P, D>(test, depths, z, primitive, colors, || word, addends, left);
 }
 
 #[expect(clippy::too_many_arguments, reason = "as above")]
@@ -290,18 +252,18 @@ fn some_here<P: PixelFormat, D: DepthTest>(
     test: D,
     depths: &mut [D::Depth],
     z: u32,
-    steps: &Steps<[i32; 3]>,
+    primitive: &Colored,
     colors: &mut [P::Raw],
     word: impl FnOnce() -> u32,
     addends: &[u32; 8],
     left: usize,
 ) {
-    let (dz_dx, passed) = (steps.dz_dx, depths.len().wrapping_sub(left));
+    let (dz_dx, passed) = (primitive.dz_dx, depths.len().wrapping_sub(left));
     let mut z = z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32));
     if passed == 0 && all_hidden(test, depths, z, dz_dx) {
         return;
     }
-    let (first, mask, [step, correction, middle]) = (word(), steps.level, steps.words);
+    let (first, ColorSetup { step, correction, middle, mask, .. }) = (word(), primitive.setup);
     for (k, (color, depth)) in colors.iter_mut().zip(depths).enumerate() {
         if k >= passed {
             let near = (z >> 16) as u16;
@@ -344,14 +306,14 @@ fn long_span<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     test: D,
     depth: &mut [D::Depth],
     mut z: u32,
-    steps: &Steps<[i32; 3]>,
+    primitive: &Colored,
     color: &mut [P::Raw],
     mut x: i32,
     y: i32,
 ) {
     for (color, depth) in color.chunks_mut(LONG).zip(depth.chunks_mut(LONG)) {
-        drawn::<P, D, IN_TWO>(TriangleSpan { color, depth, z, steps, position: (x, y) }, test);
-        z = z.wrapping_add_signed(steps.dz_dx.wrapping_mul(LONG as i32));
+        drawn::<P, D, IN_TWO>(Span { color, depth, z, primitive, position: (x, y) }, test);
+        z = z.wrapping_add_signed(primitive.dz_dx.wrapping_mul(LONG as i32));
         x = x.wrapping_add(LONG as i32);
     }
 }
@@ -373,9 +335,8 @@ struct Pen {
 
 impl Pen {
     #[inline(always)]
-    fn new(z: u32, word: u32, steps: &Steps<[i32; 3]>) -> Self {
-        let [step, ..] = steps.words;
-        Self { z, dz_dx: steps.dz_dx, word, step, mask: steps.level }
+    fn new(z: u32, word: u32, primitive: &Colored) -> Self {
+        Self { z, dz_dx: primitive.dz_dx, word, step: primitive.setup.step, mask: primitive.setup.mask }
     }
 
     /// Draws a single pixel.
@@ -428,7 +389,7 @@ impl Pen {
     fn few<P: PixelFormat, D: DepthTest>(
         &mut self,
         test: D,
-        steps: &Steps<[i32; 3]>,
+        primitive: &Colored,
         addends: &[u32; 8],
         mut color: &mut [P::Raw],
         mut depth: &mut [D::Depth],
@@ -446,16 +407,16 @@ impl Pen {
         let mut first = 0;
         if color.len() >= 2 * GROUP {
             draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
-            self.word = self.word.wrapping_add(steps.words[1]);
+            self.word = self.word.wrapping_add(primitive.setup.correction);
             draw!(first 4 a az 5 b bz 6 c cz 7 d dz);
             if color.is_empty() {
                 return;
             }
-            self.word = self.word.wrapping_add(steps.words[2]);
+            self.word = self.word.wrapping_add(primitive.setup.middle);
         }
         if color.len() >= GROUP {
             draw!(first 0 a az 1 b bz 2 c cz 3 d dz);
-            self.word = self.word.wrapping_add(steps.words[1]);
+            self.word = self.word.wrapping_add(primitive.setup.correction);
             first = GROUP;
         }
         if color.len() >= 2 {
@@ -475,19 +436,21 @@ mod tests {
     use super::*;
     use crate::color::{Dithered, Rgb332, squeeze};
     use crate::math::random::Rng;
+    use crate::span::TriangleSetup;
     use crate::vertex::Side;
     use core::fmt::Debug;
     use embedded_graphics_core::pixelcolor::Rgb565;
 
     /// [`packed_span`], pixel by pixel.
-    fn plain<P: PixelFormat, D: DepthTest>(span: TriangleSpan<'_, P, [i32; 3], D::Depth>, test: D) {
-        let TriangleSpan { color, depth, mut z, steps, position: (x, y) } = span;
-        let ([step, correction, middle], addends) = (steps.words, P::dither((x, y)));
-        let run = core::array::from_fn(|k| spread_step(P::DITHER, k, steps.d_dx[k]) * RUN as i32 + LOW_HALVES[k]);
+    fn plain<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
+        let Span { color, depth, mut z, primitive, position: (x, y) } = span;
+        let ColorSetup { step, correction, middle, .. } = primitive.setup;
+        let addends = P::dither((x, y));
+        let run = core::array::from_fn(|k| spread_step(P::DITHER, k, primitive.d_dx[k]) * RUN as i32 + LOW_HALVES[k]);
         let (mut of_run, mut lower, mut next) = (0, 0, 0);
         for (k, (color, depth)) in color.iter_mut().zip(depth).enumerate() {
             if k % LONG == 0 {
-                let first = spread(P::DITHER, steps.at((x + k as i32, y)));
+                let first = channels_at::<P>(primitive, x + k as i32, y);
                 (of_run, lower) = (word(first), low(first));
             } else if k % RUN == 0 {
                 lower += low(run);
@@ -507,8 +470,25 @@ mod tests {
                 *color = P::from_packed(next.wrapping_add(addends[k % 8]), P::packed_mask());
             }
             next = next.wrapping_add(step);
-            z = z.wrapping_add_signed(steps.dz_dx);
+            z = z.wrapping_add_signed(primitive.dz_dx);
         }
+    }
+
+    /// A triangle whose colours are `first` at a pixel.
+    fn primitive<P: PixelFormat>(
+        first: [i32; 3],
+        (x, y): (i32, i32),
+        d_dx: [i32; 3],
+        d_dy: [i32; 3],
+        dz_dx: i32,
+    ) -> Colored {
+        let at_origin = core::array::from_fn(|k| {
+            first[k].wrapping_sub(d_dx[k].wrapping_mul(x)).wrapping_sub(d_dy[k].wrapping_mul(y))
+        });
+        let (corners, side) = ([&at_origin; 3], Side::Front);
+        let triangle = TriangleSetup { corners, area: 1, flat: 0, side, at_origin: &at_origin, d_dx: &d_dx };
+        let setup = ColorSetup::new::<P>(&triangle);
+        Primitive { dz_dx, d_dx, d_dy, ..Primitive::constant(at_origin, 0, side, setup) }
     }
 
     /// Spans of all lengths over depths of which all, some or none pass, in a format and by a test.
@@ -523,15 +503,11 @@ mod tests {
             let position = (random(300) as i32, random(300) as i32);
             let ends = [0; 3].map(|_: i32| [random(256), random(256)].map(|c| squeeze((c << 8) as i32)));
             let d_dx = ends.map(|[a, b]| (b - a) / (length.max(2) as i32 - 1));
-            let mut varyings = ends.map(|[a, _]| a);
-            let words = prepare::<P>(&mut varyings, &d_dx);
+            let first = ends.map(|[a, _]| a);
             let d_dy = [(); 3].map(|()| random(1 << 20) as i32);
-            let mut steps = Steps { d_dy, ..Steps::linear(random(1 << 12) as i32 - 2048, d_dx, words, Side::Front) };
-            let at = steps.at(position);
-            steps.corner = core::array::from_fn(|k| varyings[k].wrapping_sub(at[k]));
-            steps.level = P::packed_mask();
-            let steps = &steps;
-            assert_eq!(steps.at(position), varyings);
+            let dz_dx = random(1 << 12) as i32 - 2048;
+            let primitive = &primitive::<P>(first, position, d_dx, d_dy, dz_dx);
+            assert_eq!(primitive.at(position), first);
             let (z, far) = (20_000 << 16, random(3));
             let depth: std::vec::Vec<D::Depth> = (0..length)
                 .map(|k| stored(if far == 0 || far == 1 && random(8) > 0 { 60_000 - k as u16 % 9 } else { 100 }))
@@ -540,16 +516,13 @@ mod tests {
             macro_rules! drawn_by {
                 ($how:expr) => {{
                     let (mut color, mut depth) = (color.clone(), depth.clone());
-                    $how(TriangleSpan { color: &mut color, depth: &mut depth, z, steps, position }, test);
+                    $how(Span { color: &mut color, depth: &mut depth, z, primitive, position }, test);
                     (color, depth)
                 }};
             }
             let expected = drawn_by!(plain::<P, D>);
             assert!(drawn_by!(drawn::<P, D, false>) == expected, "{case}: {length} pixels");
             assert!(drawn_by!(drawn::<P, D, true>) == expected, "{case}: {length} pixels, in two loops");
-            let by_fragments =
-                drawn_by!(|span: TriangleSpan<'_, P, _, _>, test: D| packed_fragments::<P, D>(span.fragments(), test));
-            assert!(by_fragments == expected, "{case}: {length} pixels, their channels given");
         }
     }
 
@@ -573,16 +546,13 @@ mod tests {
             let ends = [0; 3].map(|_: i32| [random(256), random(256)].map(|c| squeeze((c << 8) as i32)));
             let d_dx = ends.map(|[a, b]| (b - a) / (length as i32 - 1));
             let exact = |k: usize, x: usize| ends[k][0] + d_dx[k] * x as i32;
-            let mut varyings = ends.map(|[a, _]| a);
-            let words = prepare::<Rgb565>(&mut varyings, &d_dx);
-            let steps = &Steps::linear(1 << 10, d_dx, words, Side::Front);
+            let primitive = &primitive::<Rgb565>(ends.map(|[a, _]| a), (0, 0), d_dx, [0; 3], 1 << 10);
             let hidden = random(40) as usize + 1;
             let mut depth: std::vec::Vec<u16> =
                 (0..length).map(|x| if x / hidden % 3 == 2 { 100 } else { 50_000 }).collect();
             let mut color = std::vec![0x1234; length];
-            let span =
-                Fragments { color: &mut color, depth: &mut depth, z: 200 << 16, varyings, steps, position: (0, 0) };
-            packed_fragments::<Rgb565, _>(span, DepthLess);
+            let span = Span { color: &mut color, depth: &mut depth, z: 200 << 16, primitive, position: (0, 0) };
+            packed_span::<Rgb565, _>(span, DepthLess);
             for (x, (&pixel, &depth)) in color.iter().zip(&depth).enumerate() {
                 if x / hidden % 3 == 2 {
                     assert_eq!((pixel, depth), (0x1234, 100), "{case}: {x}");

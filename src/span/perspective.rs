@@ -8,14 +8,15 @@
 //! Both ends of a span are pixels of the triangle, so nothing is ever divided by what q = 1 / w is outside of it. At the ends
 //! varyings are exact, and so they are on both sides of an edge that two triangles share: no seam, whatever the step.
 
-use super::span::Steps;
+use super::span::Primitive;
 use crate::math::{Divisor, mul_high_signed};
 use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Varyings};
 
 /// Perspective-correct varyings at a pixel, and a way to the next ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Corrected<'a, V: Varyings> {
-    steps: &'a Steps<V>,
+    perspective: &'a V::PerspectiveSetup,
+    d_dx: &'a V,
     /// d q, linear ones, q.
     at: V,
     /// The pixel: where the planes are taken for triangles that take 64 bits.
@@ -23,33 +24,33 @@ pub struct Corrected<'a, V: Varyings> {
 }
 
 impl<'a, V: Varyings> Corrected<'a, V> {
-    /// At the first pixel of a span.
+    /// Starts at a pixel of a primitive.
     #[inline]
-    pub fn new(varyings: V, steps: &'a Steps<V>, position: (i32, i32)) -> Self {
-        Self { steps, at: varyings, position }
+    pub fn new<T>(primitive: &'a Primitive<V, T>, position: (i32, i32)) -> Self {
+        Self { perspective: &primitive.perspective, d_dx: &primitive.d_dx, at: primitive.at(position), position }
     }
 
-    /// Goes on by as many pixels.
+    /// Goes on by `pixels`.
     #[inline]
     pub fn advance(&mut self, pixels: i32) {
-        self.at.advance(&self.steps.d_dx, pixels);
+        self.at.advance(self.d_dx, pixels);
         self.position.0 = self.position.0.wrapping_add(pixels);
     }
 
-    /// The varyings here.
+    /// Computes the varyings at the pixel.
     #[inline]
     pub fn varyings(&self) -> V {
         let mut varyings = self.at;
-        correct_at(self.steps, self.position, &mut varyings);
+        correct_at::<V>(self.perspective, self.position, &mut varyings);
         varyings
     }
 }
 
 /// Puts the varyings at a pixel in the place of what is linear.
 #[inline(never)]
-pub(super) fn correct_at<V: Varyings>(steps: &Steps<V>, position: (i32, i32), varyings: &mut V) {
-    let (planes, values) = (steps.perspective.planes(), varyings.as_mut());
-    match steps.perspective.class() {
+pub(super) fn correct_at<V: Varyings>(perspective: &V::PerspectiveSetup, position: (i32, i32), varyings: &mut V) {
+    let (planes, values) = (perspective.planes(), varyings.as_mut());
+    match perspective.class() {
         PerspectiveClass::Affine => correct(values, planes, |h, _| h),
         PerspectiveClass::Planes32 => {
             let [.., q] = *values else { return };
@@ -57,7 +58,7 @@ pub(super) fn correct_at<V: Varyings>(steps: &Steps<V>, position: (i32, i32), va
             correct(values, planes, |dq, _| q.divide(dq));
         }
         PerspectiveClass::Planes64 => {
-            let q = steps.perspective.inverse_w64().at(position) as u64;
+            let q = perspective.inverse_w64().at(position) as u64;
             let shift = q.leading_zeros() & 63;
             let q = Divisor::new(((q << shift) >> 32) as u32);
             correct(values, planes, |_, plane| q.divide_shifted(((plane.wide.at(position) << shift) >> 32) as i32));

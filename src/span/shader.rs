@@ -2,7 +2,7 @@
 
 use super::depth::{DepthDyn, DepthState, DepthTest};
 use super::perspective::{correct_at, nth};
-use super::span::{Fragment, Fragments, Steps, TriangleSpan};
+use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
 use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
 
@@ -10,35 +10,29 @@ use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
 ///
 /// A shader is compiled into the pixel loop; nothing is called indirectly.
 pub trait Shader<P: PixelFormat>: VertexShader {
-    /// For how many pixels perspective-correct varyings are taken as linear: 1 divides at each pixel; 4, 8, 16 or 32 at
-    /// every so many of them and at both ends of a span, which is faster, and off by little: see
+    /// Pixels over which perspective-correct varyings are taken as linear. 1 divides at each pixel; 4, 8, 16 or 32 divide at
+    /// every fourth, eighth, ... pixel and at both ends of a span, which is faster, and off by little: see
     /// [`Perspective`](crate::vertex::Perspective).
     const STEP: usize = 1;
 
-    /// The colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they were.
-    fn fragment(&self, fragment: &Fragment<'_, Self::Varyings>) -> Option<P::Raw>;
+    /// Data that [`setup`](Self::setup) makes once per triangle for its fragments and spans; `()` for most shaders.
+    type Setup: Copy + Default;
 
-    /// A word for the fragments of a triangle, from the varyings at its vertices and twice its area in 2⁻¹⁶ px²: a level of
-    /// detail.
+    /// Makes the shader's data of a triangle, before its spans are drawn. A line or a point is set up once as well.
     #[inline(always)]
-    fn level(&self, corners: &[Self::Varyings; 3], area: u64) -> u32 {
-        let _ = (corners, area);
-        0
+    fn setup(&self, triangle: &TriangleSetup<'_, Self::Varyings>) -> Self::Setup {
+        let _ = triangle;
+        Self::Setup::default()
     }
 
-    /// Whatever of the span loop's work can be done once a triangle: called before its spans with the varyings at the
-    /// screen's corner, modulo 2³² (or at a pixel, of what is no triangle), which may be moved (all of its spans will be), and with their
-    /// changes a pixel. Yields words for the spans.
-    #[inline]
-    fn prepare(&self, varyings: &mut Self::Varyings, d_dx: &Self::Varyings) -> [u32; 3] {
-        let _ = (varyings, d_dx);
-        [0; 3]
-    }
+    /// Computes the colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they
+    /// were.
+    fn fragment(&self, fragment: &Fragment<'_, Self::Varyings, Self::Setup>) -> Option<P::Raw>;
 
-    /// Colours a pixel, or discards the fragment and says `false`. Only what blends with the pixel that is there has to
-    /// override it.
+    /// Colours a pixel, or discards the fragment and returns `false`. Only a shader that blends with the pixel that is there
+    /// has to override it.
     #[inline(always)]
-    fn paint(&self, fragment: &Fragment<'_, Self::Varyings>, pixel: &mut P::Raw) -> bool {
+    fn paint(&self, fragment: &Fragment<'_, Self::Varyings, Self::Setup>, pixel: &mut P::Raw) -> bool {
         match self.fragment(fragment) {
             Some(value) => {
                 *pixel = value;
@@ -48,66 +42,58 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         }
     }
 
-    /// Draws a span of a triangle, by default as any other [`span`](Self::span). Override it, too, where most of what is drawn
-    /// is a few pixels long and varyings are better worked out later, or not at all.
-    ///
-    /// Called for shaders of up to three varyings; spans of others come to [`span`](Self::span). One shader's goes with its
-    /// [`prepare`](Self::prepare) and [`level`](Self::level): who hands one on hands on all.
-    #[inline(always)]
-    fn triangle_span<D: DepthTest>(&self, face: u32, span: TriangleSpan<'_, P, Self::Varyings, D::Depth>, test: D) {
-        self.span(face, span.fragments(), test);
-    }
-
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
     #[inline]
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, P, Self::Varyings, D::Depth>, test: D) {
-        fragments(self, face, span, test);
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        draw_fragments(self, span, test);
     }
 }
+
+/// The [`Span`] of a shader `S` under a depth test `D`.
+pub type SpanOf<'a, P, S, D> =
+    Span<'a, P, <S as VertexShader>::Varyings, <S as Shader<P>>::Setup, <D as DepthTest>::Depth>;
 
 /// Pixels of a span that are drawn at a time where there are no depths.
 const CHUNK: usize = 16;
 
 /// Draws a span fragment by fragment.
 #[inline]
-pub(crate) fn fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
+pub(crate) fn draw_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
-    face: u32,
-    span: Fragments<'_, P, S::Varyings, D::Depth>,
+    span: SpanOf<'_, P, S, D>,
     test: D,
 ) {
     if S::Varyings::PERSPECTIVE > 0 {
-        corrected_fragments(shader, face, span, test);
+        corrected_fragments(shader, span, test);
     } else {
-        uncorrected_fragments(shader, face, span, test);
+        uncorrected_fragments(shader, span, test);
     }
 }
 
 #[inline(always)]
 fn uncorrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
-    face: u32,
-    mut span: Fragments<'_, P, S::Varyings, D::Depth>,
+    span: SpanOf<'_, P, S, D>,
     test: D,
 ) {
-    // Varyings stay where they are.
-    let Fragments { ref mut color, ref mut depth, z, ref mut varyings, steps, position } = span;
-    let mut pixels = Pixels { face, z, varyings, steps, position, test: DepthDyn::new(DepthState::OFF) };
+    let mut varyings = span.varyings();
+    let Span { color, depth, z, position, primitive } = span;
+    let mut pixels = Pixels { z, varyings: &mut varyings, primitive, position, test: DepthDyn::new(DepthState::OFF) };
     if !D::ENABLED {
         return fragments_without_depth(shader, color, &mut pixels);
     }
-    if let Some((test, depth)) = test.any(depth) {
+    if let Some((test, depth)) = test.as_dyn(depth) {
         pixels.test = test;
         linear_fragments(shader, color, depth, &mut pixels);
     }
 }
 
-/// The same loop, with depths that are nobody's.
+/// Draws a span in the loop of [`linear_fragments`], over depths that belong to nobody.
 #[inline(never)]
 fn fragments_without_depth<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
     color: &mut [P::Raw],
-    pixels: &mut Pixels<'_, S::Varyings>,
+    pixels: &mut Pixels<'_, S::Varyings, S::Setup>,
 ) {
     let mut nothing = [0; CHUNK];
     for chunk in color.chunks_mut(CHUNK) {
@@ -116,11 +102,10 @@ fn fragments_without_depth<P: PixelFormat, S: Shader<P> + ?Sized>(
 }
 
 /// Where [`linear_fragments`] is, and how it goes on.
-struct Pixels<'a, V: Varyings> {
-    face: u32,
+struct Pixels<'a, V: Varyings, T> {
     z: u32,
     varyings: &'a mut V,
-    steps: &'a Steps<V>,
+    primitive: &'a Primitive<V, T>,
     position: (i32, i32),
     test: DepthDyn,
 }
@@ -131,15 +116,15 @@ fn linear_fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
     color: &mut [P::Raw],
     depth: &mut [u16],
-    pixels: &mut Pixels<'_, S::Varyings>,
+    pixels: &mut Pixels<'_, S::Varyings, S::Setup>,
 ) {
     if <S::Varyings as Varyings>::LEN > MAX_IN_REGISTERS {
         return paint_pixels(shader, color, depth, pixels);
     }
-    // Few varyings are walked where the compiler likes, many where they are.
+    // Few varyings are stepped in a copy, which the compiler keeps in registers; many are stepped where they are.
     let mut varyings = *pixels.varyings;
-    let Pixels { face, z, steps, position, test, .. } = *pixels;
-    let mut own = Pixels { face, z, varyings: &mut varyings, steps, position, test };
+    let Pixels { z, primitive, position, test, .. } = *pixels;
+    let mut own = Pixels { z, varyings: &mut varyings, primitive, position, test };
     paint_pixels(shader, color, depth, &mut own);
     (pixels.z, pixels.position) = (own.z, own.position);
     *pixels.varyings = varyings;
@@ -150,21 +135,21 @@ fn paint_pixels<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
     color: &mut [P::Raw],
     depth: &mut [u16],
-    pixels: &mut Pixels<'_, S::Varyings>,
+    pixels: &mut Pixels<'_, S::Varyings, S::Setup>,
 ) {
-    let Pixels { face, z, varyings, steps, position, test } = pixels;
+    let Pixels { z, varyings, primitive, position, test } = pixels;
+    let Primitive { flat, side, ref setup, .. } = **primitive;
     for (color, stored) in color.iter_mut().zip(depth) {
         let depth = (*z >> 16) as u16;
         if test.passes(depth, *stored) {
-            let (side, level) = (steps.side, steps.level);
-            let fragment = Fragment { flat: *face, varyings: &**varyings, position: *position, depth, side, level };
+            let fragment = Fragment { flat, varyings: &**varyings, position: *position, depth, side, setup };
             if shader.paint(&fragment, color) {
                 test.write(depth, stored);
             }
         }
         position.0 = position.0.wrapping_add(1);
-        *z = z.wrapping_add_signed(steps.dz_dx);
-        varyings.step(&steps.d_dx);
+        *z = z.wrapping_add_signed(primitive.dz_dx);
+        varyings.step(&primitive.d_dx);
     }
 }
 
@@ -172,43 +157,45 @@ fn paint_pixels<P: PixelFormat, S: Shader<P> + ?Sized>(
 #[inline(never)]
 fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
-    face: u32,
-    mut span: Fragments<'_, P, S::Varyings, D::Depth>,
+    mut span: SpanOf<'_, P, S, D>,
     test: D,
 ) {
     const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };
-    let mut varyings = span.varyings;
-    correct_at(span.steps, span.position, &mut varyings);
-    let mut run = Run { span: &mut span, face, varyings, change: varyings, next: varyings, test };
-    while !run.span.color.is_empty() {
-        let pixels = run.aim(S::STEP);
-        run.draw(shader, pixels);
+    let linear = span.varyings();
+    let mut varyings = linear;
+    correct_at(&span.primitive.perspective, span.position, &mut varyings);
+    let mut stretch = Stretch { span: &mut span, linear, varyings, change: varyings, next: varyings, test };
+    while !stretch.span.color.is_empty() {
+        let pixels = stretch.aim(S::STEP);
+        stretch.draw(shader, pixels);
     }
 }
 
-/// Pixels between two that are divided.
-struct Run<'a, 's, P: PixelFormat, V: Varyings, D: DepthTest> {
-    /// What is left of the span. Varyings are what is linear, at the end of the run.
-    span: &'a mut Fragments<'s, P, V, D::Depth>,
-    face: u32,
+/// The pixels from one that is divided to the next.
+struct Stretch<'a, 's, P: PixelFormat, V: Varyings, T, D: DepthTest> {
+    /// The part of the span that is not drawn yet.
+    span: &'a mut Span<'s, P, V, T, D::Depth>,
+    /// The quantities that are linear on the screen, at the end of the stretch.
+    linear: V,
     varyings: V,
     change: V,
-    /// The varyings at the end of the run.
+    /// The varyings at the end of the stretch.
     next: V,
     test: D,
 }
 
-impl<P: PixelFormat, V: Varyings, D: DepthTest> Run<'_, '_, P, V, D> {
-    /// Aims at where the next run ends: at the next pixel that is divided, or the last one. Yields how many pixels it has.
+impl<P: PixelFormat, V: Varyings, T, D: DepthTest> Stretch<'_, '_, P, V, T, D> {
+    /// Aims at the end of the next stretch: the next pixel that is divided, or the last one. Returns how many pixels it has.
     #[inline(never)]
     fn aim(&mut self, step: usize) -> usize {
-        let Self { span, varyings, change, next, .. } = self;
+        let Self { span, linear, varyings, change, next, .. } = self;
         let pixels = span.color.len().min(step);
         let way = if span.color.len() > step { step } else { pixels.wrapping_sub(1) };
         *varyings = *next;
-        span.varyings.advance(&span.steps.d_dx, way as i32);
-        *next = span.varyings;
-        correct_at(span.steps, (span.position.0.wrapping_add(way as i32), span.position.1), next);
+        linear.advance(&span.primitive.d_dx, way as i32);
+        *next = *linear;
+        let end = (span.position.0.wrapping_add(way as i32), span.position.1);
+        correct_at(&span.primitive.perspective, end, next);
         let ends = varyings.as_ref().iter().zip(next.as_ref());
         for (change, (from, to)) in change.as_mut().iter_mut().zip(ends) {
             *change = if way == 0 { 0 } else { nth(to.wrapping_sub(*from), way) };
@@ -218,22 +205,22 @@ impl<P: PixelFormat, V: Varyings, D: DepthTest> Run<'_, '_, P, V, D> {
 
     /// Draws that many pixels. Out of line, for what divides needs no stack meanwhile.
     #[inline(never)]
-    fn draw<S: Shader<P, Varyings = V> + ?Sized>(&mut self, shader: &S, pixels: usize) {
-        let Self { span, face, varyings, change, test, .. } = self;
+    fn draw<S: Shader<P, Varyings = V, Setup = T> + ?Sized>(&mut self, shader: &S, pixels: usize) {
+        let Self { span, varyings, change, test, .. } = self;
         let Some((colors, rest)) = core::mem::take(&mut span.color).split_at_mut_checked(pixels) else { return };
         let Some((depths, depth_rest)) = core::mem::take(&mut span.depth).split_at_mut_checked(pixels) else { return };
         (span.color, span.depth) = (rest, depth_rest);
+        let Primitive { flat, side, dz_dx, ref setup, .. } = *span.primitive;
         for (color, stored) in colors.iter_mut().zip(depths) {
             let depth = (span.z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
-                let (position, side, level) = (span.position, span.steps.side, span.steps.level);
-                let fragment = Fragment { flat: *face, varyings: &*varyings, position, depth, side, level };
+                let fragment = Fragment { flat, varyings: &*varyings, position: span.position, depth, side, setup };
                 if shader.paint(&fragment, color) {
                     test.write(depth, stored);
                 }
             }
             span.position.0 = span.position.0.wrapping_add(1);
-            span.z = span.z.wrapping_add_signed(span.steps.dz_dx);
+            span.z = span.z.wrapping_add_signed(dz_dx);
             varyings.step(change);
         }
     }

@@ -1,8 +1,9 @@
 //! Spans of one colour.
 
+use super::color_setup::ColorSetup;
 use super::depth::{DepthTest, RUN, passing};
-use super::packed::packed_fragments;
-use super::span::{Fragments, Steps};
+use super::packed::packed_span;
+use super::span::{Primitive, Span};
 use crate::color::{PixelFormat, fill, squeeze, unpacked};
 use crate::math::SMALL_CORE;
 use core::hint::black_box;
@@ -10,21 +11,22 @@ use core::hint::black_box;
 /// Pixels from which on a call is worth it.
 const LONG: usize = 9;
 
-/// Draws a span in the colour of a face's word.
+/// Draws a span in the colour of its primitive's word.
 #[inline]
-pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments<'_, P, [i32; 0], D::Depth>, test: D) {
+pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 0], (), D::Depth>, test: D) {
+    let flat = span.primitive.flat;
     if P::DITHER.is_some() {
-        return dithered_span(unpacked(face), span, test);
+        return dithered_span(unpacked(flat), span, test);
     }
-    let Fragments { color, depth, z, steps, .. } = span;
-    let value = P::pack(unpacked(face));
+    let Span { color, depth, z, primitive, .. } = span;
+    let value = P::pack(unpacked(flat));
     if !D::ENABLED {
         return fill(color, value);
     }
     if color.len() >= LONG {
-        return tested_span(color, depth, z, steps.dz_dx, value, test);
+        return tested_span(color, depth, z, primitive.dz_dx, value, test);
     }
-    let (mut z, dz_dx) = (z, steps.dz_dx);
+    let (mut z, dz_dx) = (z, primitive.dz_dx);
     for (color, depth) in color.iter_mut().zip(depth) {
         let near = (z >> 16) as u16;
         if test.passes(near, *depth) {
@@ -38,14 +40,15 @@ pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(face: u32, span: Fragments
 /// A span of one colour, in a dithered format.
 pub(crate) fn dithered_span<P: PixelFormat, D: DepthTest>(
     rgb: [u8; 3],
-    span: Fragments<'_, P, [i32; 0], D::Depth>,
+    span: Span<'_, P, [i32; 0], (), D::Depth>,
     test: D,
 ) {
-    let Fragments { color, depth, z, steps, position, .. } = span;
+    let Span { color, depth, z, primitive: &Primitive { dz_dx, flat, side, .. }, position } = span;
     let [r, g, b] = rgb;
     let varyings = [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)];
-    let steps = &Steps::linear(steps.dz_dx, [0; 3], [0; 3], steps.side);
-    packed_fragments::<P, D>(Fragments { color, depth, z, varyings, steps, position }, test);
+    let setup = ColorSetup::constant::<P>(varyings);
+    let primitive = &Primitive { dz_dx, ..Primitive::constant(varyings, flat, side, setup) };
+    packed_span::<P, D>(Span { color, depth, z, primitive, position }, test);
 }
 
 /// One value where the depth test passes, in a long span. Out of line: amid others, the loops would not get the registers that

@@ -1,11 +1,11 @@
-//! A span of pixels, and what is interpolated along it.
+//! Spans of pixels, and what the fragment stage is handed.
 
 use crate::color::PixelFormat;
 use crate::vertex::{PerspectiveSetup, Side, Varyings};
 
-/// A fragment that passed the depth test: what the fragment stage sees of it.
+/// A fragment that passed the depth test, as [`Shader::fragment`](crate::span::Shader::fragment) sees it.
 #[derive(Clone, Copy, Debug)]
-pub struct Fragment<'a, V> {
+pub struct Fragment<'a, V, T = ()> {
     /// The triangle's word, from [`VertexShader::face`](crate::vertex::VertexShader::face).
     pub flat: u32,
     /// Varyings at the pixel's centre.
@@ -14,88 +14,94 @@ pub struct Fragment<'a, V> {
     pub position: (i32, i32),
     /// Depth, 0 near, 65,535 far.
     pub depth: u16,
-    /// Which side of the triangle is seen.
+    /// Side of the triangle that is seen.
     pub side: Side,
-    /// What [`Shader::level`](crate::span::Shader::level) made of the triangle.
-    pub level: u32,
+    /// Data of the triangle, from [`Shader::setup`](crate::span::Shader::setup).
+    pub setup: &'a T,
 }
 
-/// The pixels of a span and everything that is interpolated along it.
-#[derive(Debug)]
-pub struct Fragments<'a, P: PixelFormat, V: Varyings, Z> {
-    /// Colours, to be written where the depth test passes.
-    pub color: &'a mut [P::Raw],
-    /// Stored depths, as many ([`DepthTest::Depth`](crate::span::DepthTest::Depth)).
-    pub depth: &'a mut [Z],
-    /// Depth at the first pixel, 16.16, with the half that rounds it already added.
-    pub z: u32,
-    /// Varyings at the first pixel; perspective-correct ones as what is linear on the screen, for [`Corrected`](crate::span::Corrected).
-    pub varyings: V,
-    /// How depth and varyings change.
-    pub steps: &'a Steps<V>,
-    /// Position of the first pixel on the screen.
-    pub position: (i32, i32),
-}
-
-/// What all spans of a triangle share.
+/// A triangle as [`Shader::setup`](crate::span::Shader::setup) sees it. Lines and points are set up as well.
 #[derive(Clone, Copy, Debug)]
-pub struct Steps<V: Varyings> {
-    /// Change of depth a pixel, modulo 2³².
-    pub dz_dx: i32,
-    /// Of a triangle: varyings at the screen's corner, modulo 2³².
-    pub corner: V,
-    /// Of a triangle: change of the varyings a row, modulo 2³².
-    pub d_dy: V,
-    /// Change of the varyings a pixel, modulo 2³².
-    pub d_dx: V,
-    /// What to make of perspective-correct ones.
-    pub perspective: V::PerspectiveSetup,
-    /// What [`Shader::prepare`](crate::span::Shader::prepare) made of them.
-    pub words: [u32; 3],
-    /// Which side of the triangle is seen.
+pub struct TriangleSetup<'a, V> {
+    /// Varyings at the vertices, as the vertex stage made them. A line hands over its two ends, the second one twice; a point
+    /// its only vertex three times.
+    pub corners: [&'a V; 3],
+    /// Twice the area on the screen, in 2⁻¹⁶ px²; 0 for lines and points.
+    pub area: u64,
+    /// The triangle's word, from [`VertexShader::face`](crate::vertex::VertexShader::face).
+    pub flat: u32,
+    /// Side of the triangle that is seen.
     pub side: Side,
-    /// What [`Shader::level`](crate::span::Shader::level) made of it.
-    pub level: u32,
+    /// Varyings at the pixel in the screen's top left corner, modulo 2³². Perspective-correct ones are kept in a form of the
+    /// pipeline's own.
+    pub at_origin: &'a V,
+    /// Change of the varyings from a pixel to the next one on the right, modulo 2³²; of a line, to its next pixel.
+    pub d_dx: &'a V,
 }
 
-impl<V: Varyings> Steps<V> {
-    /// Of something that is linear on the screen, and no triangle: from row to row, nothing changes.
+/// All that the spans of a triangle, a line or a point have in common: plane equations, and data of the shader.
+#[derive(Clone, Copy, Debug)]
+pub struct Primitive<V: Varyings, T = ()> {
+    /// Change of depth from a pixel to the next one on the right, 16.16, modulo 2³².
+    pub dz_dx: i32,
+    /// Data of the shader, from [`Shader::setup`](crate::span::Shader::setup).
+    pub setup: T,
+    /// Change of the varyings from a row to the next one, modulo 2³².
+    pub d_dy: V,
+    /// Change of the varyings from a pixel to the next one on the right, modulo 2³².
+    pub d_dx: V,
+    /// Varyings at the pixel in the screen's top left corner, modulo 2³².
+    pub at_origin: V,
+    /// Turns what is linear on the screen into perspective-correct varyings.
+    pub(crate) perspective: V::PerspectiveSetup,
+    /// Side of the triangle that is seen.
+    pub side: Side,
+    /// The triangle's word, from [`VertexShader::face`](crate::vertex::VertexShader::face).
+    pub flat: u32,
+}
+
+impl<V: Varyings, T> Primitive<V, T> {
+    /// Returns a primitive whose depth and varyings are the same at all of its pixels.
     #[inline]
-    pub const fn linear(dz_dx: i32, d_dx: V, words: [u32; 3], side: Side) -> Self {
-        let (corner, d_dy) = (V::ZERO, V::ZERO);
-        Self { dz_dx, corner, d_dy, d_dx, perspective: V::PerspectiveSetup::NONE, words, side, level: 0 }
+    pub(crate) const fn constant(varyings: V, flat: u32, side: Side, setup: T) -> Self {
+        let perspective = V::PerspectiveSetup::NONE;
+        Self { dz_dx: 0, at_origin: varyings, d_dy: V::ZERO, d_dx: V::ZERO, perspective, setup, side, flat }
     }
 
-    /// Varyings of a triangle at a pixel. Other spans come with theirs.
+    /// Computes the varyings at a pixel. Perspective-correct ones come as what is linear on the screen, for
+    /// [`Corrected`](crate::span::Corrected).
     #[inline(always)]
     pub fn at(&self, (x, y): (i32, i32)) -> V {
-        let mut values = self.corner;
+        let mut values = self.at_origin;
         values.advance(&self.d_dy, y);
         values.advance(&self.d_dx, x);
         values
     }
 }
 
-/// [`Fragments`] of a triangle, whose varyings have not been worked out: a loop over short spans has no registers for it.
+/// Pixels side by side in a row, all of one primitive.
+///
+/// Varyings are not among its fields: a loop over many short spans has no registers for them, so
+/// [`varyings`](Self::varyings) computes them where they are wanted.
 #[derive(Debug)]
-pub struct TriangleSpan<'a, P: PixelFormat, V: Varyings, Z> {
+pub struct Span<'a, P: PixelFormat, V: Varyings, T, Z> {
     /// Colours, to be written where the depth test passes.
     pub color: &'a mut [P::Raw],
-    /// Stored depths, as many ([`DepthTest::Depth`](crate::span::DepthTest::Depth)).
+    /// Stored depths, one per colour ([`DepthTest::Depth`](crate::span::DepthTest::Depth)).
     pub depth: &'a mut [Z],
     /// Depth at the first pixel, 16.16, with the half that rounds it already added.
     pub z: u32,
-    /// How depth and varyings change.
-    pub steps: &'a Steps<V>,
     /// Position of the first pixel on the screen.
     pub position: (i32, i32),
+    /// The triangle, line or point that the span is a part of.
+    pub primitive: &'a Primitive<V, T>,
 }
 
-impl<'a, P: PixelFormat, V: Varyings, Z> TriangleSpan<'a, P, V, Z> {
-    /// With its varyings.
+impl<P: PixelFormat, V: Varyings, T, Z> Span<'_, P, V, T, Z> {
+    /// Computes the varyings at the first pixel. Perspective-correct ones come as what is linear on the screen, for
+    /// [`Corrected`](crate::span::Corrected).
     #[inline(always)]
-    pub fn fragments(self) -> Fragments<'a, P, V, Z> {
-        let Self { color, depth, z, steps, position } = self;
-        Fragments { color, depth, z, varyings: steps.at(position), steps, position }
+    pub fn varyings(&self) -> V {
+        self.primitive.at(self.position)
     }
 }

@@ -9,7 +9,7 @@
 
 use super::depth::{DepthTest, RUN, left, passing};
 use super::perspective::nth;
-use super::span::{Fragments, Steps};
+use super::span::{Primitive, Span};
 use crate::color::PixelFormat;
 use crate::math::{CoarseDivisor, SMALL_CORE};
 use crate::texture::Texture;
@@ -21,17 +21,17 @@ pub(crate) const STEP: usize = RUN;
 /// Draws a span of a texture that repeats; the first two varyings are u and v, 16.16. Not for triangles whose perspective
 /// is [`Planes64`](PerspectiveClass::Planes64).
 #[inline(never)]
-pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings>(
+pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings, U>(
     texture: &T,
-    span: Fragments<'_, P, V, D::Depth>,
+    span: Span<'_, P, V, U, D::Depth>,
     test: D,
 ) {
-    let Fragments { color, depth, z, varyings, steps, .. } = span;
+    let Span { color, depth, z, position, primitive } = span;
     let length = color.len().min(depth.len());
     let Some(mut color) = color.get_mut(..length) else { return };
     let Some(mut depth) = depth.get_mut(..length) else { return };
-    let mut walk = Walk::new(&varyings, steps, length as i32 - 1);
-    let mut pen = Pen { z, dz_dx: steps.dz_dx, vu: 0, step: 0 };
+    let mut walk = Walk::new(primitive, position, length as i32 - 1);
+    let mut pen = Pen { z, dz_dx: primitive.dz_dx, vu: 0, step: 0 };
     walk.run();
     while color.len() > STEP {
         let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<STEP>() else { return };
@@ -259,8 +259,9 @@ struct Walk {
 impl Walk {
     /// A run before a span, whose last pixel is `way` pixels from the first.
     #[inline(never)]
-    fn new<V: Varyings>(varyings: &V, steps: &Steps<V>, way: i32) -> Self {
-        let (at, step) = (varyings.as_ref(), steps.d_dx.as_ref());
+    fn new<V: Varyings, U>(primitive: &Primitive<V, U>, position: (i32, i32), way: i32) -> Self {
+        let varyings = primitive.at(position);
+        let (at, step) = (varyings.as_ref(), primitive.d_dx.as_ref());
         let value = |values: &[i32], k: usize| values.get(k).copied().unwrap_or(0);
         let last = |values: &[i32]| values.last().copied().unwrap_or(0);
         let (mut q, mut dq) = (last(at), last(step));
@@ -275,13 +276,13 @@ impl Walk {
         } else {
             shift = most.leading_zeros();
         }
-        if steps.perspective.class() == PerspectiveClass::Affine {
+        if primitive.perspective.class() == PerspectiveClass::Affine {
             (q, dq, shift) = (0, 0, 0);
         }
         let shift = shift & 31;
         let at = [q, value(at, 0), value(at, 1)];
         let step = [dq, value(step, 0), value(step, 1)];
-        let planes = steps.perspective.planes();
+        let planes = primitive.perspective.planes();
         let along = |k: usize| {
             let (at, step) = (value(&at, k) << shift, value(&step, k) << shift);
             (at.wrapping_sub(step << 4), step << 4, at.wrapping_add(step.wrapping_mul(way)))
@@ -294,7 +295,7 @@ impl Walk {
             u: Scale::new(planes.first()),
             v: Scale::new(planes.get(1)),
             end: [q.2, u.2, v.2],
-            dz_dx: steps.dz_dx,
+            dz_dx: primitive.dz_dx,
         }
     }
 
@@ -417,26 +418,26 @@ mod tests {
             let way = (random() % 200) as i32;
             let q = [random(), random()].map(|q| ((q >> 1 >> (random() % 9)) | 1 << 22) as i32);
             // |d q| up to q / 8, at both ends.
-            let mut corner = Perspective::<2, 3>::ZERO;
-            let mut steps = Steps::linear(0, corner, [0; 3], Side::Front);
+            let corner = Perspective::<2, 3>::ZERO;
+            let mut primitive = Primitive::constant(corner, 0, Side::Front, ());
             let ends = [0, 1].map(|_| q.map(|q| ((i64::from(random() as i32) * i64::from(q)) >> 34) as i32));
             let per_pixel = |a: i32, b: i32| (b - a) / way.max(1);
-            corner.as_mut().copy_from_slice(&[ends[0][0], ends[1][0], q[0]]);
+            primitive.at_origin.as_mut().copy_from_slice(&[ends[0][0], ends[1][0], q[0]]);
             let changes = [per_pixel(ends[0][0], ends[0][1]), per_pixel(ends[1][0], ends[1][1]), per_pixel(q[0], q[1])];
-            steps.d_dx.as_mut().copy_from_slice(&changes);
+            primitive.d_dx.as_mut().copy_from_slice(&changes);
             let affine = case % 8 == 0;
-            if let Some((class, _, planes)) = steps.perspective.parts_mut() {
+            if let Some((class, _, planes)) = primitive.perspective.parts_mut() {
                 *class = if affine { PerspectiveClass::Affine } else { PerspectiveClass::Planes32 };
                 for plane in planes {
                     (plane.base, plane.shift) = (random() as i32 >> 4, random() % 29);
                 }
             }
-            let mut exact = Corrected::new(corner, &steps, (0, 0));
-            let mut walk = Walk::new(&corner, &steps, way);
+            let mut exact = Corrected::new(&primitive, (0, 0));
+            let mut walk = Walk::new(&primitive, (0, 0), way);
             walk.run();
             let check = |walk: &Walk, exact: &Corrected<'_, Perspective<2, 3>>| {
                 let (found, expected) = ([walk.uv.0, walk.uv.1], exact.varyings().corrected());
-                for ((found, expected), plane) in found.iter().zip(expected).zip(steps.perspective.planes()) {
+                for ((found, expected), plane) in found.iter().zip(expected).zip(primitive.perspective.planes()) {
                     let quotient = i64::from(expected - plane.base).abs();
                     let bound = if affine { 0 } else { (quotient >> 18) + (200 >> plane.shift) + 1 };
                     let off = (i64::from(*found) - i64::from(expected)).abs();

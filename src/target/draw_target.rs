@@ -7,7 +7,7 @@
 use super::framebuffer::Framebuffer;
 use crate::color::{PixelFormat, fill};
 use crate::raster::PixelRect;
-use crate::span::{DepthTest, MAX_SPAN};
+use crate::span::DepthTest;
 use core::convert::Infallible;
 use core::marker::PhantomData;
 use core::ops::Range;
@@ -162,13 +162,14 @@ fn colors<'r, F: Framebuffer>(framebuffer: &'r mut F, y: i32, columns: &Range<i3
 #[inline(always)]
 fn depths<'r, D: DepthTest>(
     depth: &'r mut [u16],
-    nothing: &'r mut [(); MAX_SPAN],
+    nothing: &'r mut [()],
     row: i32,
     width: u16,
     columns: &Range<i32>,
 ) -> &'r mut [D::Depth] {
     let start = (row as usize).wrapping_mul(usize::from(width)).wrapping_add(columns.start as usize);
-    D::stored(depth, nothing, start, (columns.end - columns.start) as usize)
+    let stored = D::slots(depth, nothing).get_mut(start..).unwrap_or_default();
+    stored.get_mut(..(columns.end - columns.start) as usize).unwrap_or_default()
 }
 
 /// Tests a depth against the stored one, and leaves it if it passes.
@@ -191,7 +192,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
             return Ok(());
         };
         let (left, top, height) = (clip.x.start, clip.y.start, (clip.y.end - clip.y.start).max(0) as u32);
-        let mut nothing = [(); MAX_SPAN];
+        let mut nothing = [(); usize::MAX];
         let mut y = i32::MIN;
         let (mut row, mut stored): (&mut [_], &mut [_]) = Default::default();
         for Pixel(point, color) in pixels {
@@ -229,7 +230,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
             return Ok(());
         }
         let width = area.size.width as usize;
-        let mut nothing = [(); MAX_SPAN];
+        let mut nothing = [(); usize::MAX];
         let mut new = colors_of_all.into_iter();
         let rows_above = part.y.start.wrapping_sub(all.y.start) as usize;
         let columns_left = part.x.start.wrapping_sub(all.x.start) as usize;
@@ -261,7 +262,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
             return Ok(());
         }
         let value = F::Format::from_color(color);
-        let mut nothing = [(); MAX_SPAN];
+        let mut nothing = [(); usize::MAX];
         for y in part.y {
             let row = colors(*framebuffer, y, &part.x);
             let stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x);

@@ -9,6 +9,7 @@ mod shader;
 pub(crate) mod transform;
 mod varyings;
 mod viewport;
+mod wrapper;
 
 pub use clip::DepthRange;
 pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, DepthSlab, Outcode, Polygon, PolygonCorner, weighted};
@@ -23,3 +24,4 @@ pub(crate) use transform::{Projected, ScreenMatrix, Transform};
 pub(crate) use varyings::{MAX_IN_REGISTERS, PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64};
 pub use varyings::{Perspective, Varyings};
 pub use viewport::{Viewport, ViewportError};
+pub use wrapper::Wrapper;

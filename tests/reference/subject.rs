@@ -11,7 +11,7 @@ use zstrip::frame::FramebufferRenderer;
 use zstrip::internals::{Line, PixelRect, square};
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
-use zstrip::span::{DepthState, DepthTest, Fragment, Fragments, Shader};
+use zstrip::span::{DepthState, DepthTest, Fragment, Shader, SpanOf};
 use zstrip::target::FrameSlice;
 use zstrip::vertex::{Face, Perspective, VertexRef, VertexShader};
 use zstrip::{Cull, State};
@@ -44,12 +44,14 @@ impl VertexShader for Reached<'_> {
 }
 
 impl Shader<Rgb565> for Reached<'_> {
+    type Setup = ();
+
     fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         Some(1)
     }
 
-    fn span<D: DepthTest>(&self, face: u32, span: Fragments<'_, Rgb565, [i32; 0], D::Depth>, _: D) {
-        let (x, y) = span.position;
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, Rgb565, Self, D>, _: D) {
+        let ((x, y), face) = (span.position, span.primitive.flat);
         for (k, color) in span.color.iter_mut().enumerate() {
             *color = 1;
             (self.0.borrow_mut())(face as usize, x as u32 + k as u32, y as u32);
@@ -73,6 +75,8 @@ impl VertexShader for Numbered {
 }
 
 impl Shader<Rgb565> for Numbered {
+    type Setup = ();
+
     fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<u16> {
         Some(fragment.flat as u16)
     }
@@ -97,6 +101,8 @@ impl<const STEP: usize> VertexShader for Coordinates<'_, STEP> {
 }
 
 impl<const STEP: usize> Shader<Rgb565> for Coordinates<'_, STEP> {
+    type Setup = ();
+
     const STEP: usize = STEP;
 
     fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<u16> {
