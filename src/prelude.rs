@@ -1,20 +1,39 @@
-//! The names that a first program needs: `use zstrip::prelude::*;`.
+//! Names that a first program needs: `use zstrip::prelude::*;`.
 //!
-//! It may stand beside `use embedded_graphics::prelude::*;`: no name of the one means something else in the other.
+//! It may stand beside `use embedded_graphics::prelude::*;`: a name that both have is one item. That is why binary angles are
+//! called [`Angle16`]: embedded-graphics' prelude has an `Angle`, an `f32`.
+//!
+//! ```
+//! use zstrip::prelude::*;
+//!
+//! static CORNERS: [Vec3; 3] = [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(0, 1, 0)];
+//! static TRIANGLE: Mesh<'static> = Mesh::constant(MeshData::new(Positions::Exact(&CORNERS)));
+//! const SCREEN: Size = Size::new(160, 128);
+//!
+//! fn draw<D: DrawTarget<Color = Rgb565>>(display: &mut D) -> Result<(), FrameError<D::Error>> {
+//!     let mut renderer = Renderer::<Rgb565>::new(SCREEN).unwrap();
+//!     let lens = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::from_num(9)).unwrap();
+//!     let (mvp, shader) = (lens * Affine::translation(Vec3::Z * Scalar::from_num(-3)), Flat::unlit(Rgb888::CSS_ORANGE));
+//!     // Strips of 16 rows.
+//!     renderer.frame(display, &mut [0; 160 * 16], Rgb888::BLACK, |scene| scene.draw(&TRIANGLE, &mvp, &shader))?;
+//!     Ok(())
+//! }
+//! ```
 
 #[doc(no_inline)]
 pub use crate::{
     color::Rgb565Be,
-    frame::Renderer,
-    light::{DirectionalLight, Lighting, Material},
+    frame::{FrameError, FramebufferRenderer, Renderer},
+    light::Light,
     math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3},
     mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices},
-    scene::{Scene, State},
-    shader::{Flat, Gouraud, Shaded, Textured},
-    target::Framebuffer,
+    scene::{Cull, Scene, State, Thick, Thin},
+    shader::{Flat, Gouraud, Textured},
+    target::{Framebuffer, StripPixels},
 };
 #[doc(no_inline)]
 pub use embedded_graphics_core::{
+    draw_target::DrawTarget,
     geometry::{Point, Size},
     pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors},
 };
