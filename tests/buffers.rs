@@ -1,5 +1,5 @@
-//! Colour buffers are the caller's: strips of any length in buffers of any length, errors that lose nothing, frames that are
-//! given up.
+//! Colour buffers are the caller's: strips of any length in buffers of any length, errors that lose nothing, frames
+//! that are given up.
 
 #[allow(dead_code)]
 mod reference;
@@ -93,7 +93,8 @@ fn buffer_that_is_handed_over_comes_back_for_as_long_as_it_was_lent() {
     assert!(bytes.chunks(2).all(|pixel| *pixel == 0xF800_u16.to_ne_bytes()));
 }
 
-/// The loop of a program with DMA: the buffer that is free is lent, and moves into the transfer when the strip is drawn.
+/// The loop of a program with DMA: the buffer that is free is lent, and moves into the transfer when the strip is
+/// drawn.
 #[test]
 fn static_buffers_outlast_frames_whether_they_end_or_fail() {
     const ROWS: usize = RamBudget::even_rows(60, 16) as usize;
@@ -130,7 +131,8 @@ fn static_buffers_outlast_frames_whether_they_end_or_fail() {
 
 #[test]
 fn buffers_of_different_lengths_hold_the_same_frame() {
-    // The first one decides the height; longer ones do not change it, and the last strip needs no more than its own rows.
+    // The first one decides the height; longer ones do not change it, and the last strip needs no more than its own
+    // rows.
     with_renderers(16, |renderer, what| {
         let mut frame = renderer.begin(Rgb565::CSS_NAVY);
         let mut picture = Vec::new();

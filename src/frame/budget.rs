@@ -57,8 +57,8 @@ impl RamBudget {
         Self { records: 4 * words, ..self }
     }
 
-    /// Returns the greatest number of rows, up to `most`, that divides a screen's height: with strips of that height the last
-    /// strip of a frame is no shorter than the others. DMA that always sends whole buffers needs that.
+    /// Returns the greatest number of rows, up to `most`, that divides a screen's height: with strips of that height
+    /// the last strip of a frame is no shorter than the others. DMA that always sends whole buffers needs that.
     ///
     /// ```
     /// use zstrip::frame::RamBudget;

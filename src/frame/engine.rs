@@ -150,11 +150,11 @@ impl Engine<'_> {
         (rows > 0).then_some(rows)
     }
 
-    /// Draws the next strip, which has `rows` rows, into `framebuffer`, which holds the background already. Fails with the
-    /// number of the draw that differed.
+    /// Draws the next strip, which has `rows` rows, into `framebuffer`, which holds the background already. Fails with
+    /// the number of the draw that differed.
     ///
-    /// If it is not in the records, a band that begins with it is recorded first: all the rest of the screen, or half of
-    /// what was tried last, until it fits. Where not even one strip does, it is drawn directly.
+    /// If it is not in the records, a band that begins with it is recorded first: all the rest of the screen, or half
+    /// of what was tried last, until it fits. Where not even one strip does, it is drawn directly.
     #[inline]
     pub(super) fn next_strip<F: Framebuffer>(
         &mut self,

@@ -45,8 +45,8 @@ pub enum FrameError<E = Infallible> {
         /// Number of the first draw that differed, counted from 0.
         draw: u16,
     },
-    /// The colour buffer does not hold the strip; for the first strip of a frame: not one row. Nothing was drawn: the frame
-    /// goes on with the next buffer that is long enough.
+    /// The colour buffer does not hold the strip; for the first strip of a frame: not one row. Nothing was drawn: the
+    /// frame goes on with the next buffer that is long enough.
     BufferTooShort {
         /// Pixels that the buffer holds.
         pixels: usize,

@@ -12,8 +12,8 @@ use embedded_graphics_core::primitives::Rectangle;
 
 /// A frame whose strips are pulled one by one: for DMA, async code, or any loop of one's own.
 ///
-/// The closure draws the whole scene. It is called at least once per strip, and must draw the same each time. So matrices and
-/// shaders are made once, in front of the loop, and the closure only borrows them.
+/// The closure draws the whole scene. It is called at least once per strip, and must draw the same each time. So
+/// matrices and shaders are made once, in front of the loop, and the closure only borrows them.
 ///
 /// # Blocking
 ///
@@ -37,9 +37,9 @@ use embedded_graphics_core::primitives::Rectangle;
 ///
 /// # DMA
 ///
-/// A DMA transfer wants a `'static` buffer of its own, so two of them take turns. The frame only borrows the one that is free
-/// (`&mut *free`): when the strip is drawn, or when there is none, or when it failed, the buffer is the caller's again, and
-/// moves into the transfer.
+/// A DMA transfer wants a `'static` buffer of its own, so two of them take turns. The frame only borrows the one that
+/// is free (`&mut *free`): when the strip is drawn, or when there is none, or when it failed, the buffer is the
+/// caller's again, and moves into the transfer.
 ///
 /// ```
 /// # use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb888, RgbColor}, primitives::Rectangle};
@@ -76,22 +76,25 @@ use embedded_graphics_core::primitives::Rectangle;
 ///
 /// # Async
 ///
-/// The strip takes its buffer along ([`StripPixels::into_pixels`] returns it), so that one strip can be sent while the next one
-/// is drawn. Here `join` is that of `embassy-futures`; any other will do.
+/// The strip takes its buffer along ([`StripPixels::into_pixels`] returns it), so that one strip can be sent while the
+/// next one is drawn. Here `join` is that of `embassy-futures`; any other will do.
 ///
 /// ```
 /// # use core::{future::Future, pin::pin, task::{Context, Poll, Waker}};
 /// # use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb888, RgbColor}};
 /// # use zstrip::{color::Rgb565Be, Renderer};
 /// # struct Spi(usize);
-/// # impl Spi { async fn write(&mut self, bytes: &[u8]) -> Result<(), std::io::Error> { self.0 += bytes.len(); Ok(()) } }
+/// # impl Spi {
+/// #     async fn write(&mut self, bytes: &[u8]) -> Result<(), std::io::Error> { self.0 += bytes.len(); Ok(()) }
+/// # }
 /// # async fn join<A: Future, B: Future>(a: A, b: B) -> (A::Output, B::Output) {
 /// #     let (mut a, mut b) = (pin!(a), pin!(b));
 /// #     let (mut x, mut y) = (None, None);
 /// #     core::future::poll_fn(move |context| {
 /// #         if x.is_none() { if let Poll::Ready(value) = a.as_mut().poll(context) { x = Some(value); } }
 /// #         if y.is_none() { if let Poll::Ready(value) = b.as_mut().poll(context) { y = Some(value); } }
-/// #         if x.is_some() && y.is_some() { Poll::Ready((x.take().unwrap(), y.take().unwrap())) } else { Poll::Pending }
+/// #         if x.is_none() || y.is_none() { return Poll::Pending; }
+/// #         Poll::Ready((x.take().unwrap(), y.take().unwrap()))
 /// #     }).await
 /// # }
 /// use core::mem::take;
@@ -122,8 +125,8 @@ use embedded_graphics_core::primitives::Rectangle;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// Hand a buffer over as it is (`a`, `take(&mut b)`) where it comes back by `into_pixels`. Lend it (`&mut *free`) where it must
-/// outlast the frame: after the last strip, and after an error, a buffer that was handed over is gone.
+/// Hand a buffer over as it is (`a`, `take(&mut b)`) where it comes back by `into_pixels`. Lend it (`&mut *free`) where
+/// it must outlast the frame: after the last strip, and after an error, a buffer that was handed over is gone.
 #[derive(Debug)]
 #[must_use = "a frame draws nothing until its strips are pulled"]
 pub struct Frame<'r, 'b, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
@@ -143,8 +146,8 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
 
     /// Draws the next strip into `buffer`. Returns `None` after the last strip.
     ///
-    /// The first strip of a frame decides the height of all of them: as many rows as its buffer and the depth buffer hold. The
-    /// last strip may have fewer. A buffer may be longer than the strip, and another one for each strip.
+    /// The first strip of a frame decides the height of all of them: as many rows as its buffer and the depth buffer
+    /// hold. The last strip may have fewer. A buffer may be longer than the strip, and another one for each strip.
     ///
     /// # Errors
     /// [`FrameError::BufferTooShort`] if `buffer` does not hold the strip; the frame can go on with another one.
@@ -159,8 +162,8 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
 
     /// Draws the next strip.
     ///
-    /// The closure is called through a pointer, about once per strip: however many closures a program has, this function is
-    /// linked once.
+    /// The closure is called through a pointer, about once per strip: however many closures a program has, this
+    /// function is linked once.
     pub(super) fn draw_strip<'c>(
         &mut self,
         buffer: &'c mut [P::Raw],

@@ -16,9 +16,9 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// Draws frames in strips of the screen.
 ///
-/// It borrows a depth buffer and memory for records, if it is to have them, and says by its type which of them it has. Colours
-/// it does not hold: each frame, or each strip, is drawn into a buffer of the caller. The strip is as high as this buffer and
-/// the depth buffer allow.
+/// It borrows a depth buffer and memory for records, if it is to have them, and says by its type which of them it has.
+/// Colours it does not hold: each frame, or each strip, is drawn into a buffer of the caller. The strip is as high as
+/// this buffer and the depth buffer allow.
 ///
 /// ```
 /// use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors}};
@@ -50,8 +50,8 @@ pub struct Renderer<'b, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
 }
 
 impl<P: PixelFormat> Renderer<'_, P> {
-    /// Makes a renderer for a screen, without depth and records: for embedded-graphics drawings, and pictures of one convex
-    /// body.
+    /// Makes a renderer for a screen, without depth and records: for embedded-graphics drawings, and pictures of one
+    /// convex body.
     ///
     /// # Errors
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`](crate::vertex::Viewport::MAX_SIZE).
@@ -74,9 +74,11 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
 
 impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithoutRecords> {
     /// Lends memory for records, which keep transformed vertices and visible triangles from strip to strip; see
-    /// [`records_len`](crate::target::records_len). It may be of any length: with less, the scene is transformed more often.
+    /// [`records_len`](crate::target::records_len). It may be of any length: with less, the scene is transformed more
+    /// often.
     ///
-    /// Without records it is transformed once per strip, and a program is some KB smaller than one that lends empty records.
+    /// Without records it is transformed once per strip, and a program is some KB smaller than one that lends empty
+    /// records.
     #[must_use]
     pub fn with_records(self, records: &'b mut [u32]) -> Renderer<'b, P, D, WithRecords> {
         Renderer { engine: self.engine.with_records(records), choices: PhantomData }
@@ -90,7 +92,8 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
         self.engine.screen()
     }
 
-    /// Returns the rows of a strip in a frame whose first colour buffer holds `pixels` pixels; 0 if it does not hold one row.
+    /// Returns the rows of a strip in a frame whose first colour buffer holds `pixels` pixels; 0 if it does not hold
+    /// one row.
     #[must_use]
     pub fn strip_rows(&self, pixels: usize) -> u32 {
         self.engine.strip_rows(pixels).into()
@@ -98,12 +101,12 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
 
     /// Draws a frame on an embedded-graphics display, strip by strip through `buffer`.
     ///
-    /// `draw` draws the whole scene. It is called at least once per strip, and must draw the same each time. So matrices and
-    /// shaders are made once, outside of it.
+    /// `draw` draws the whole scene. It is called at least once per strip, and must draw the same each time. So
+    /// matrices and shaders are made once, outside of it.
     ///
     /// # Errors
-    /// The display's own; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not hold one row. The
-    /// next frame starts afresh.
+    /// The display's own; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not hold one
+    /// row. The next frame starts afresh.
     pub fn frame<T: DrawTarget<Color = P::Color>>(
         &mut self,
         display: &mut T,
@@ -114,8 +117,8 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
         self.frame_to(OnDisplay::new(display), buffer, background, draw)
     }
 
-    /// Draws a frame on a part of an embedded-graphics display, as large as the renderer's screen and with its corner at
-    /// `top_left`; the rest of the display is left to others. See also [`FrameView`](crate::frame::FrameView).
+    /// Draws a frame on a part of an embedded-graphics display, as large as the renderer's screen and with its corner
+    /// at `top_left`; the rest of the display is left to others. See also [`FrameView`](crate::frame::FrameView).
     ///
     /// # Errors
     /// As [`frame`](Self::frame).
@@ -133,8 +136,8 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
     /// Draws a frame, strip by strip through `buffer`, and hands each finished strip to a sink.
     ///
     /// # Errors
-    /// The sink's own; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not hold one row. The
-    /// next frame starts afresh.
+    /// The sink's own; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not hold one row.
+    /// The next frame starts afresh.
     pub fn frame_to<K: StripSink<P>>(
         &mut self,
         mut sink: K,

@@ -1,8 +1,8 @@
 //! 2-D drawing into the strip: an embedded-graphics target over whatever is being drawn just now.
 //!
 //! Its bounding box is the whole screen, so that what is drawn does not depend on strips; pixels outside of the current
-//! strip are left out. Areas are cut before their pixels are looked at, [`Overlay::draw`] leaves out what has no pixel in the
-//! strip, and single pixels cost a comparison.
+//! strip are left out. Areas are cut before their pixels are looked at, [`Overlay::draw`] leaves out what has no pixel
+//! in the strip, and single pixels cost a comparison.
 
 use super::framebuffer::Framebuffer;
 use crate::color::{PixelFormat, fill};
@@ -22,8 +22,8 @@ use embedded_graphics_core::{Drawable, Pixel};
 type Raw<F> = <<F as Framebuffer>::Format as PixelFormat>::Raw;
 type Color<F> = <<F as Framebuffer>::Format as PixelFormat>::Color;
 
-/// A target for embedded-graphics, over the strip that is being drawn; from [`Scene::overlay`](crate::scene::Scene::overlay) and
-/// [`Scene::at_depth`](crate::scene::Scene::at_depth).
+/// A target for embedded-graphics, over the strip that is being drawn; from
+/// [`Scene::overlay`](crate::scene::Scene::overlay) and [`Scene::at_depth`](crate::scene::Scene::at_depth).
 ///
 /// While the closure is only recorded there are no pixels, and drawing does nothing.
 #[derive(Debug)]
@@ -67,8 +67,8 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     /// Draws what has no pixel outside of its bounding box, if that touches the strip: a lot cheaper than
     /// [`Drawable::draw`] for what does not, as text, images and shapes look at all of their pixels otherwise.
     ///
-    /// Pixels outside of the bounding box are not drawn. (The box of underlined text, in embedded-graphics 0.8, ends at the
-    /// underline: draw that as it is.)
+    /// Pixels outside of the bounding box are not drawn. (The box of underlined text, in embedded-graphics 0.8, ends at
+    /// the underline: draw that as it is.)
     pub fn draw<T: Drawable<Color = Color<F>> + Dimensions>(&mut self, drawable: &T) {
         let area = drawable.bounding_box();
         if self.is_visible(&area) {
@@ -86,8 +86,8 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
         }
     }
 
-    /// Draws an image with its corner at `top_left`, and of it only the part that is in the strip: embedded-graphics' own
-    /// `Image` walks through all that is above. Colours are converted where they are of another type.
+    /// Draws an image with its corner at `top_left`, and of it only the part that is in the strip: embedded-graphics'
+    /// own `Image` walks through all that is above. Colours are converted where they are of another type.
     pub fn draw_image<T: ImageDrawable<Color: Into<Color<F>>>>(&mut self, image: &T, top_left: Point) {
         let area = pixels(&Rectangle::new(top_left, image.size()));
         let part = self.clip.intersection(&area);

@@ -8,18 +8,18 @@ use embedded_graphics_core::geometry::Size;
 
 /// Rows of pixels to draw into.
 ///
-/// The rasterizer asks for a row before it draws into it, draws into what it gets, and skips what lies behind its end. A row
-/// outside of the buffer is an empty slice.
+/// The rasterizer asks for a row before it draws into it, draws into what it gets, and skips what lies behind its end.
+/// A row outside of the buffer is an empty slice.
 pub trait Framebuffer {
     /// The format of the pixels.
     type Format: PixelFormat;
 
-    /// Whether there is a depth buffer beside it; without one, every depth test passes. A constant, so that a program links only
-    /// the loops that it needs.
+    /// Whether there is a depth buffer beside it; without one, every depth test passes. A constant, so that a program
+    /// links only the loops that it needs.
     const DEPTH: bool = true;
 
-    /// Whether there may be records for it. Without them, the closure is called once a strip, and the code that records and
-    /// replays is not linked.
+    /// Whether there may be records for it. Without them, the closure is called once a strip, and the code that records
+    /// and replays is not linked.
     const RECORDS: bool = true;
 
     /// Row `y` of the screen, from column 0.
@@ -31,8 +31,8 @@ pub trait Framebuffer {
         first(self.row(y).get_mut(column..).unwrap_or_default(), length)
     }
 
-    /// The rows from `first_row` on, one after the other, if they lie in memory so, `width` pixels each, and no more than there
-    /// are. Triangles and lines are drawn faster then.
+    /// The rows from `first_row` on, one after the other, if they lie in memory so, `width` pixels each, and no more
+    /// than there are. Triangles and lines are drawn faster then.
     #[inline]
     fn rows(&mut self, first_row: u32, width: usize) -> Option<&mut [<Self::Format as PixelFormat>::Raw]> {
         let _ = (first_row, width);

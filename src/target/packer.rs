@@ -26,18 +26,18 @@ pub trait PackedFormat {
     fn pack<P: PixelFormat>(dither: &Dither<Self::Color>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]);
 }
 
-/// A byte is eight rows high and one pixel wide, its lowest bit on top; bytes go from left to right, then pages of eight
-/// rows from top to bottom: what monochrome OLED and LCD controllers want (SSD1306, SH1106, ST7565, PCD8544).
+/// A byte is eight rows high and one pixel wide, its lowest bit on top; bytes go from left to right, then pages of
+/// eight rows from top to bottom: what monochrome OLED and LCD controllers want (SSD1306, SH1106, ST7565, PCD8544).
 #[derive(Clone, Copy, Debug)]
 pub struct Pages;
 
-/// Rows of bytes, the leftmost pixel in their highest bits: e-paper and ST7920 with `BinaryColor`, SSD0323 with `Gray4`.
-/// Each row begins a new byte.
+/// Rows of bytes, the leftmost pixel in their highest bits: e-paper and ST7920 with `BinaryColor`, SSD0323 with
+/// `Gray4`. Each row begins a new byte.
 #[derive(Clone, Copy, Debug)]
 pub struct Rows<C>(PhantomData<C>);
 
-/// Rows of bytes, the leftmost pixel in their lowest bits: Sharp's memory displays, whose bus takes the lowest bit first, and
-/// controllers told so. Each row begins a new byte.
+/// Rows of bytes, the leftmost pixel in their lowest bits: Sharp's memory displays, whose bus takes the lowest bit
+/// first, and controllers told so. Each row begins a new byte.
 #[derive(Clone, Copy, Debug)]
 pub struct RowsLowFirst<C>(PhantomData<C>);
 
@@ -283,8 +283,8 @@ impl<'b, F: PackedFormat> Packer<'b, F> {
     }
 }
 
-/// A display of few levels (`BinaryColor`, `Gray2`, `Gray4`) as a sink for strips of full precision: dithered, they arrive
-/// through `fill_contiguous`.
+/// A display of few levels (`BinaryColor`, `Gray2`, `Gray4`) as a sink for strips of full precision: dithered, they
+/// arrive through `fill_contiguous`.
 #[derive(Debug)]
 pub struct DitheredDisplay<'d, D: DrawTarget<Color: Levels>> {
     display: &'d mut D,

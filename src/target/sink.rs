@@ -7,8 +7,8 @@ use embedded_graphics_core::primitives::Rectangle;
 
 /// A finished strip: whole rows of the screen, from left to right and from top to bottom.
 ///
-/// It holds the part of the colour buffer that has the strip's pixels, exactly: the last strip of a frame may have fewer rows
-/// than the others, and what the buffer holds behind them is old.
+/// It holds the part of the colour buffer that has the strip's pixels, exactly: the last strip of a frame may have
+/// fewer rows than the others, and what the buffer holds behind them is old.
 #[derive(Debug)]
 pub struct StripPixels<'c, P: PixelFormat> {
     area: Rectangle,
@@ -91,7 +91,8 @@ impl<'d, D> OnDisplay<'d, D> {
         Self::at(display, Point::zero())
     }
 
-    /// As a rectangle of the display with its corner at `top_left`; what is off the display is the display's to leave out.
+    /// As a rectangle of the display with its corner at `top_left`; what is off the display is the display's to leave
+    /// out.
     pub const fn at(display: &'d mut D, top_left: Point) -> Self {
         Self { display, top_left }
     }

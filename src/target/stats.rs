@@ -17,8 +17,8 @@ pub struct Stats {
     pub strips: u32,
     /// Draws that were processed.
     pub draws: u32,
-    /// Draws, or nodes of a hierarchy, that were outside the view as a whole: as their bounds say, which are not looked at for meshes of
-    /// up to four vertices.
+    /// Draws, or nodes of a hierarchy, that were outside the view as a whole: as their bounds say, which are not looked
+    /// at for meshes of up to four vertices.
     pub culled: u32,
     /// Vertices shaded.
     pub vertices: u32,

@@ -16,8 +16,9 @@ impl StripRows {
     pub(crate) const UNSET: Self = Self { rows: 0, factor: 0, shift: 0 };
 
     /// # Format
-    /// row / rows = row factor / 2^shift with factor = ⌈2^shift / rows⌉ ≤ 2¹³: too large by less than row / 2^shift, which is below
-    /// 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below 2¹².
+    /// row / rows = row factor / 2^shift with factor = ⌈2^shift / rows⌉ ≤ 2¹³: too large by less than row / 2^shift,
+    /// which is below 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below
+    /// 2¹².
     ///
     /// Without records nothing is divided, and the factor is 0.
     pub(crate) fn new(rows: u16, records: bool) -> Self {
