@@ -108,8 +108,14 @@ impl Demo for Scatter {
         let (Ok(grid), Ok(axes)) = (pairs(&self.grid), pairs(&self.axes)) else { return };
         let behind = State { depth: DepthState { compare: Compare::Always, write: false }, ..State::DEFAULT };
         let thin = Flat::unlit(Rgb888::new(52, 64, 76));
-        scene.draw_lines_with(behind, &grid, &self.mvp, &thin, &Smooth::new(230));
-        scene.draw_lines_with(behind, &axes, &self.mvp, &Flat::unlit(Rgb888::new(190, 200, 210)), &Smooth::new(340));
+        scene.draw_lines_with(behind, &grid, &self.mvp, &thin, &Smooth::new(Pixels::from_bits(230)));
+        scene.draw_lines_with(
+            behind,
+            &axes,
+            &self.mvp,
+            &Flat::unlit(Rgb888::new(190, 200, 210)),
+            &Smooth::new(Pixels::from_bits(340)),
+        );
         let colors = Some(&self.colors[..]);
         let points = |at| Points::new(Vertices { colors, ..Vertices::new(Positions::Exact(at)) });
         let (Ok(points), Ok(shadows)) = (points(&self.points), points(&self.shadows)) else { return };

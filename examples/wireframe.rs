@@ -12,7 +12,7 @@ use std::process::ExitCode;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::light::Light;
-use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
+use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
 use zstrip::shader::{DepthOnly, Flat};
 use zstrip::span::{Compare, DepthState};
@@ -164,7 +164,7 @@ impl Demo for Wireframe {
                 let ink = Flat::unlit(Rgb888::new(8, 16, 24));
                 let blended = DepthState { compare: Compare::Less, write: false };
                 let state = State { depth: blended, ..State::DEFAULT };
-                scene.draw_lines_with(state, &lines, &self.mvp, &ink, &Smooth::new(360));
+                scene.draw_lines_with(state, &lines, &self.mvp, &ink, &Smooth::new(Pixels::from_bits(360)));
             }
             3 => scene.draw_lines(&lines, &self.mvp, &white, &Thin),
             _ => {

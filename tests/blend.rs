@@ -278,9 +278,9 @@ fn fog_leaves_what_it_should_at_every_depth() {
             for depth in 0..=u16::MAX {
                 let z = f64::from(depth) / 65_535.0;
                 let exact = 255.0 * left(curve, n * f / (f - z * (f - n)));
-                worst = worst.max((f64::from(table.left(depth)) - exact).abs());
+                worst = worst.max((f64::from(table.transmittance(depth)) - exact).abs());
                 let exact = 255.0 * left(curve, n + z * (f - n));
-                worst_flat = worst_flat.max((f64::from(flat.left(depth)) - exact).abs());
+                worst_flat = worst_flat.max((f64::from(flat.transmittance(depth)) - exact).abs());
             }
             println!("{what} fog from {near} to {far}: {worst:.3} of 255, orthographic {worst_flat:.3}");
             assert!(worst <= allowed && worst_flat <= allowed, "{what}: {near}, {far}");

@@ -42,8 +42,8 @@ fn draw_any<F: Framebuffer>(scene: &mut Scene<'_, F>, seed: u64) {
             0 => canvas.polygon(&points[..3], color(rng)),
             1 => canvas.gradient(&corners[..4]),
             2 => canvas.line(points[0], points[1], color(rng)),
-            3 => canvas.gradient_line(corners[0], corners[1], &Thick::new(rng.below(3000) as u32)),
-            4 => canvas.gradient_line(corners[0], corners[1], &Smooth::new(rng.below(3000) as u32)),
+            3 => canvas.gradient_line(corners[0], corners[1], &Thick::new(Pixels::from_bits(rng.below(3000) as i32))),
+            4 => canvas.gradient_line(corners[0], corners[1], &Smooth::new(Pixels::from_bits(rng.below(3000) as i32))),
             5 => canvas.outline(&points, color(rng), &Dashed(rng.next_u64() as u32)),
             6 => canvas.point(points[0], Pixels::from_bits(rng.below(3000) as i32), color(rng)),
             7 => {

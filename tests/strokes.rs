@@ -12,7 +12,7 @@ use std::cell::RefCell;
 use support::{difference, strips, whole};
 use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
-use zstrip::math::{Projective, Vec3};
+use zstrip::math::{Pixels, Projective, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Positions, Topology, Vertices};
 use zstrip::shader::{
     Add, AddAlpha, Alpha, AlphaTest, Blend, DepthOnly, Flat, Gouraud, Multiply, Opacity, Replace, ScreenDoor,
@@ -322,13 +322,13 @@ fn dashed_lines_blend_discard_and_test_as_their_pixels_would() {
 
 #[test]
 fn thick_lines_blend_discard_and_test_as_their_pixels_would() {
-    Strokes::new(Thick::new(700)).check();
+    Strokes::new(Thick::new(Pixels::from_bits(700))).check();
 }
 
 #[test]
 fn smooth_lines_discard_and_test_as_their_pixels_would() {
     for width in [100, 700] {
-        let strokes = Strokes::new(Smooth::new(width));
+        let strokes = Strokes::new(Smooth::new(Pixels::from_bits(width as i32)));
         let wrong = [strokes.opaque::<Rgb565>(), strokes.opaque::<Rgb565Be>(), strokes.opaque::<Gray8>()];
         assert_eq!(wrong.concat(), [""; 0]);
     }
@@ -337,5 +337,5 @@ fn smooth_lines_discard_and_test_as_their_pixels_would() {
 #[test]
 #[ignore = "smooth lines never ask a shader to paint over a pixel: Blend sees black, and DepthOnly leaves no depth"]
 fn smooth_lines_blend_as_their_pixels_would() {
-    Strokes::new(Smooth::new(700)).check();
+    Strokes::new(Smooth::new(Pixels::from_bits(700))).check();
 }

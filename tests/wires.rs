@@ -55,9 +55,15 @@ fn draw_all<F: Framebuffer>(scene: &mut Scene<'_, F>, ends: &Ends, turn: Angle16
     let state = State { range, ..State::DEFAULT };
     scene.draw_lines_with(state, &lines(LineTopology::Strip), &mvp, &shader, &Thin);
     scene.draw_lines_with(state, &lines(LineTopology::Loop), &mvp, &shader, &Dashed::EVEN);
-    scene.draw_lines_with(state, &lines(LineTopology::Pairs), &mvp, &shader, &Thick::new(700));
+    scene.draw_lines_with(state, &lines(LineTopology::Pairs), &mvp, &shader, &Thick::new(Pixels::from_bits(700)));
     let blended = State { depth: DepthState { compare: Compare::LessEqual, write: false }, ..state };
-    scene.draw_lines_with(blended, &lines(LineTopology::Pairs), &mvp, &Flat::unlit(Rgb888::GREEN), &Smooth::new(300));
+    scene.draw_lines_with(
+        blended,
+        &lines(LineTopology::Pairs),
+        &mvp,
+        &Flat::unlit(Rgb888::GREEN),
+        &Smooth::new(Pixels::from_bits(300)),
+    );
     scene.draw_points_with(
         state,
         &Points::new(ends.data()).expect("points"),
@@ -115,7 +121,7 @@ fn perspective_correct_lines_are_drawn_alike_with_and_without_records() {
         let mvp = Projective::from(Affine::rotation_z(support::angle(&mut rng)));
         let draw = |records| {
             strips::<Rgb565>(SCREEN, 24, records, Rgb565::BLACK, |scene| {
-                scene.draw_lines_with(State::DEFAULT, &lines, &mvp, &Correct, &Thick::new(900));
+                scene.draw_lines_with(State::DEFAULT, &lines, &mvp, &Correct, &Thick::new(Pixels::from_bits(900)));
             })
         };
         let ((expected, stats), (picture, _)) = (draw(10_000), draw(0));
@@ -343,7 +349,13 @@ fn smooth_lines_cover_pixels_in_proportion() {
         let [a, b] = placed(&lines, &camera())[..] else { panic!("two ends") };
         let width = rng.pick(&[64, 128, 256, 400, 1280, 5000]);
         let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| {
-            scene.draw_lines_with(EVERYTHING, &lines, &camera(), &Flat::unlit(Rgb888::WHITE), &Smooth::new(width));
+            scene.draw_lines_with(
+                EVERYTHING,
+                &lines,
+                &camera(),
+                &Flat::unlit(Rgb888::WHITE),
+                &Smooth::new(Pixels::from_bits(width as i32)),
+            );
         });
         let [a, b] = [a, b].map(|v| [f64::from(v.x) / 256.0, f64::from(v.y) / 256.0]);
         for (k, [red, ..]) in picture.iter().enumerate() {
@@ -378,8 +390,8 @@ fn wide_lines_from_far_away_are_where_they_should_be() {
         let [from, to] = [a, b].map(|p| ScreenPoint::new(Pixels::from_bits(p[0]), Pixels::from_bits(p[1])));
         let smooth = case % 2 == 0;
         let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| match smooth {
-            true => scene.canvas().line_with(from, to, Rgb888::WHITE, &Smooth::new(width)),
-            false => scene.canvas().line_with(from, to, Rgb888::WHITE, &Thick::new(width)),
+            true => scene.canvas().line_with(from, to, Rgb888::WHITE, &Smooth::new(Pixels::from_bits(width as i32))),
+            false => scene.canvas().line_with(from, to, Rgb888::WHITE, &Thick::new(Pixels::from_bits(width as i32))),
         });
         let [a, b] = [from, to].map(|p| [p.x().to_num::<f64>(), p.y().to_num()]);
         for (k, [red, ..]) in picture.iter().enumerate() {
@@ -409,8 +421,9 @@ fn thick_lines_are_rectangles() {
         let lines = Lines::new(Vertices::new(Positions::Exact(&ends)), LineTopology::Pairs, None).expect("a line");
         let [a, b] = placed(&lines, &camera())[..] else { panic!("two ends") };
         let width = rng.pick(&[64, 256, 700, 2560, 10_000]);
-        let seen =
-            fragments(|scene, shader| scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Thick::new(width)));
+        let seen = fragments(|scene, shader| {
+            scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Thick::new(Pixels::from_bits(width as i32)))
+        });
         let mut hits = BTreeMap::new();
         seen.iter().for_each(|(position, ..)| *hits.entry(*position).or_insert(0) += 1);
         let [a, b] = [a, b].map(|v| [f64::from(v.x) / 256.0, f64::from(v.y) / 256.0]);

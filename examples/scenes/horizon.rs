@@ -66,7 +66,7 @@ fn scale<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: Angl
     for tens in [-60, -45, -30, -20, -10, 10, 20, 30, 45, 60] {
         let mark = dial.turned(Angle16::from_degrees(tens) - roll);
         let length = if tens % 30 == 0 { 30 } else { 16 };
-        canvas.line_with(mark.at(0, -214), mark.at(0, -214 - length), WHITE, &Smooth::new(500));
+        canvas.line_with(mark.at(0, -214), mark.at(0, -214 - length), WHITE, &Smooth::new(Pixels::from_bits(500)));
     }
 }
 
@@ -83,8 +83,8 @@ fn pointers<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial, roll: A
 fn wings<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial) {
     for side in [-1, 1] {
         let wing = [dial.at(side * 110, 0), dial.at(side * 44, 0), dial.at(side * 44, 20)];
-        canvas.polyline(&wing, Rgb888::new(16, 16, 16), &Smooth::new(1500));
-        canvas.polyline(&wing, YELLOW, &Smooth::new(900));
+        canvas.polyline(&wing, Rgb888::new(16, 16, 16), &Smooth::new(Pixels::from_bits(1500)));
+        canvas.polyline(&wing, YELLOW, &Smooth::new(Pixels::from_bits(900)));
     }
     canvas.point(dial.at(0, 0), Pixels::from_bits(1400), Rgb888::new(16, 16, 16));
     canvas.point(dial.at(0, 0), Pixels::from_bits(900), YELLOW);
@@ -103,7 +103,7 @@ fn backdrop<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, world: &Dial) {
         ]);
         canvas.polygon(&[world.at(-900, away), world.at(900, away), world.at(900, end), world.at(-900, end)], far);
     }
-    canvas.line_with(world.at(-400, 0), world.at(400, 0), WHITE, &Smooth::new(450));
+    canvas.line_with(world.at(-400, 0), world.at(400, 0), WHITE, &Smooth::new(Pixels::from_bits(450)));
 }
 
 /// A line every 5 degrees of pitch.
@@ -115,12 +115,17 @@ fn ladder<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, world: &Dial) {
             continue;
         }
         let half = if fives % 2 == 0 { 64 } else { 28 };
-        canvas.line_with(world.at(-half, y), world.at(half, y), WHITE, &Smooth::new(400));
+        canvas.line_with(world.at(-half, y), world.at(half, y), WHITE, &Smooth::new(Pixels::from_bits(400)));
         if fives % 2 == 0 {
             // The ends point to the horizon.
             let hook = if fives > 0 { 12 } else { -12 };
             for side in [-half, half] {
-                canvas.line_with(world.at(side, y), world.at(side, y + hook), WHITE, &Smooth::new(400));
+                canvas.line_with(
+                    world.at(side, y),
+                    world.at(side, y + hook),
+                    WHITE,
+                    &Smooth::new(Pixels::from_bits(400)),
+                );
             }
         }
     }
@@ -139,6 +144,6 @@ fn bezel<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, dial: &Dial) {
     for k in 0..SIDES {
         let (a, b) = (step(k), step(k + 1));
         canvas.polygon(&[at(a(256)), at(b(256)), at(b(900)), at(a(900))], PANEL);
-        canvas.line_with(at(a(256)), at(b(256)), RIM, &Smooth::new(900));
+        canvas.line_with(at(a(256)), at(b(256)), RIM, &Smooth::new(Pixels::from_bits(900)));
     }
 }

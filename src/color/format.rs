@@ -2,6 +2,7 @@
 
 use super::luma::luma;
 use super::packed::packed_channels;
+use super::rgb565::unpack_rgb565;
 use embedded_graphics_core::pixelcolor::{PixelColor, Rgb888};
 
 /// How colours are kept in a framebuffer. Implemented by marker types, which for formats that embedded-graphics knows are
@@ -38,8 +39,7 @@ pub trait PixelFormat {
     /// From RGB565.
     #[inline(always)]
     fn from_rgb565(raw: u16) -> Self::Raw {
-        let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
-        Self::pack([(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8])
+        Self::pack(unpack_rgb565(raw))
     }
 
     /// `a` · `weight` + `b` · (256 - `weight`), over 256 and rounded, in 8 bits a channel; for formats of 5 or 6 bits a

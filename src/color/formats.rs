@@ -3,18 +3,13 @@
 use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
 use super::format::PixelFormat;
 use super::luma::luma;
+use super::rgb565::{add_rgb565, mix_rgb565, pack_rgb565, unpack_rgb565};
 use crate::math::SMALL_CORE;
 use core::convert::identity;
 use embedded_graphics_core::pixelcolor::raw::RawU16;
 use embedded_graphics_core::pixelcolor::{
     Bgr565, Bgr888, Gray8, GrayColor, IntoStorage, Rgb565, Rgb666, Rgb888, RgbColor,
 };
-
-/// Red, green, blue to 5, 6, 5 bits.
-#[inline(always)]
-const fn rgb565(rgb: [u8; 3]) -> u16 {
-    (rgb[0] as u16 & 0xF8) << 8 | (rgb[1] as u16 & 0xFC) << 3 | rgb[2] as u16 >> 3
-}
 
 /// Where green is.
 const GREEN: u32 = 0x7E0;
@@ -38,57 +33,16 @@ const fn rgb565_from_packed(word: u32, mask: u32) -> u16 {
     }
 }
 
-/// 5, 6, 5 bits to 8, the upper ones repeated below.
-#[inline(always)]
-const fn from_rgb565(raw: u16) -> [u8; 3] {
-    let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
-    [(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8]
-}
-
-/// Where green, red and blue lie in a word that has room for five more bits of each: 6 bits from bit 21, 5 from 11, 5 from 0.
-const SPREAD: u32 = 0x07E0_F81F;
-
-#[inline(always)]
-const fn spread(raw: u16) -> u32 {
-    (raw as u32 | (raw as u32) << 16) & SPREAD
-}
-
-#[inline(always)]
-const fn folded(word: u32) -> u16 {
-    (word | word >> 16) as u16
-}
-
-/// A mixture with `weight` 256ths of `a`, rounded to 32nds: one product for all channels.
-///
-/// # Format
-/// Each channel times 32, and 16 that rounds: at most 63 · 32 + 16 = 2,032 of green's 11 bits, 1,008 of the others' 10.
-#[inline(always)]
-const fn mix_rgb565(a: u16, b: u16, weight: u32) -> u16 {
-    let (a, b, weight) = (spread(a), spread(b), (weight + 4) >> 3);
-    // Modulo 2³² it does not matter that a difference of two words is one of all channels.
-    let sum = (b << 5).wrapping_add(a.wrapping_sub(b).wrapping_mul(weight)).wrapping_add(0x0200_8010);
-    folded(sum >> 5 & SPREAD)
-}
-
-/// A sum, channels that overflow filled with ones.
-#[inline(always)]
-const fn add_rgb565(a: u16, b: u16) -> u16 {
-    let sum = spread(a) + spread(b);
-    let carries = sum & 0x0801_0020;
-    let full = carries - ((carries & 0x0001_0020) >> 5) - ((carries & 0x0800_0000) >> 6);
-    folded((sum | full) & SPREAD)
-}
-
-/// [`rgb565`] with red and blue exchanged.
+/// RGB565 with red and blue exchanged.
 #[inline(always)]
 const fn bgr565(rgb: [u8; 3]) -> u16 {
-    rgb565(reversed(rgb))
+    pack_rgb565(reversed(rgb))
 }
 
 /// Red, green and blue of a pixel of BGR565.
 #[inline(always)]
 const fn from_bgr565(raw: u16) -> [u8; 3] {
-    reversed(from_rgb565(raw))
+    reversed(unpack_rgb565(raw))
 }
 
 /// [`rgb565_from_packed`] with red and blue exchanged.
@@ -169,7 +123,7 @@ sixteen_bits!(
     /// 16-bit pixels in the processor's byte order.
     Rgb565,
     Rgb565,
-    (rgb565, from_rgb565, rgb565_from_packed, identity),
+    (pack_rgb565, unpack_rgb565, rgb565_from_packed, identity),
     identity,
     identity
 );
@@ -187,7 +141,7 @@ sixteen_bits!(
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb565Be;
 
-sixteen_bits!(Rgb565Be, Rgb565, (rgb565, from_rgb565, rgb565_from_packed, identity), u16::to_be, u16::from_be);
+sixteen_bits!(Rgb565Be, Rgb565, (pack_rgb565, unpack_rgb565, rgb565_from_packed, identity), u16::to_be, u16::from_be);
 
 /// BGR565 with the high byte first in memory.
 #[derive(Clone, Copy, Debug)]
@@ -337,7 +291,7 @@ mod tests {
         assert_eq!(P::unpack(P::pack([255; 3])), [255; 3]);
         assert_eq!(P::unpack(P::pack([0; 3])), [0; 3]);
         for raw in [0x1234, 0xFEDC, 0x07E0, 0x801F, 0xF801] {
-            assert_eq!(P::from_rgb565(raw), P::pack(from_rgb565(raw)));
+            assert_eq!(P::from_rgb565(raw), P::pack(unpack_rgb565(raw)));
         }
         for raw in raws {
             assert_eq!(P::pack(P::unpack(raw)), raw);

@@ -1,4 +1,4 @@
-//! Stages 8 to 11: a triangle on the screen → pixels.
+//! Stages 8 to 11 of [the pipeline](crate#the-pipeline): a triangle on the screen → pixels.
 
 use super::scene::{Scene, Target};
 use super::state::State;
@@ -9,7 +9,7 @@ use crate::span::{
 use crate::target::Framebuffer;
 use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, signed_area};
 
-/// What the triangles of a draw are drawn with. Public for [`Draw`](crate::scene::Draw), but nobody can name it.
+/// Draws the triangles of a draw, with its state and shader. Public for [`Draw`](crate::scene::Draw), but nobody can name it.
 pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) target: &'p mut Target<'t, F>,
     pub(super) screen: (u16, u16),
@@ -23,9 +23,9 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
 /// What a draw's rasterization does only by some states, as functions chosen where the state is known: a program links what its
 /// states ask for.
 pub struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
-    /// 9. The spans of a triangle, by a depth test.
+    /// Draws the spans of a triangle, by a depth test: stage 9 of [the pipeline](crate#the-pipeline).
     spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
-    /// 8. What is added to depths.
+    /// Computes the depth bias of a triangle, a part of stage 8, if the state has one.
     bias: Option<Bias>,
 }
 
@@ -52,7 +52,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
 
 type Bias = fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32;
 
-/// The steps of depth that a bias is on a triangle.
+/// Computes the steps of depth that a bias adds to a triangle.
 fn biased(bias: &DepthBias, [a, b, c]: &[ScreenVertex; 3], depth: &PlaneEquation) -> i32 {
     bias.steps(a.z.min(b.z).min(c.z)..a.z.max(b.z).max(c.z), depth.dx, depth.dy)
 }
@@ -83,7 +83,7 @@ fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
-    /// The depth test: without a depth buffer, every fragment passes.
+    /// Returns the depth test: without a depth buffer, every fragment passes.
     pub(super) fn test(&self) -> DepthState {
         if F::DEPTH { self.state.depth } else { DepthState::OFF }
     }
@@ -109,12 +109,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let primitive = Primitive::constant(S::Varyings::ZERO, flat, self.state.side(area), S::Setup::default());
         let mut set_up = SetUp { v, area, depth: PlaneEquation::default(), primitive };
         self.set_up(&mut set_up, varyings);
-        // 9. Spans, in a loop of its own for each kind of depth test.
+        // Stage 9, in a loop of its own for each kind of depth test.
         (self.hooks.spans)(self, &set_up);
     }
 
-    /// Stage 8, plane equations of depth and varyings; from here on, values are those at the screen's corner. In a function of
-    /// its own, and in place, for the stack that it takes.
+    /// Computes the plane equations of depth and varyings, whose values are those at the screen's corner, and lets the shader set up:
+    /// stage 8 of [the pipeline](crate#the-pipeline). Out of line and in place, so that its stack is free again while spans are
+    /// drawn.
     #[inline(never)]
     fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings, S::Setup>, varyings: &[S::Varyings; 3]) {
         let SetUp { v, area, depth, primitive } = set_up;
@@ -154,11 +155,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         primitive.setup = self.shader.setup(&triangle);
     }
 
-    /// 9. Spans, between two edges from row to row.
+    /// Draws the spans between two edges, from row to row: stage 9 of [the pipeline](crate#the-pipeline).
     #[inline(never)]
     fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
         if S::Varyings::LEN > MAX_IN_REGISTERS {
-            return self.spans_apart(set_up, test);
+            return self.spans_outlined(set_up, test);
         }
         let SetUp { v, area, depth, primitive } = set_up;
         let columns = self.clip.x.clone();
@@ -210,7 +211,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                     let Some(depth) = subslice(depths, at, length) else { return };
                     let Some(color) = subslice(colors, at, length) else { return };
                     let z = z.wrapping_add_signed(primitive.dz_dx.wrapping_mul(start));
-                    // 10, 11. Depth test and fragments.
+                    // Stages 10 and 11, depth test and fragments.
                     self.shader.span(Span { color, depth, z, position: (start, y), primitive }, test);
                 }
                 y += 1;
@@ -221,15 +222,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
     }
 
-    /// Stage 9 for many varyings, whose fragments take longer than all of this: nothing is kept from span to span but the edges, for
-    /// the stack that it takes.
+    /// Draws the spans of a triangle with many varyings. Their fragments take far longer than finding the span, so nothing but
+    /// the edges is kept from span to span: that keeps the stack of this function small under the fragment stage.
     #[inline(always)]
-    fn spans_apart<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
+    fn spans_outlined<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
         let mut nothing = [(); usize::MAX];
         let mut spans = Spans::new(set_up.v, set_up.area, &self.clip.y);
         let shader = self.shader;
         while spans.next_in(&self.clip.x) {
-            // 10, 11. Depth test and fragments.
+            // Stages 10 and 11, depth test and fragments.
             shader.span(self.span_at::<D>(set_up, &spans, &mut nothing), test);
         }
     }

@@ -1,7 +1,8 @@
-//! Strokes: a line on the screen → pixels. What is not used is not linked, as each is a type.
+//! Strokes: a line on the screen → pixels. Each stroke is a type, so a program links those that it uses.
 
 use super::painter::{Painter, RasterHooks};
 use crate::color::PixelFormat;
+use crate::math::Pixels;
 use crate::raster::{Along, Line, LinePixels, PixelRect, unit};
 use crate::span::{
     Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Shader, Span, SpanOf,
@@ -13,9 +14,9 @@ use crate::vertex::{ScreenVertex, Side, Varyings, VertexShader, Wrapper};
 /// How a line is drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
 pub trait Stroke: Draw {}
 
-/// What a stroke does; not to be implemented outside of the crate.
+/// Draws lines in a stroke's way; not to be implemented outside of the crate.
 pub trait Draw {
-    /// How far pixels may be away from the line, in whole px.
+    /// Returns how far pixels may be away from the line, in whole px.
     fn reach(&self) -> i32;
 
     /// Draws a line.
@@ -59,25 +60,34 @@ pub struct Smooth(u32);
 /// The widest line, 2048 px.
 const WIDEST: u32 = 1 << 19;
 
+/// Returns a width in 24.8 px, between 0 and [`WIDEST`].
+const fn width_bits(width: Pixels) -> u32 {
+    match width.to_bits() {
+        ..0 => 0,
+        bits if bits as u32 > WIDEST => WIDEST,
+        bits => bits as u32,
+    }
+}
+
 impl Thick {
-    /// A width in 24.8 px, up to 2048 px.
-    pub const fn new(width: u32) -> Self {
-        Self(if width > WIDEST { WIDEST } else { width })
+    /// Creates a stroke of a width up to 2048 px; wider ones become as wide as that, negative ones 0.
+    pub const fn new(width: Pixels) -> Self {
+        Self(width_bits(width))
     }
 
-    /// A width in whole pixels.
+    /// Creates a stroke of a width in whole pixels.
     pub const fn px(width: u8) -> Self {
         Self((width as u32) << 8)
     }
 }
 
 impl Smooth {
-    /// A width in 24.8 px, up to 2048 px.
-    pub const fn new(width: u32) -> Self {
-        Self(if width > WIDEST { WIDEST } else { width })
+    /// Creates a stroke of a width up to 2048 px; wider ones become as wide as that, negative ones 0.
+    pub const fn new(width: Pixels) -> Self {
+        Self(width_bits(width))
     }
 
-    /// A width in whole pixels.
+    /// Creates a stroke of a width in whole pixels.
     pub const fn px(width: u8) -> Self {
         Self((width as u32) << 8)
     }
@@ -120,7 +130,7 @@ impl Draw for Dashed {
     }
 }
 
-/// A line one pixel wide: set-up.
+/// Sets up a line one pixel wide, and draws it.
 #[inline(never)]
 fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     painter: &mut Painter<'_, '_, F, S>,
@@ -178,7 +188,7 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
-    /// What is to be added to depths between two, in 16.16, that change by so much from pixel to pixel: the bias, and the half
+    /// Returns what is added to depths in a range, in 16.16, that change by `dz` from pixel to pixel: the bias, and the half
     /// that rounds.
     #[inline]
     fn bias(&self, [nearest, farthest]: [u16; 2], dz: i32) -> u32 {
@@ -321,7 +331,7 @@ fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, 
     ]
 }
 
-/// A rectangle as two triangles.
+/// Draws a rectangle as two triangles.
 fn fill<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
     [a, b, c, d]: &[ScreenVertex; 4],

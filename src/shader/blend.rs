@@ -62,9 +62,9 @@ const fn by_255(x: u32) -> u32 {
     (x + (x >> 8)) >> 8
 }
 
-/// Three channels from those of two colours.
+/// Computes three channels from those of two colours.
 #[inline(always)]
-fn channels([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], f: impl Fn(u32, u32) -> u32) -> [u8; 3] {
+fn map_channels([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], f: impl Fn(u32, u32) -> u32) -> [u8; 3] {
     let channel = |a: u8, b: u8| f(u32::from(a), u32::from(b)) as u8;
     [channel(r, s), channel(g, t), channel(b, u)]
 }
@@ -76,7 +76,7 @@ impl<P: PixelFormat> BlendMode<P> for Alpha {
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
         let [.., alpha] = source;
         let alpha = u32::from(alpha);
-        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * alpha + t * (255 - alpha))))
+        P::pack(map_channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * alpha + t * (255 - alpha))))
     }
 }
 
@@ -104,7 +104,7 @@ impl<P: PixelFormat> BlendMode<P> for AddAlpha {
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
         let [.., alpha] = source;
         let alpha = u32::from(alpha);
-        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| (by_255(s * alpha) + t).min(255)))
+        P::pack(map_channels(Rgba8888::unpack(source), P::unpack(there), |s, t| (by_255(s * alpha) + t).min(255)))
     }
 }
 
@@ -117,7 +117,7 @@ impl<P: PixelFormat> BlendMode<P> for Multiply {
 
     #[inline(always)]
     fn blend(&self, source: [u8; 4], there: P::Raw) -> P::Raw {
-        P::pack(channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * t)))
+        P::pack(map_channels(Rgba8888::unpack(source), P::unpack(there), |s, t| by_255(s * t)))
     }
 }
 

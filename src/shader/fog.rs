@@ -5,11 +5,11 @@
 //! a small table takes it to the amount of fog, fine where depth is coarse: beyond 15/16 of the depth range, and again
 //! beyond 255/256.
 
-use crate::color::PixelFormat;
+use crate::color::{PixelFormat, channels};
 use crate::math::{ProjectionError, Scalar, exp_negative};
 use crate::span::{Fragment, Shader, TriangleSetup};
 use crate::vertex::{VertexShader, Wrapper};
-use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// How fog thickens with the distance from the camera's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,8 +51,8 @@ const ENTRIES: usize = 769;
 ///     Ok(table) => table,
 ///     Err(_) => panic!("near and far"),
 /// };
-/// assert_eq!(MIST.left(0), 255);
-/// assert_eq!(MIST.left(65_535), 0);
+/// assert_eq!(MIST.transmittance(0), 255);
+/// assert_eq!(MIST.transmittance(65_535), 0);
 /// ```
 ///
 /// # Format
@@ -60,12 +60,12 @@ const ENTRIES: usize = 769;
 /// or more, up to far = 4,000 near).
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FogTable {
-    left: [u8; ENTRIES],
+    entries: [u8; ENTRIES],
 }
 
 impl FogCurve {
-    /// What is left at a distance in 16.16, 255 = all.
-    const fn left(&self, distance: i64) -> u8 {
+    /// Computes the part of a colour that is left at a distance in 16.16, 255 = all.
+    const fn transmittance(&self, distance: i64) -> u8 {
         match *self {
             Self::Linear { start, end } => {
                 let (start, end) = (start.to_bits() as i64, end.to_bits() as i64);
@@ -120,7 +120,7 @@ impl FogTable {
         if n >= f {
             return Err(ProjectionError::NearNotBeforeFar { near, far });
         }
-        let mut left = [0; ENTRIES];
+        let mut entries = [0; ENTRIES];
         let mut k = 0;
         while k < ENTRIES {
             // Steps before the far plane; the near plane is 65,535 before it.
@@ -132,15 +132,15 @@ impl FogTable {
             };
             let steps = if steps > 65_535 { 65_535 } else { steps as i64 };
             let distance = if perspective { hyperbola(n, f, steps) } else { f - steps * (f - n) / 65_535 };
-            left[k] = curve.left(distance);
+            entries[k] = curve.transmittance(distance);
             k += 1;
         }
-        Ok(Self { left })
+        Ok(Self { entries })
     }
 
-    /// What is left of a colour at a depth, 255 = all.
+    /// Returns the part of a colour that is left at a depth, 255 = all.
     #[inline]
-    pub fn left(&self, depth: u16) -> u8 {
+    pub fn transmittance(&self, depth: u16) -> u8 {
         let steps = !depth;
         let (entry, fraction) = match steps {
             4096.. => (512 + (steps >> 8), steps & 0xFF),
@@ -148,7 +148,7 @@ impl FogTable {
             _ => (steps, 0),
         };
         // At most 512 + 255 + 1.
-        let at = |entry: usize| i32::from(self.left.get(entry).copied().unwrap_or(0));
+        let at = |entry: usize| i32::from(self.entries.get(entry).copied().unwrap_or(0));
         let (here, next) = (at(usize::from(entry)), at(usize::from(entry) + 1));
         (here + (((next - here) * i32::from(fraction) + 128) >> 8)) as u8
     }
@@ -179,8 +179,7 @@ impl<'t, S> Fogged<'t, S> {
     /// A shader whose colours fade into `color`: usually that of the background; black for what is
     /// [added](crate::shader::Add).
     pub fn new(shader: S, table: &'t FogTable, color: impl Into<Rgb888>) -> Self {
-        let color: Rgb888 = color.into();
-        Self { shader, table, color: [color.r(), color.g(), color.b()] }
+        Self { shader, table, color: channels(color.into()) }
     }
 }
 
@@ -204,7 +203,7 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Fogged<'_, S> {
 
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
-        let left = u32::from(self.table.left(fragment.depth));
+        let left = u32::from(self.table.transmittance(fragment.depth));
         Some(P::mix(self.shader.fragment(fragment)?, P::pack(self.color), left + (left >> 7)))
     }
 }

@@ -197,32 +197,32 @@ impl DepthStorage<u16> for DepthDyn {
     }
 }
 
-/// Pixels that [`passing`] tests.
+/// Pixels that [`count_passing_prefix`] tests.
 pub(crate) const RUN: usize = 16;
 
-/// Tests the depths of a run from `z` on, up to the first that does not pass, and writes those that do: how many they are.
+/// Tests the depths of a run from `z` on, up to the first that does not pass, and writes those that do. Returns how many pass.
 ///
 /// Most runs pass, or fail, as a whole. Where all pass, two loops, this one and another for colours, are shorter than one for
 /// both, as each has all of its values in registers.
 #[inline(always)]
-pub(crate) fn passing<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
+pub(crate) fn count_passing_prefix<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
     if !D::ENABLED {
         RUN
     } else if SMALL_CORE {
-        passing_apart(test, depths, z, dz_dx)
+        count_passing_prefix_outlined(test, depths, z, dz_dx)
     } else {
-        passing_here(test, depths, z, dz_dx)
+        count_passing_prefix_inlined(test, depths, z, dz_dx)
     }
 }
 
 /// Out of line, where its registers are its own.
 #[inline(never)]
-fn passing_apart<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
-    passing_here(test, depths, z, dz_dx)
+fn count_passing_prefix_outlined<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
+    count_passing_prefix_inlined(test, depths, z, dz_dx)
 }
 
 #[inline(always)]
-fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], mut z: u32, dz_dx: i32) -> usize {
+fn count_passing_prefix_inlined<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], mut z: u32, dz_dx: i32) -> usize {
     // Spelled out: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! test {
         ($($count:literal $depth:ident)*) => {
@@ -242,24 +242,24 @@ fn passing_here<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], mut z: u32,
     RUN
 }
 
-/// [`passing`] for up to a run: how many are left.
+/// Does as [`count_passing_prefix`] for up to a run, and returns how many depths are not tested yet.
 #[inline(always)]
-pub(crate) fn left<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
+pub(crate) fn untested_tail<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
     match <&mut [D::Depth; RUN]>::try_from(&mut *depths) {
-        Ok(run) => RUN - passing(test, run, z, dz_dx),
-        Err(_) => few_left(test, depths, z, dz_dx),
+        Ok(run) => RUN - count_passing_prefix(test, run, z, dz_dx),
+        Err(_) => untested_short_tail(test, depths, z, dz_dx),
     }
 }
 
-/// [`left`] of fewer depths than a run has.
+/// Does as [`untested_tail`] for fewer depths than a run has.
 #[inline(always)]
-pub(super) fn few_left<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
-    if D::ENABLED { few_left_apart(test, depths, z, dz_dx) } else { 0 }
+pub(super) fn untested_short_tail<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
+    if D::ENABLED { untested_short_tail_outlined(test, depths, z, dz_dx) } else { 0 }
 }
 
 /// Out of line, where its registers are its own.
 #[inline(never)]
-fn few_left_apart<D: DepthTest>(test: D, mut depths: &mut [D::Depth], mut z: u32, dz_dx: i32) -> usize {
+fn untested_short_tail_outlined<D: DepthTest>(test: D, mut depths: &mut [D::Depth], mut z: u32, dz_dx: i32) -> usize {
     // Spelled out: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! test {
         ($($left:literal $depth:ident)*) => {
@@ -314,7 +314,7 @@ mod tests {
                 }
                 (*depth, left) = (near, left - 1);
             }
-            assert_eq!(super::left(DepthLess, &mut found[..length], z, dz_dx), left, "{case}");
+            assert_eq!(super::untested_tail(DepthLess, &mut found[..length], z, dz_dx), left, "{case}");
             assert_eq!(found, expected, "{case}");
         }
     }

@@ -11,7 +11,7 @@
 //! channels are worked out where registers are free.
 
 use super::color_setup::{ColorSetup, GROUP};
-use super::depth::{DepthOff, DepthTest, few_left, passing};
+use super::depth::{DepthOff, DepthTest, count_passing_prefix, untested_short_tail};
 use super::span::{Primitive, Span};
 use crate::color::{PixelFormat, spread, spread_step, word};
 use crate::math::SMALL_CORE;
@@ -61,13 +61,16 @@ const LONG: usize = 512;
 /// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
 #[inline(always)]
 pub(crate) fn packed_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
-    drawn::<P, D, SMALL_CORE>(span, test);
+    draw_span::<P, D, SMALL_CORE>(span, test);
 }
 
 /// Draws a span; less than a run of it in one loop, or in two: first depths and then colours, each with all of its values, and its
 /// parameters, in registers, even if they are few.
 #[inline(always)]
-fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
+fn draw_span<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
+    span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>,
+    test: D,
+) {
     let Span { color, depth, z, primitive, position } = span;
     let (x, y) = position;
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
@@ -75,17 +78,17 @@ fn drawn<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(span: Span<'_, P, [i3
         let word = word_at::<P>(primitive, x, y);
         // Small cores would keep the triangle's on the stack.
         let mask = if SMALL_CORE { P::packed_mask() } else { primitive.setup.mask };
-        return Pen { z, dz_dx: 0, word, step: 0, mask }.dot::<P, D>(test, position, color, depth);
+        return SpanCursor { z, dz_dx: 0, word, step: 0, mask }.dot::<P, D>(test, position, color, depth);
     }
     // Of what a short span does not need, nothing is even passed on.
     if color.len() >= RUN {
-        runs::<P, D, IN_TWO>(test, depth, z, primitive, color, x, y);
-    } else if !IN_TWO {
-        few_at::<P, D>(test, depth, z, primitive, color, x, y);
+        draw_runs::<P, D, TWO_PASS>(test, depth, z, primitive, color, x, y);
+    } else if !TWO_PASS {
+        draw_short_at::<P, D>(test, depth, z, primitive, color, x, y);
     } else {
-        match few_left(test, depth, z, primitive.dz_dx) {
-            0 => few_colors_at::<P>(color, primitive, x, y),
-            left => some_at::<P, D>(test, depth, z, primitive, color, x, y, left),
+        match untested_short_tail(test, depth, z, primitive.dz_dx) {
+            0 => color_short_at::<P>(color, primitive, x, y),
+            left => draw_partial_at::<P, D>(test, depth, z, primitive, color, x, y, left),
         }
     }
 }
@@ -107,7 +110,7 @@ fn channels_at<P: PixelFormat>(primitive: &Colored, x: i32, y: i32) -> [i32; 3] 
 
 /// Draws a span of at least a run.
 #[inline(never)]
-fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
+fn draw_runs<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     test: D,
     depth: &mut [D::Depth],
     z: u32,
@@ -117,13 +120,13 @@ fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     y: i32,
 ) {
     if color.len() > LONG {
-        return long_span::<P, D, IN_TWO>(test, depth, z, primitive, color, x, y);
+        return draw_long::<P, D, TWO_PASS>(test, depth, z, primitive, color, x, y);
     }
     let first = channels_at::<P>(primitive, x, y);
     let addends = P::dither((x, y));
     let Some(mut depth) = depth.get_mut(..color.len()) else { return };
     let ColorSetup { step, correction, middle, .. } = primitive.setup;
-    let mut pen = Pen { z, dz_dx: primitive.dz_dx, word: word(first), step, mask: primitive.setup.mask };
+    let mut cursor = SpanCursor { z, dz_dx: primitive.dz_dx, word: word(first), step, mask: primitive.setup.mask };
     let [dr, dg, db] = primitive.d_dx;
     let of_run = |channel, step| {
         spread_step(P::DITHER, channel, step).wrapping_mul(RUN as i32).wrapping_add(LOW_HALVES[channel])
@@ -136,35 +139,35 @@ fn runs<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
         color = rest;
         let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
         depth = rest;
-        let passed = passing(test, depths, pen.z, pen.dz_dx);
+        let passed = count_passing_prefix(test, depths, cursor.z, cursor.dz_dx);
         if passed == RUN {
-            pen.colors::<P>([correction, middle], addends, colors);
+            cursor.colors::<P>([correction, middle], addends, colors);
         } else {
-            some::<P, D>(test, depths, pen.z, primitive, colors, pen.word, addends, RUN - passed);
+            draw_partial::<P, D>(test, depths, cursor.z, primitive, colors, cursor.word, addends, RUN - passed);
             // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
-            pen.dz_dx = black_box(pen.dz_dx);
+            cursor.dz_dx = black_box(cursor.dz_dx);
         }
-        pen.z = pen.z.wrapping_add_signed(pen.dz_dx.wrapping_mul(RUN as i32));
+        cursor.z = cursor.z.wrapping_add_signed(cursor.dz_dx.wrapping_mul(RUN as i32));
         lower = lower.wrapping_add(run_low);
         let carries = lower >> CARRY & UNITS;
         lower = lower.wrapping_sub(carries << CARRY);
-        pen.word = pen.word.wrapping_add(run).wrapping_add(carries);
+        cursor.word = cursor.word.wrapping_add(run).wrapping_add(carries);
     }
     if color.is_empty() {
         return;
     }
-    if !IN_TWO {
-        return few::<P, D>(test, depth, pen.z, primitive, color, pen.word, addends);
+    if !TWO_PASS {
+        return draw_short::<P, D>(test, depth, cursor.z, primitive, color, cursor.word, addends);
     }
-    match few_left(test, depth, pen.z, pen.dz_dx) {
-        0 => few_colors::<P>(color, pen.word, primitive, addends),
-        left => some::<P, D>(test, depth, pen.z, primitive, color, pen.word, addends, left),
+    match untested_short_tail(test, depth, cursor.z, cursor.dz_dx) {
+        0 => color_short::<P>(color, cursor.word, primitive, addends),
+        left => draw_partial::<P, D>(test, depth, cursor.z, primitive, color, cursor.word, addends, left),
     }
 }
 
 /// Draws less than a run, from a pixel on.
 #[inline(never)]
-fn few_at<P: PixelFormat, D: DepthTest>(
+fn draw_short_at<P: PixelFormat, D: DepthTest>(
     test: D,
     depth: &mut [D::Depth],
     z: u32,
@@ -177,12 +180,12 @@ fn few_at<P: PixelFormat, D: DepthTest>(
     let word = word(channels_at::<P>(primitive, x, y));
     // What comes now is loaded now.
     compiler_fence(Ordering::SeqCst);
-    Pen::new(z, word, primitive).few::<P, D>(test, primitive, P::dither((x, y)), color, depth);
+    SpanCursor::new(z, word, primitive).draw_short::<P, D>(test, primitive, P::dither((x, y)), color, depth);
 }
 
 /// The same, from a word on.
 #[inline(never)]
-fn few<P: PixelFormat, D: DepthTest>(
+fn draw_short<P: PixelFormat, D: DepthTest>(
     test: D,
     depth: &mut [D::Depth],
     z: u32,
@@ -192,31 +195,37 @@ fn few<P: PixelFormat, D: DepthTest>(
     addends: &[u32; 8],
 ) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
-    Pen::new(z, word, primitive).few::<P, D>(test, primitive, addends, color, depth);
+    SpanCursor::new(z, word, primitive).draw_short::<P, D>(test, primitive, addends, color, depth);
 }
 
 /// Colours less than a run, from a pixel on.
 #[inline(never)]
-fn few_colors_at<P: PixelFormat>(color: &mut [P::Raw], primitive: &Colored, x: i32, y: i32) {
+fn color_short_at<P: PixelFormat>(color: &mut [P::Raw], primitive: &Colored, x: i32, y: i32) {
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
     let word = word(channels_at::<P>(primitive, x, y));
-    Pen::new(0, word, primitive).few::<P, DepthOff>(DepthOff, primitive, P::dither((x, y)), color, nothing);
+    SpanCursor::new(0, word, primitive).draw_short::<P, DepthOff>(
+        DepthOff,
+        primitive,
+        P::dither((x, y)),
+        color,
+        nothing,
+    );
 }
 
 /// The same, from a word on.
 #[inline(never)]
-fn few_colors<P: PixelFormat>(color: &mut [P::Raw], word: u32, primitive: &Colored, addends: &[u32; 8]) {
+fn color_short<P: PixelFormat>(color: &mut [P::Raw], word: u32, primitive: &Colored, addends: &[u32; 8]) {
     let mut nothing = [(); usize::MAX];
     let Some(nothing) = nothing.get_mut(..color.len()) else { return };
-    Pen::new(0, word, primitive).few::<P, DepthOff>(DepthOff, primitive, addends, color, nothing);
+    SpanCursor::new(0, word, primitive).draw_short::<P, DepthOff>(DepthOff, primitive, addends, color, nothing);
 }
 
 /// Draws less than a run, from a pixel on, of which the depths have been tested but for the last ones.
 #[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
 #[cold]
 #[inline(never)]
-fn some_at<P: PixelFormat, D: DepthTest>(
+fn draw_partial_at<P: PixelFormat, D: DepthTest>(
     test: D,
     depths: &mut [D::Depth],
     z: u32,
@@ -226,14 +235,23 @@ fn some_at<P: PixelFormat, D: DepthTest>(
     y: i32,
     left: usize,
 ) {
-    some_here::<P, D>(test, depths, z, primitive, colors, || word_at::<P>(primitive, x, y), P::dither((x, y)), left);
+    draw_partial_inlined::<P, D>(
+        test,
+        depths,
+        z,
+        primitive,
+        colors,
+        || word_at::<P>(primitive, x, y),
+        P::dither((x, y)),
+        left,
+    );
 }
 
 /// The same for up to a run, from a word on.
 #[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
 #[cold]
 #[inline(never)]
-fn some<P: PixelFormat, D: DepthTest>(
+fn draw_partial<P: PixelFormat, D: DepthTest>(
     test: D,
     depths: &mut [D::Depth],
     z: u32,
@@ -243,12 +261,12 @@ fn some<P: PixelFormat, D: DepthTest>(
     addends: &[u32; 8],
     left: usize,
 ) {
-    some_here::<P, D>(test, depths, z, primitive, colors, || word, addends, left);
+    draw_partial_inlined::<P, D>(test, depths, z, primitive, colors, || word, addends, left);
 }
 
 #[expect(clippy::too_many_arguments, reason = "as above")]
 #[inline(always)]
-fn some_here<P: PixelFormat, D: DepthTest>(
+fn draw_partial_inlined<P: PixelFormat, D: DepthTest>(
     test: D,
     depths: &mut [D::Depth],
     z: u32,
@@ -302,7 +320,7 @@ fn all_hidden<D: DepthTest>(test: D, depths: &[D::Depth], mut z: u32, dz_dx: i32
 /// A span part by part.
 #[cold]
 #[inline(never)]
-fn long_span<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
+fn draw_long<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     test: D,
     depth: &mut [D::Depth],
     mut z: u32,
@@ -312,7 +330,7 @@ fn long_span<P: PixelFormat, D: DepthTest, const IN_TWO: bool>(
     y: i32,
 ) {
     for (color, depth) in color.chunks_mut(LONG).zip(depth.chunks_mut(LONG)) {
-        drawn::<P, D, IN_TWO>(Span { color, depth, z, primitive, position: (x, y) }, test);
+        draw_span::<P, D, TWO_PASS>(Span { color, depth, z, primitive, position: (x, y) }, test);
         z = z.wrapping_add_signed(primitive.dz_dx.wrapping_mul(LONG as i32));
         x = x.wrapping_add(LONG as i32);
     }
@@ -325,7 +343,7 @@ fn addend<P: PixelFormat>(addends: &[u32; 8], pixel: usize) -> u32 {
 }
 
 /// What changes from pixel to pixel in [`packed_span`].
-struct Pen {
+struct SpanCursor {
     z: u32,
     dz_dx: i32,
     word: u32,
@@ -333,7 +351,7 @@ struct Pen {
     mask: u32,
 }
 
-impl Pen {
+impl SpanCursor {
     #[inline(always)]
     fn new(z: u32, word: u32, primitive: &Colored) -> Self {
         Self { z, dz_dx: primitive.dz_dx, word, step: primitive.setup.step, mask: primitive.setup.mask }
@@ -386,7 +404,7 @@ impl Pen {
 
     /// Draws less than a run.
     #[inline(always)]
-    fn few<P: PixelFormat, D: DepthTest>(
+    fn draw_short<P: PixelFormat, D: DepthTest>(
         &mut self,
         test: D,
         primitive: &Colored,
@@ -521,8 +539,8 @@ mod tests {
                 }};
             }
             let expected = drawn_by!(plain::<P, D>);
-            assert!(drawn_by!(drawn::<P, D, false>) == expected, "{case}: {length} pixels");
-            assert!(drawn_by!(drawn::<P, D, true>) == expected, "{case}: {length} pixels, in two loops");
+            assert!(drawn_by!(draw_span::<P, D, false>) == expected, "{case}: {length} pixels");
+            assert!(drawn_by!(draw_span::<P, D, true>) == expected, "{case}: {length} pixels, in two loops");
         }
     }
 

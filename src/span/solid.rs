@@ -1,7 +1,7 @@
 //! Spans of one colour.
 
 use super::color_setup::ColorSetup;
-use super::depth::{DepthTest, RUN, passing};
+use super::depth::{DepthTest, RUN, count_passing_prefix};
 use super::packed::packed_span;
 use super::span::{Primitive, Span};
 use crate::color::{PixelFormat, fill, squeeze, unpacked};
@@ -68,7 +68,7 @@ fn tested_span<R: Copy, D: DepthTest>(
         color = rest;
         let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
         depth = rest;
-        run(test, &mut z, dz_dx, value, colors, depths);
+        run16(test, &mut z, dz_dx, value, colors, depths);
     }
     while !SMALL_CORE && color.len() >= 4 {
         // Spelled out: at `opt-level = "s"` a loop would stay a loop.
@@ -91,7 +91,7 @@ fn tested_span<R: Copy, D: DepthTest>(
 
 /// Draws a run, depths first and colours then.
 #[inline(always)]
-fn run<R: Copy, D: DepthTest>(
+fn run16<R: Copy, D: DepthTest>(
     test: D,
     z: &mut u32,
     dz_dx: i32,
@@ -99,7 +99,7 @@ fn run<R: Copy, D: DepthTest>(
     colors: &mut [R; RUN],
     depths: &mut [D::Depth; RUN],
 ) {
-    let passed = passing(test, depths, *z, dz_dx);
+    let passed = count_passing_prefix(test, depths, *z, dz_dx);
     if passed == RUN {
         let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = colors;
         (*a, *b, *c, *d, *e, *f, *g, *h) = (value, value, value, value, value, value, value, value);
@@ -156,7 +156,7 @@ mod tests {
             for (color, depth) in expected.0.iter_mut().zip(&mut expected.1) {
                 draw(DepthLess, &mut expected.2, dz_dx, 7, color, depth);
             }
-            run(DepthLess, &mut found.2, dz_dx, 7, &mut found.0, &mut found.1);
+            run16(DepthLess, &mut found.2, dz_dx, 7, &mut found.0, &mut found.1);
             assert_eq!(found, expected, "{case}");
         }
     }

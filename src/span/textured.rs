@@ -7,7 +7,7 @@
 //! Every [`STEP`] pixels, and at the last pixel of a span, both are made anew. In between, steps rounded to 2⁻¹⁶ are off
 //! by at most 2⁻¹³; in the last run of a span they are taken backwards from its end, so that ends are exact.
 
-use super::depth::{DepthTest, RUN, left, passing};
+use super::depth::{DepthTest, RUN, count_passing_prefix, untested_tail};
 use super::perspective::nth;
 use super::span::{Primitive, Span};
 use crate::color::PixelFormat;
@@ -30,37 +30,37 @@ pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
     let length = color.len().min(depth.len());
     let Some(mut color) = color.get_mut(..length) else { return };
     let Some(mut depth) = depth.get_mut(..length) else { return };
-    let mut walk = Walk::new(primitive, position, length as i32 - 1);
-    let mut pen = Pen { z, dz_dx: primitive.dz_dx, vu: 0, step: 0 };
-    walk.run();
+    let mut stepper = UvStepper::new(primitive, position, length as i32 - 1);
+    let mut cursor = TexelCursor { z, dz_dx: primitive.dz_dx, vu: 0, step: 0 };
+    stepper.next_run();
     while color.len() > STEP {
         let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<STEP>() else { return };
         color = rest;
         let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<STEP>() else { return };
         depth = rest;
         if SMALL_CORE && T::IS_OPAQUE {
-            pen.run_in_two::<P, T, D>(texture, test, &mut walk, colors, depths);
+            cursor.run16_two_pass::<P, T, D>(texture, test, &mut stepper, colors, depths);
         } else {
-            (pen.vu, pen.step) = walk.run();
+            (cursor.vu, cursor.step) = stepper.next_run();
             // Read anew: what it is multiplied by would be computed before the loop otherwise, and live on the stack.
-            pen.dz_dx = walk.dz_dx;
-            pen.run::<P, T, D>(texture, test, colors, depths);
+            cursor.dz_dx = stepper.dz_dx;
+            cursor.run16::<P, T, D>(texture, test, colors, depths);
         }
     }
     let way = color.len().saturating_sub(1);
-    (pen.vu, pen.step) = walk.rest(way);
+    (cursor.vu, cursor.step) = stepper.last(way);
     if SMALL_CORE && T::IS_OPAQUE {
-        pen.few_in_two::<P, T, D>(texture, test, color, depth);
+        cursor.short_two_pass::<P, T, D>(texture, test, color, depth);
     } else if SMALL_CORE {
-        pen.some::<P, T, D>(texture, test, 0, color, depth);
+        cursor.partial::<P, T, D>(texture, test, 0, color, depth);
     } else {
-        pen.rest::<P, T, D>(texture, test, color, depth);
+        cursor.tail::<P, T, D>(texture, test, color, depth);
     }
 }
 
 /// Colours a run.
 #[inline(never)]
-fn run_colors<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; STEP], mut vu: u32, step: u32) {
+fn color_run16<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; STEP], mut vu: u32, step: u32) {
     // Spelled out: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! color {
         ($($color:ident)*) => {
@@ -81,7 +81,7 @@ fn run_colors<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; STE
 
 /// Colours fewer pixels than a run; yields where the next one is.
 #[inline(never)]
-fn few_colors<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw], mut vu: u32, step: u32) -> u32 {
+fn color_short<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw], mut vu: u32, step: u32) -> u32 {
     for color in colors {
         let here = vu;
         vu = vu.wrapping_add(step);
@@ -105,39 +105,39 @@ const fn step([du, dv]: [i32; 2]) -> u32 {
 }
 
 /// What changes from pixel to pixel.
-struct Pen {
+struct TexelCursor {
     z: u32,
     dz_dx: i32,
     vu: u32,
     step: u32,
 }
 
-impl Pen {
+impl TexelCursor {
     /// Draws the next run of a texture that is opaque, depths first and colours then: each loop has all of its values in
     /// registers.
     #[inline(always)]
-    fn run_in_two<P: PixelFormat, T: Texture, D: DepthTest>(
+    fn run16_two_pass<P: PixelFormat, T: Texture, D: DepthTest>(
         &mut self,
         texture: &T,
         test: D,
-        walk: &mut Walk,
+        stepper: &mut UvStepper,
         colors: &mut [P::Raw; STEP],
         depths: &mut [D::Depth; STEP],
     ) {
-        let passed = passing(test, depths, self.z, self.dz_dx);
-        let (vu, step) = walk.run();
+        let passed = count_passing_prefix(test, depths, self.z, self.dz_dx);
+        let (vu, step) = stepper.next_run();
         if passed == STEP {
-            run_colors::<P, T>(texture, colors, vu, step);
+            color_run16::<P, T>(texture, colors, vu, step);
         } else {
-            // A copy, so that the pen itself need not be in memory.
-            Self { vu, step, ..*self }.some::<P, T, D>(texture, test, passed, colors, depths);
+            // A copy, so that the cursor itself need not be in memory.
+            Self { vu, step, ..*self }.partial::<P, T, D>(texture, test, passed, colors, depths);
         }
         self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(STEP as i32));
     }
 
     /// Draws a run pixel by pixel.
     #[inline(always)]
-    fn run<P: PixelFormat, T: Texture, D: DepthTest>(
+    fn run16<P: PixelFormat, T: Texture, D: DepthTest>(
         &mut self,
         texture: &T,
         test: D,
@@ -157,7 +157,7 @@ impl Pen {
 
     /// Draws pixels one by one, or in pairs.
     #[inline(always)]
-    fn rest<P: PixelFormat, T: Texture, D: DepthTest>(
+    fn tail<P: PixelFormat, T: Texture, D: DepthTest>(
         mut self,
         texture: &T,
         test: D,
@@ -179,25 +179,25 @@ impl Pen {
 
     /// Draws up to a run of pixels, in two loops too.
     #[inline(always)]
-    fn few_in_two<P: PixelFormat, T: Texture, D: DepthTest>(
+    fn short_two_pass<P: PixelFormat, T: Texture, D: DepthTest>(
         self,
         texture: &T,
         test: D,
         colors: &mut [P::Raw],
         depths: &mut [D::Depth],
     ) {
-        let left = left(test, depths, self.z, self.dz_dx);
+        let left = untested_tail(test, depths, self.z, self.dz_dx);
         if left == 0 {
-            few_colors::<P, T>(texture, colors, self.vu, self.step);
+            color_short::<P, T>(texture, colors, self.vu, self.step);
         } else {
             let passed = colors.len().saturating_sub(left);
-            self.some::<P, T, D>(texture, test, passed, colors, depths);
+            self.partial::<P, T, D>(texture, test, passed, colors, depths);
         }
     }
 
     /// Draws pixels, of which the first depths have been tested.
     #[inline(never)]
-    fn some<P: PixelFormat, T: Texture, D: DepthTest>(
+    fn partial<P: PixelFormat, T: Texture, D: DepthTest>(
         mut self,
         texture: &T,
         test: D,
@@ -207,9 +207,9 @@ impl Pen {
     ) {
         let Some((first, colors)) = colors.split_at_mut_checked(passed) else { return };
         let Some(depths) = depths.get_mut(passed..) else { return };
-        self.vu = few_colors::<P, T>(texture, first, self.vu, self.step);
+        self.vu = color_short::<P, T>(texture, first, self.vu, self.step);
         self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(passed as i32));
-        self.rest::<P, T, D>(texture, test, colors, depths);
+        self.tail::<P, T, D>(texture, test, colors, depths);
     }
 
     /// Draws a pixel and steps to the next one.
@@ -242,8 +242,8 @@ impl Pen {
 ///
 /// q, d q of u and that of v are shifted up, so that the larger q of both ends has its top bit set. Where there is no
 /// perspective, q is 0.
-struct Walk {
-    /// q and the others where the walk is, and what the next run adds.
+struct UvStepper {
+    /// q and the others where the stepper is, and what the next run adds.
     at: [i32; 3],
     step: [i32; 3],
     /// u and v there.
@@ -256,7 +256,7 @@ struct Walk {
     dz_dx: i32,
 }
 
-impl Walk {
+impl UvStepper {
     /// A run before a span, whose last pixel is `way` pixels from the first.
     #[inline(never)]
     fn new<V: Varyings, U>(primitive: &Primitive<V, U>, position: (i32, i32), way: i32) -> Self {
@@ -301,7 +301,7 @@ impl Walk {
 
     /// Goes a run on: what to draw it with. Out of line: its values are more than the loop around it has registers for.
     #[inline(never)]
-    fn run(&mut self) -> (u32, u32) {
+    fn next_run(&mut self) -> (u32, u32) {
         let [q, u, v] = self.at;
         let [dq, du, dv] = self.step;
         let (q, mut u, mut v) = (q.wrapping_add(dq), u.wrapping_add(du), v.wrapping_add(dv));
@@ -327,11 +327,11 @@ impl Walk {
 
     /// Goes on to the end: what to draw the last pixels with, the last of them `way` pixels ahead.
     #[inline(never)]
-    fn rest(&mut self, way: usize) -> (u32, u32) {
+    fn last(&mut self, way: usize) -> (u32, u32) {
         let from = self.uv;
         let ([q, u, v], [end_q, end_u, end_v]) = (self.at, self.end);
         self.step = [end_q.wrapping_sub(q), end_u.wrapping_sub(u), end_v.wrapping_sub(v)];
-        self.run();
+        self.next_run();
         let (du, dv) = (self.uv.0.wrapping_sub(from.0), self.uv.1.wrapping_sub(from.1));
         let step = step([nth(du, way), nth(dv, way)]);
         (packed(self.uv).wrapping_sub(step.wrapping_mul(way as u32)), step)
@@ -384,11 +384,11 @@ mod tests {
     use crate::vertex::{Perspective, Side};
     use embedded_graphics_core::pixelcolor::Rgb565;
 
-    /// A walk without perspective, that has been at `uv`.
-    fn walk([u, v]: [i32; 2], [du, dv]: [i32; 2]) -> Walk {
+    /// A stepper without perspective, that has been at `uv`.
+    fn stepper([u, v]: [i32; 2], [du, dv]: [i32; 2]) -> UvStepper {
         let scale = || Scale::new(None);
         let at = [0, u, v];
-        Walk { at, step: [0, du, dv], uv: (u, v), u: scale(), v: scale(), end: [0; 3], dz_dx: 0 }
+        UvStepper { at, step: [0, du, dv], uv: (u, v), u: scale(), v: scale(), end: [0; 3], dz_dx: 0 }
     }
 
     #[test]
@@ -396,16 +396,16 @@ mod tests {
         let texels: [[u16; 8]; 4] = core::array::from_fn(|y| core::array::from_fn(|x| (8 * y + x) as u16));
         let tile = &Tile::new(&texels);
         for (length, hidden) in (0..=STEP).flat_map(|length| (0..=length).map(move |hidden| (length, hidden))) {
-            let pen = || Pen { z: 7 << 16, dz_dx: 1 << 15, vu: 0x1234_5678, step: 0x2345_6789 };
+            let cursor = || TexelCursor { z: 7 << 16, dz_dx: 1 << 15, vu: 0x1234_5678, step: 0x2345_6789 };
             let mut depths = [u16::MAX; STEP];
             if let Some(depth) = depths.get_mut(hidden) {
                 *depth = 0;
             }
             let (mut expected, mut found) = (([0_u16; STEP], depths), ([0_u16; STEP], depths));
             let (colors, depths) = (&mut expected.0[..length], &mut expected.1[..length]);
-            pen().rest::<Rgb565, _, _>(tile, DepthLess, colors, depths);
+            cursor().tail::<Rgb565, _, _>(tile, DepthLess, colors, depths);
             let (colors, depths) = (&mut found.0[..length], &mut found.1[..length]);
-            pen().few_in_two::<Rgb565, _, _>(tile, DepthLess, colors, depths);
+            cursor().short_two_pass::<Rgb565, _, _>(tile, DepthLess, colors, depths);
             assert_eq!(found, expected, "{length} {hidden}");
         }
     }
@@ -433,10 +433,10 @@ mod tests {
                 }
             }
             let mut exact = Corrected::new(&primitive, (0, 0));
-            let mut walk = Walk::new(&primitive, (0, 0), way);
-            walk.run();
-            let check = |walk: &Walk, exact: &Corrected<'_, Perspective<2, 3>>| {
-                let (found, expected) = ([walk.uv.0, walk.uv.1], exact.varyings().corrected());
+            let mut stepper = UvStepper::new(&primitive, (0, 0), way);
+            stepper.next_run();
+            let check = |stepper: &UvStepper, exact: &Corrected<'_, Perspective<2, 3>>| {
+                let (found, expected) = ([stepper.uv.0, stepper.uv.1], exact.varyings().corrected());
                 for ((found, expected), plane) in found.iter().zip(expected).zip(primitive.perspective.planes()) {
                     let quotient = i64::from(expected - plane.base).abs();
                     let bound = if affine { 0 } else { (quotient >> 18) + (200 >> plane.shift) + 1 };
@@ -444,15 +444,15 @@ mod tests {
                     assert!(off <= bound, "{case}: {off} units, not {bound}");
                 }
             };
-            check(&walk, &exact);
+            check(&stepper, &exact);
             for _ in 0..way / STEP as i32 {
-                walk.run();
+                stepper.next_run();
                 exact.advance(STEP as i32);
-                check(&walk, &exact);
+                check(&stepper, &exact);
             }
-            walk.rest((way % STEP as i32) as usize);
+            stepper.last((way % STEP as i32) as usize);
             exact.advance(way % STEP as i32);
-            check(&walk, &exact);
+            check(&stepper, &exact);
         }
     }
 
@@ -469,21 +469,25 @@ mod tests {
             let far = [0, 1, 5, 13][case % 4];
             let depths: [u16; STEP] = core::array::from_fn(|_| if random() % 16 < far { 0 } else { u16::MAX });
             let draw = |in_two: bool, greater: bool| {
-                let mut pen = Pen { z, dz_dx, vu: 0, step: 0 };
-                let mut walk = walk(uv, duv);
+                let mut cursor = TexelCursor { z, dz_dx, vu: 0, step: 0 };
+                let mut stepper = stepper(uv, duv);
                 let (mut colors, mut depths) = ([0; STEP], depths);
                 let (tile, colors_mut, depths_mut) = (&Tile::new(&texels), &mut colors, &mut depths);
                 if !in_two {
-                    (pen.vu, pen.step) = walk.run();
+                    (cursor.vu, cursor.step) = stepper.next_run();
                 }
                 let any = DepthDyn::new(DepthState { compare: Compare::Greater, write: false });
                 match (in_two, greater) {
-                    (false, false) => pen.run::<Rgb565, _, _>(tile, DepthLess, colors_mut, depths_mut),
-                    (true, false) => pen.run_in_two::<Rgb565, _, _>(tile, DepthLess, &mut walk, colors_mut, depths_mut),
-                    (false, true) => pen.run::<Rgb565, _, _>(tile, any, colors_mut, depths_mut),
-                    (true, true) => pen.run_in_two::<Rgb565, _, _>(tile, any, &mut walk, colors_mut, depths_mut),
+                    (false, false) => cursor.run16::<Rgb565, _, _>(tile, DepthLess, colors_mut, depths_mut),
+                    (true, false) => {
+                        cursor.run16_two_pass::<Rgb565, _, _>(tile, DepthLess, &mut stepper, colors_mut, depths_mut)
+                    }
+                    (false, true) => cursor.run16::<Rgb565, _, _>(tile, any, colors_mut, depths_mut),
+                    (true, true) => {
+                        cursor.run16_two_pass::<Rgb565, _, _>(tile, any, &mut stepper, colors_mut, depths_mut)
+                    }
                 }
-                (colors, depths, pen.z)
+                (colors, depths, cursor.z)
             };
             assert_eq!(draw(true, false), draw(false, false), "{case}");
             assert_eq!(draw(true, true), draw(false, true), "{case}");

@@ -1,7 +1,7 @@
 //! Textures: images in flash, in the formats of [`TexelFormat`], and small tiles for the fastest loop.
 
 use super::texel::{OPAQUE, TexelFormat, expand};
-use crate::color::PixelFormat;
+use crate::color::{PixelFormat, pack_rgb565};
 
 /// A rectangle of texels.
 ///
@@ -26,7 +26,7 @@ pub trait Texture {
     #[inline]
     fn rgb565(&self, x: u32, y: u32) -> u16 {
         let [r, g, b, _] = self.rgba(x, y);
-        (r as u16 & 0xF8) << 8 | (g as u16 & 0xFC) << 3 | b as u16 >> 3
+        pack_rgb565([r, g, b])
     }
 
     /// The pixel at fractions of the texture, 0.16 each: u in the lower half of a word, v in the upper.

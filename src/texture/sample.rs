@@ -4,7 +4,7 @@
 
 use super::image::Texture;
 use super::texel::OPAQUE;
-use crate::color::PixelFormat;
+use crate::color::{PixelFormat, fold_rgb565, mix_spread_rgb565, spread_rgb565};
 
 /// What is outside of the texture.
 pub trait Wrap: Copy {
@@ -136,20 +136,6 @@ const fn mix(a: u32, b: u32, t: u32) -> u32 {
     ((a * (256 - t) + b * t + 0x0080_0080) >> 8) & 0x00FF_00FF
 }
 
-/// The same for red, green and blue of RGB565 in one word, 5 bits apart at least: t in 1/32.
-#[inline(always)]
-const fn mix565(a: u32, b: u32, t: u32) -> u32 {
-    ((a * (32 - t) + b * t + 0x0200_8010) >> 5) & SPREAD
-}
-
-/// Where RGB565's channels are when they are spread: green in the bits 21 to 26, red in 11 to 15, blue in 0 to 4.
-const SPREAD: u32 = 0x07E0_F81F;
-
-#[inline(always)]
-const fn spread(raw: u16) -> u32 {
-    (raw as u32 | (raw as u32) << 16) & SPREAD
-}
-
 /// 2¹⁶ / alpha · 255 / 2⁸, for alpha from 128 on.
 static UNMIX: [u16; 128] = {
     let mut table = [0; 128];
@@ -202,11 +188,11 @@ impl Filter for Bilinear {
             let (x0, x1, tx) = pair::<W>(u, width);
             let (y0, y1, ty) = pair::<W>(v, height);
             let (tx, ty) = ((tx + 4) >> 3, (ty + 4) >> 3);
-            let at = |x: u32, y: u32| spread(texture.rgb565(x, y));
-            let above = mix565(at(x0, y0), at(x1, y0), tx);
-            let below = mix565(at(x0, y1), at(x1, y1), tx);
-            let mixed = mix565(above, below, ty);
-            return Some(P::from_rgb565((mixed | mixed >> 16) as u16));
+            let at = |x: u32, y: u32| spread_rgb565(texture.rgb565(x, y));
+            let above = mix_spread_rgb565(at(x1, y0), at(x0, y0), tx);
+            let below = mix_spread_rgb565(at(x1, y1), at(x0, y1), tx);
+            let mixed = mix_spread_rgb565(below, above, ty);
+            return Some(P::from_rgb565(fold_rgb565(mixed)));
         }
         let [r, g, b, a] = Self::rgba::<T, W>(texture, [u, v]);
         if a >= OPAQUE { Some(P::pack([r, g, b])) } else { None }

@@ -1,6 +1,6 @@
 //! Texel formats: what the bits of an image mean.
 
-use crate::color::PixelFormat;
+use crate::color::{PixelFormat, unpack_rgb565};
 
 /// Alpha from which on a texel is drawn at all.
 pub(crate) const OPAQUE: u8 = 128;
@@ -77,8 +77,8 @@ impl TexelFormat for Rgb565LeTexel {
 /// RGB565 to 8 bits a channel, the upper bits repeated below.
 #[inline(always)]
 pub(super) const fn expand(raw: u16) -> [u8; 4] {
-    let (r, g, b) = (raw >> 11, raw >> 5 & 0x3F, raw & 0x1F);
-    [(r << 3 | r >> 2) as u8, (g << 2 | g >> 4) as u8, (b << 3 | b >> 2) as u8, 255]
+    let [r, g, b] = unpack_rgb565(raw);
+    [r, g, b, 255]
 }
 
 /// Red, green and blue, a byte each: what `ImageRaw<Rgb888>` takes.

@@ -73,28 +73,32 @@ pub(crate) const MAX_IN_REGISTERS: usize = 3;
 /// Adds `changes`, modulo 2³².
 #[inline(always)]
 fn step<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
-    if N > MAX_IN_REGISTERS { step_apart(values, changes) } else { advance_here(values, changes, 1) }
+    if N > MAX_IN_REGISTERS { step_outlined(values, changes) } else { advance_inlined(values, changes, 1) }
 }
 
 /// Adds `pixels` times `changes`, modulo 2³².
 #[inline(always)]
 fn advance<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
-    if N > MAX_IN_REGISTERS { advance_apart(values, changes, pixels) } else { advance_here(values, changes, pixels) }
+    if N > MAX_IN_REGISTERS {
+        advance_outlined(values, changes, pixels)
+    } else {
+        advance_inlined(values, changes, pixels)
+    }
 }
 
 #[inline(never)]
-fn step_apart<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
-    advance_here(values, changes, 1);
+fn step_outlined<const N: usize>(values: &mut [i32; N], changes: &[i32; N]) {
+    advance_inlined(values, changes, 1);
 }
 
 #[inline(never)]
-fn advance_apart<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
-    advance_here(values, changes, pixels);
+fn advance_outlined<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
+    advance_inlined(values, changes, pixels);
 }
 
 /// Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
 #[inline(always)]
-fn advance_here<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
+fn advance_inlined<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
     let (values, changes) = (values.as_mut_slice(), changes.as_slice());
     if !matches!(N, 1..=8) {
         for (value, change) in values.iter_mut().zip(changes) {
