@@ -10,33 +10,19 @@ use crate::raster::PixelRect;
 use crate::span::Shader;
 use crate::target::{Framebuffer, PackedVertex};
 use crate::vertex::{
-    CLIPPED_CORNERS, ClipCorner, ClipVertex, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face, MAX_DISTANCES,
-    Outcode, Polygon, PolygonCorner, Projected, Transform, Varyings, VertexRef, VertexShader, inverse_w, weighted,
+    CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face,
+    MAX_DISTANCES, Outcode, Projected, Transform, Varyings, VertexRef, VertexShader, inverse_w, weighted,
 };
 use core::ops::Range;
+use heapless::vec::{Vec, VecView};
 
-/// Corners of a clipped polygon that are kept at once: the first, and the next three. Triangles and quadrilaterals have no more.
-const FAN: usize = 4;
-
-/// A corner of a clipped polygon on the screen. What is interpolated is made of it when it is drawn, or recorded.
-#[derive(Clone, Copy, Default)]
+/// A corner of a clipped polygon on the screen. Its varyings are made when it is drawn, or recorded.
 struct FanCorner {
-    /// Words of a [`PackedVertex`].
-    packed: [u32; 2],
-    /// Parts of the triangle's corners in it, see [`ClipCorner`](crate::vertex::ClipCorner).
+    vertex: PackedVertex,
+    /// Parts of the triangle's corners in it, see [`ClipCorner`].
     weights: [i32; 3],
     /// See [`inverse_w`]; 0 where nothing is perspective-correct.
     inverse_w: u32,
-}
-
-/// A part of a polygon that is drawn as a fan of triangles.
-#[derive(Default)]
-// Cleared by the same routine as 64-bit numbers are.
-#[repr(align(8))]
-struct Fan {
-    corners: [FanCorner; FAN],
-    /// Those of a triangle, in the records.
-    indices: [u16; 3],
 }
 
 type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut ScreenTriangle, Outcode);
@@ -177,7 +163,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             ScanEvent::Visible => self.shade_face(triangle),
             // 4. Clipping.
             ScanEvent::NeedsClip(codes) => {
-                self.part(triangle, codes, DepthSlab::Inside);
+                self.clip(triangle, codes, DepthSlab::Inside);
                 if let Some(beyond) = self.hooks.beyond {
                     beyond(self, triangle, codes);
                 }
@@ -284,59 +270,46 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.stage().transformed(index)
     }
 
-    /// The parts of a triangle that have their depth clamped.
+    /// Draws or records the parts of a triangle that have their depth clamped.
     pub(super) fn beyond(&mut self, triangle: &mut ScreenTriangle, codes: Outcode) {
-        for part in self.state.range.clamped_slabs(codes) {
-            self.part(triangle, codes, part);
+        for slab in self.state.range.clamped_slabs(codes) {
+            self.clip(triangle, codes, slab);
         }
     }
 
+    /// Clips a triangle, and draws or records what is left of it in one slab of depth.
     #[inline]
-    fn part(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, part: DepthSlab) {
+    fn clip(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, slab: DepthSlab) {
         if S::CLIP_DISTANCES > 0 {
-            self.cut_part::<DISTANCE_CORNERS>(triangle, codes, part);
+            self.clip_to_fan::<DISTANCE_CORNERS>(triangle, codes, slab);
         } else {
-            self.cut_part::<CLIPPED_CORNERS>(triangle, codes, part);
+            self.clip_to_fan::<CLIPPED_CORNERS>(triangle, codes, slab);
         }
     }
 
-    /// A part of a triangle, which has up to `N` corners when it has been clipped: a fan of triangles.
-    ///
-    /// Where it has more corners than are kept, it is cut again for the next ones: that is rare, and the stack is short.
+    /// Clips a triangle, which has up to `N` corners then, and draws or records a fan of triangles about the first corner.
     #[inline(never)]
-    fn cut_part<const N: usize>(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, part: DepthSlab) {
-        let mut fan = Fan::default();
-        let mut before = 0;
-        loop {
-            let count = self.cut::<N>(triangle.corners, codes, part, before, &mut fan.corners);
-            // The first one, and the last one before, are there already.
-            for place in before.min(2)..FAN.min(count - before) {
-                self.fan_corner(triangle, &mut fan, place);
+    fn clip_to_fan<const N: usize>(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, slab: DepthSlab) {
+        let mut corners = Vec::<FanCorner, N>::new();
+        self.clipped::<N>(triangle.corners, codes, slab, &mut corners);
+        let recording = self.scene.is_recording();
+        let mut indices = [0; 3];
+        for (k, corner) in corners.iter().enumerate() {
+            triangle.v[2] = corner.vertex.screen();
+            if recording {
+                indices[2] = self.store_corner(triangle.corners, corner);
             }
-            before += FAN - 2;
-            if count <= before + 2 {
-                return;
+            if k >= 2 && triangle.passes_culling(self.culling, &self.clip, self.scene.stats) {
+                if recording {
+                    self.record(triangle.row, indices, self.face(triangle));
+                } else if let (Some(first), Some(previous)) = (corners.first(), corners.get(k - 1)) {
+                    self.draw_corners(triangle, [first, previous, corner]);
+                }
             }
+            // The first corner stays; the last one is the next triangle's second.
+            let place = usize::from(k > 0);
+            (triangle.v[place], indices[place]) = (triangle.v[2], indices[2]);
         }
-    }
-
-    /// A corner of a fan, and the triangle that it is the last of.
-    #[inline(never)]
-    fn fan_corner(&mut self, triangle: &mut ScreenTriangle, fan: &mut Fan, place: usize) {
-        let Some(corner) = fan.corners.get(place) else { return };
-        triangle.v[2] = PackedVertex::from_words(corner.packed).screen();
-        if self.scene.is_recording() {
-            fan.indices[2] = self.store_corner(triangle.corners, corner);
-        }
-        if place >= 2 && triangle.passes_culling(self.culling, &self.clip, self.scene.stats) {
-            if self.scene.is_recording() {
-                self.record(triangle.row, fan.indices, self.face(triangle));
-            } else {
-                self.draw_corners(triangle, &fan.corners, place);
-            }
-        }
-        let place = usize::from(place > 0);
-        (triangle.v[place], fan.indices[place]) = (triangle.v[2], fan.indices[2]);
     }
 
     /// Puts a corner of a clipped triangle into the records.
@@ -344,16 +317,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     fn store_corner(&mut self, corners: [u16; 3], corner: &FanCorner) -> u16 {
         let index = self.scene.records.push_vertex();
         let varyings = self.corner_varyings(corners, corner);
-        self.scene.records.store_vertex::<S>(usize::from(index), PackedVertex::from_words(corner.packed), &varyings);
+        self.scene.records.store_vertex::<S>(usize::from(index), corner.vertex, &varyings);
         index
     }
 
-    /// A triangle of a fan.
+    /// Draws a triangle of a fan.
     #[inline(never)]
-    fn draw_corners(&mut self, triangle: &ScreenTriangle, corners: &[FanCorner; FAN], last: usize) {
-        let varyings =
-            |k: usize| corners.get(k).map_or(S::Varyings::ZERO, |k| self.corner_varyings(triangle.corners, k));
-        let mut varyings = [varyings(0), varyings(last - 1), varyings(last)];
+    fn draw_corners(&mut self, triangle: &ScreenTriangle, [a, b, c]: [&FanCorner; 3]) {
+        let varyings = |corner| self.corner_varyings(triangle.corners, corner);
+        let mut varyings = [varyings(a), varyings(b), varyings(c)];
         self.draw(triangle, &mut varyings, self.face(triangle));
     }
 
@@ -389,37 +361,30 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         all.skip(S::CLIP_DISTANCES).take(S::CULL_DISTANCES).any(|sign| sign < 0)
     }
 
-    /// What is left of a part of a triangle, on the screen: its first corner, and those behind place `before`, as many as there
-    /// is room for; how many there are in all. In a function of its own, so that the polygon in clip space has left the
-    /// stack when it is drawn.
+    /// Clips a triangle and projects the corners of what is left. In a function of its own, so that the polygons in clip space
+    /// have left the stack when the fan is drawn.
     #[inline(never)]
-    fn cut<const N: usize>(
+    fn clipped<const N: usize>(
         &self,
         corners: [u16; 3],
         codes: Outcode,
-        part: DepthSlab,
-        before: usize,
-        fan: &mut [FanCorner; FAN],
-    ) -> usize {
-        let polygon: &mut Polygon = &mut Polygon::<[PolygonCorner; N]>::new();
+        slab: DepthSlab,
+        fan: &mut VecView<FanCorner>,
+    ) {
+        let (mut polygon, mut spare) = (Vec::<ClipCorner, N>::new(), Vec::<ClipCorner, N>::new());
         for (k, index) in corners.iter().enumerate() {
-            self.set_corner(polygon, k, *index);
+            let _ = polygon.push(ClipCorner::new(self.transformed(usize::from(*index)), k));
         }
-        polygon.clip(codes, part);
+        let mut clipping = Clipping::new(&mut polygon, &mut spare);
+        clipping.clip(codes, slab);
         if S::CLIP_DISTANCES > 0 {
             let [i, j, k] = corners;
             let distances = |index: u16| self.stage().distances(usize::from(index));
             for ((i, j), k) in distances(i).into_iter().zip(distances(j)).zip(distances(k)).take(S::CLIP_DISTANCES) {
-                polygon.cut_by_distance([i, j, k]);
+                clipping.cut_by_distance([i, j, k]);
             }
         }
-        project_corners(polygon, self.transform, S::Varyings::PERSPECTIVE > 0, before, fan)
-    }
-
-    /// Sets a corner of a triangle that is to be clipped. In a function of its own for the stack.
-    #[inline(never)]
-    fn set_corner(&self, polygon: &mut Polygon, k: usize, index: u16) {
-        polygon.set(k, &self.transformed(usize::from(index)));
+        project_corners(clipping.corners(), self.transform, S::Varyings::PERSPECTIVE > 0, fan);
     }
 
     /// The varyings of a vertex, with 1 / w if they take it.
@@ -454,33 +419,16 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     }
 }
 
-/// Corners of a polygon on the screen, see [`Assembly::cut`].
+/// Projects the corners of a clipped polygon.
 #[inline(never)]
-fn project_corners(
-    polygon: &Polygon,
-    transform: &Transform,
-    perspective: bool,
-    before: usize,
-    fan: &mut [FanCorner; FAN],
-) -> usize {
-    let (mut count, mut fan) = (0, fan.iter_mut());
-    for corner in polygon.corners() {
-        if count == 0 || count > before {
-            if let Some(to) = fan.next() {
-                let vertex = corner.vertex();
-                // All of them can be projected, as what is behind the eye has been cut away.
-                if let Some(projected) = transform.project(&vertex) {
-                    to.packed = PackedVertex::new(&Projected::OnScreen(projected)).words();
-                }
-                to.weights = corner.weights();
-                if perspective {
-                    to.inverse_w = inverse_w(&vertex);
-                }
-            }
-        }
-        count += 1;
+fn project_corners(corners: &[ClipCorner], transform: &Transform, perspective: bool, fan: &mut VecView<FanCorner>) {
+    for ClipCorner { vertex, weights } in corners {
+        // All of them can be projected, as nothing behind the eye is left.
+        let projected = transform.project(vertex).unwrap_or_default();
+        let inverse_w = if perspective { inverse_w(vertex) } else { 0 };
+        let vertex = PackedVertex::new(&Projected::OnScreen(projected));
+        let _ = fan.push(FanCorner { vertex, weights: *weights, inverse_w });
     }
-    count
 }
 
 /// The varyings as the records would give them back.

@@ -74,7 +74,7 @@ impl PackedVertex {
     }
 
     /// From its words.
-    #[inline]
+    #[cfg(test)]
     pub(crate) const fn from_words(words: [u32; 2]) -> Self {
         Self(words)
     }
@@ -113,8 +113,6 @@ impl PackedVertex {
 
 /// A triangle from the records.
 #[derive(Clone, Copy, Debug, Default)]
-// Cleared by the same routine as 64-bit numbers are.
-#[repr(align(8))]
 pub(crate) struct TriangleRecord {
     pub(crate) v: [ScreenVertex; 3],
     /// The first two corners, the second in the upper half, and the third.

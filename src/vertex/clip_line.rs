@@ -1,32 +1,30 @@
 //! Clipping of lines: by the planes of [`clip_triangle`](crate::vertex::clip_triangle), in the same order, with the same cuts.
 
-use super::clip::{ClipCorner, ClipVertex, DepthSlab, Outcode, PLANES, PolygonCorner, crossing, distance};
+use super::clip::{ClipCorner, ClipVertex, DepthSlab, Outcode, PLANES, crossing, distance};
 
 /// Cuts a line by the planes in `codes` (the outcodes of its ends, united): the ends of what is left in one part of it, if
 /// anything is. Their third weight is 0.
 ///
 /// An end that is visible passes unchanged, bit by bit; AB is cut like BA.
 pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: DepthSlab) -> Option<[ClipCorner; 2]> {
-    let (a, b) = (PolygonCorner::default(), PolygonCorner::default());
-    a.set(&ends[0], 0);
-    b.set(&ends[1], 1);
+    let [a, b] = ends;
+    let (mut a, mut b) = (ClipCorner::new(a, 0), ClipCorner::new(b, 1));
     for plane in 0..PLANES {
         if codes.0 & (1 << plane) == 0 {
             continue;
         }
-        let (da, db) = (distance(plane, &a.place), distance(plane, &b.place));
+        let (da, db) = (distance(plane, &a.vertex), distance(plane, &b.vertex));
         let [keeps_a, keeps_b] = [da, db].map(|d| (d >= 0) == part.is_inside(plane));
         match (keeps_a, keeps_b) {
             (true, true) => {}
-            (true, false) => crossing(plane, [&a, &b, &b], da, db),
-            (false, true) => crossing(plane, [&a, &b, &a], da, db),
+            (true, false) => b = crossing(plane, &a, &b, da, db),
+            (false, true) => a = crossing(plane, &a, &b, da, db),
             (false, false) => return None,
         }
     }
-    Some([a, b].map(|corner| {
-        part.clamp(&corner.place);
-        ClipCorner { vertex: corner.vertex(), weights: corner.weights() }
-    }))
+    part.clamp(&mut a.vertex);
+    part.clamp(&mut b.vertex);
+    Some([a, b])
 }
 
 #[cfg(test)]
@@ -61,10 +59,8 @@ mod tests {
             left += 1;
             for (end, original) in cut.iter().zip(&line) {
                 // The cuts' rounding: a few units of 2⁵⁰, and 65 times that at the guard band.
-                let corner = PolygonCorner::default();
-                corner.set(&end.vertex, 0);
                 for plane in 0..PLANES {
-                    assert!(distance(plane, &corner.place) >= -400, "plane {plane}: {end:?}");
+                    assert!(distance(plane, &end.vertex) >= -400, "plane {plane}: {end:?}");
                 }
                 if Outcode::of(original) == Outcode(0) {
                     assert_eq!(end.vertex, *original);

@@ -12,7 +12,7 @@ mod viewport;
 mod wrapper;
 
 pub use clip::DepthRange;
-pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, DepthSlab, Outcode, Polygon, PolygonCorner, weighted};
+pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSlab, Outcode, weighted};
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
