@@ -1,4 +1,5 @@
-//! Stages 2 to 7: from a mesh's triangles to triangles on the screen, drawn or recorded.
+//! Stages 2 to 7 of [the pipeline](crate#the-pipeline), as far as they depend on shaders: a mesh's triangles become triangles on
+//! the screen, drawn or recorded. What is alike for all shaders is in `scan`.
 
 use super::painter::RasterHooks;
 use super::scan::{PendingFace, Scan, ScanEvent, ScreenTriangle};
@@ -29,10 +30,10 @@ type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut ScreenTriangle, Outcode
 
 /// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
 pub struct AssemblyHooks<F: Framebuffer, S: Shader<F::Format>> {
-    /// Those of stages 8 and 9.
+    /// Hooks of stages 8 and 9, set-up and spans.
     pub(super) raster: RasterHooks<F, S>,
     pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
-    /// 4. What is drawn of a clipped triangle before the near and beyond the far plane.
+    /// Stage 4, clipping: draws the parts of a triangle in front of the near and beyond the far plane.
     beyond: Option<Beyond<F, S>>,
 }
 
@@ -105,7 +106,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Where places are kept: those that may be seen.
+    /// Where vertices are kept: scans the triangles, and handles each that the scan stops at.
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
         let mut scan = Scan::new(self.mesh, numbers, self.culling, self.scene.is_recording());
@@ -123,7 +124,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Takes the place of marks in the records.
+    /// Stage 7, faces: replaces the [`PendingFace`]s of the triangles recorded from `first` on by the shader's words.
     #[inline(never)]
     fn shade_faces(&mut self, first: u16) {
         let Self { scene, state, mesh, shader, .. } = self;
@@ -137,7 +138,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Where there is nothing to scan: places are not kept, or cull distances come before them.
+    /// Where there is nothing to scan, because vertices are not kept or cull distances come first: takes each triangle.
     #[inline(never)]
     fn each_triangle(&mut self, numbers: Range<usize>) {
         let mut triangle = ScreenTriangle::NONE;
@@ -156,12 +157,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// A triangle that may be seen, or that has to be looked at.
+    /// Handles a triangle that the scan stopped at.
     #[inline(always)]
     fn handle(&mut self, event: ScanEvent, triangle: &mut ScreenTriangle) {
         match if event == ScanEvent::NeedsVertices { self.shade_corners(triangle) } else { event } {
             ScanEvent::Visible => self.shade_face(triangle),
-            // 4. Clipping.
+            // Stage 4, clipping.
             ScanEvent::NeedsClip(codes) => {
                 self.clip(triangle, codes, DepthSlab::Inside);
                 if let Some(beyond) = self.hooks.beyond {
@@ -172,10 +173,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// A triangle that has a vertex which is not shaded yet, or not on the screen: what else it is; the end, if it cannot be seen.
+    /// Shades the vertices of a triangle that needs them, and tells what the triangle is then: [`ScanEvent::Done`] if it cannot be
+    /// seen.
     #[inline(never)]
     fn shade_corners(&mut self, triangle: &mut ScreenTriangle) -> ScanEvent {
-        // 3. Vertex stage, once a vertex where there are records to keep the result.
+        // Stage 2, vertices: once per vertex where the results are kept.
         let mut visible = true;
         let (mut common, mut all) = (!self.state.range.clamped().0, 0);
         for (v, index) in triangle.v.iter_mut().zip(&triangle.corners) {
@@ -200,7 +202,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// A triangle on the screen.
+    /// Stage 7, faces, of a single triangle on the screen: it is recorded, or drawn.
     #[inline(never)]
     fn shade_face(&mut self, triangle: &ScreenTriangle) {
         let word = self.face(triangle);
@@ -232,7 +234,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         if packed.is_unshaded() { self.shade(index.into()) } else { packed }
     }
 
-    /// 3. Vertex stage, of all vertices, where there are records to keep the result.
+    /// Stage 2, vertices: shades all of them, where there is room to keep the results.
     #[inline(never)]
     pub(super) fn shade_all(&mut self) {
         let Self { scene, mesh, shader, transform, .. } = self;
@@ -401,7 +403,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         rounded::<S>(&self.vertex(usize::from(index)))
     }
 
-    /// 6, 7. Into the records, to the strip it begins in.
+    /// Stage 6, recording: puts a triangle into the list of the strip that it begins in.
     fn record(&mut self, row: i32, corners: [u16; 3], face: u32) {
         let row = row - self.scene.band.start;
         let strip = self.scene.strips.of(row as u32);

@@ -1,4 +1,5 @@
-//! The public calls that draw meshes.
+//! The calls that draw meshes: [the pipeline](crate#the-pipeline) from top to bottom, stages 1 to 7 in `assemble`, stages 8 to
+//! 11 in `replay`.
 
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::Painter;
@@ -59,27 +60,29 @@ impl<F: Framebuffer> Scene<'_, F> {
         let culling = state.culling();
         let mut assembly = Assembly { scene: self, state, hooks, mesh, shader, transform: &transform, culling, clip };
         match mesh.data().hierarchy {
-            // Parts of a mesh: the vertices of a part are shaded when its triangles ask for them.
+            // Stages 2 to 7, for each part of the mesh that may be seen: vertices are shaded when triangles ask for them.
             Some(nodes) if !S::DISPLACES => assembly.parts(nodes, draw.mvp),
             _ => {
                 // Stage 2, vertices: all at once, where their results are kept.
                 if F::RECORDS {
                     assembly.shade_all();
                 }
-                // Stages 3 to 7.
+                // Stages 3 to 7, from triangle to triangle: assembly, clipping, culling, recording, faces.
                 assembly.triangles(0..mesh.triangle_count());
             }
         }
         self.end_draw();
     }
 
-    /// Draws the recorded triangles of this draw in the current strip.
+    /// Draws the recorded triangles of this draw in the current strip: stages 8 to 11, for each triangle in
+    /// [`Painter::triangle_of_area`].
     #[inline(never)]
     fn replay<S: Shader<F::Format>>(&mut self, state: &State, hooks: &AssemblyHooks<F, S>, shader: &S) {
         let end = Triangles::end_of(self.target.rows.end);
         let clip = &self.clip_rect(&self.target.rows);
         let last = self.records.last_triangle();
         let mut triangles = self.records.triangles();
+        // Stage 8, set-up; stage 9, spans; stage 10, depth test; stage 11, fragments.
         let mut painter =
             Painter { target: &mut self.target, screen: self.screen, clip, state, hooks: &hooks.raster, shader };
         let mut triangle = TriangleRecord::default();

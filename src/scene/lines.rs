@@ -1,8 +1,8 @@
 //! Lines and points in space.
 //!
-//! Their vertices are in the records as those of meshes are, but no list says which strip they touch: each strip walks over
-//! all of them, which takes some 30 instructions for one that lies elsewhere, and no memory. A vertex is shaded when
-//! the first strip meets it.
+//! They begin as meshes do, with stage 1 of [the pipeline](crate#the-pipeline), bounds. Their vertices are in the records as those
+//! of meshes are, but no list says which strip they touch: each strip looks at all of them, which takes some 80 instructions
+//! for one that lies elsewhere, and no memory. A vertex is shaded, stage 2, when the first strip meets it.
 
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::{Painter, RasterHooks};

@@ -1,4 +1,5 @@
-//! The one place that calls every stage, in order.
+//! The one place that calls every stage of [the pipeline](crate#the-pipeline), in order: meshes in `draw`, lines and points in
+//! `lines`, shapes on the screen in `canvas`.
 
 mod assembly;
 mod canvas;

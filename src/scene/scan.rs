@@ -1,5 +1,5 @@
-//! Stages 2 and 5 to 7: a mesh's triangles one after the other, without those that cannot be seen, into the records. The same
-//! code for all shaders.
+//! Stages 3, 5 and 6 of [the pipeline](crate#the-pipeline): assembles a mesh's triangles one after the other, culls those that
+//! cannot be seen, and records the others. One code for all shaders.
 
 use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
@@ -8,7 +8,7 @@ use crate::target::{PackedVertex, Records, Stats, StripRows};
 use crate::vertex::{Outcode, ScreenVertex, signed_area, small};
 use core::ops::Range;
 
-/// Where a walk over triangles is, and the last one it found.
+/// A pass over the triangles of a mesh: where it is, and the triangle that it stopped at.
 pub(super) struct Scan<'m> {
     mesh: &'m Mesh<'m>,
     /// Those to come, if the mesh is an indexed list.
@@ -20,8 +20,8 @@ pub(super) struct Scan<'m> {
     pub(super) triangle: ScreenTriangle,
 }
 
-/// What a triangle in the records has that has no word of its face yet: the number of the next triangle of the mesh, and below that
-/// the sign of its area.
+/// Placeholder for a recorded triangle's face word, until `shade_faces` fills it: the number of the next triangle of the mesh,
+/// and below it the sign of the triangle's area.
 #[derive(Clone, Copy)]
 pub(super) struct PendingFace(pub(super) u32);
 
@@ -38,7 +38,7 @@ impl PendingFace {
     }
 }
 
-/// A triangle that was found: one on the screen that may have pixels, or one that has to be looked at.
+/// A triangle of the mesh on the screen, as far as it is known: the one a scan stopped at, or a triangle of a fan.
 pub(super) struct ScreenTriangle {
     /// Its number in the mesh, and its vertices.
     pub(super) number: u16,
@@ -51,16 +51,16 @@ pub(super) struct ScreenTriangle {
     pub(super) row: i32,
 }
 
-/// What a walk stopped at.
+/// Reasons why a scan stops.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum ScanEvent {
-    /// A triangle that may be seen.
+    /// At a triangle on the screen that may be seen, to be drawn.
     Visible,
-    /// One that has to be looked at, with vertices that may not be shaded yet.
+    /// At a triangle with vertices that are not on the screen, or not shaded yet.
     NeedsVertices,
-    /// One to be clipped, by these planes and by clip distances.
+    /// At a triangle to be clipped, by these planes and by clip distances.
     NeedsClip(Outcode),
-    /// There are no more.
+    /// There are no more triangles, or the triangle at hand cannot be seen.
     Done,
 }
 
@@ -69,7 +69,8 @@ impl ScreenTriangle {
     pub(super) const NONE: Self =
         Self { number: 0, corners: [0; 3], v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
 
-    /// Whether what is at `v` may be seen: stage 5, culling by winding, and of what covers no pixel of `clip`.
+    /// Stage 5, culling: returns whether the triangle at `v` shows the right side and may cover a pixel of `clip`. Finds its area
+    /// and its first row.
     #[inline(never)]
     pub(super) fn passes_culling(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
         let [a, b, c] = &self.v;
@@ -95,8 +96,9 @@ impl ScreenTriangle {
     }
 }
 
-/// How far the second and the third vertex are from the first, in x and y, by words of their [`PackedVertex`](crate::target::PackedVertex)s: if that is
-/// not far, and all are on the screen, or at most 16,511 px away from it.
+/// Returns the sides from the first vertex to the second and to the third, x and y of each in 24.8, from words of
+/// [`PackedVertex`](crate::target::PackedVertex)s. `None` unless all components fit 16 bits and all vertices lie within
+/// 16,511 px of the screen's corner.
 ///
 /// # Format
 /// A vertex off the screen has x = -2²³, and no y: that is no small difference from any other below 2²².
@@ -159,7 +161,8 @@ impl<'m> Scan<'m> {
         }
     }
 
-    /// Records triangles that are small, not far away, and on the screen, up to another one: to all intents and purposes all.
+    /// Records triangles up to one that needs the exact test of [`ScreenTriangle::passes_culling`], or that is to be drawn.
+    /// Nearly all triangles pass here: small ones, on the screen or not far off it.
     #[inline(never)]
     fn scan_small(
         &mut self,
@@ -182,7 +185,7 @@ impl<'m> Scan<'m> {
         let mut list = self.list;
         let mut number = self.next;
         let found = loop {
-            // 2. Primitive assembly. The usual meshes by the shortest way.
+            // Stage 3, primitive assembly: the usual meshes by the shortest way.
             let (corners, positions) = match list.split_first_chunk() {
                 Some((corners, rest)) => {
                     list = rest;
@@ -196,7 +199,7 @@ impl<'m> Scan<'m> {
                 },
             };
             number += 1;
-            // 5. Culling by winding, as early as can be, and of what covers no pixel.
+            // Stage 5, culling: by winding, as early as can be, and of triangles that cover no pixel.
             let [i, j, k] = corners;
             let [a, b, c] = positions;
             let Some([bx, by, cx, cy]) = small_sides(a, b, c) else {
@@ -220,7 +223,7 @@ impl<'m> Scan<'m> {
                 stats.outside = stats.outside.wrapping_add(1);
                 continue;
             }
-            // 6, 7. Into the records, to the strip it begins in.
+            // Stage 6, recording: into the list of the strip it begins in.
             let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
             if !triangles.push(u32::from(i) | u32::from(j) << 16, k, PendingFace::new(number, area).0, strip) {
                 // There is no room, or none of it is to be used.
@@ -284,9 +287,9 @@ mod tests {
         }
     }
 
-    /// What a walk records, and what it counts, is what [`ScreenTriangle::passes_culling`] says of each triangle.
+    /// A scan records and counts what [`ScreenTriangle::passes_culling`] says of each triangle.
     #[test]
-    fn walks_find_what_is_found_one_by_one() {
+    fn scans_find_what_is_found_one_by_one() {
         let mut random = Random(Rng::new(1));
         let points = [[0; 3]; 3 * COUNT];
         let positions = Positions::Quantized { points: &points, scale: Scalar::ONE, offset: Vec3::ZERO };

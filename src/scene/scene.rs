@@ -1,10 +1,4 @@
-//! The one place that calls every stage, in order: here the frame's calls, in `assembly` stages 2 to 7 (2 and 5 to 7 in `scan`, for
-//! all shaders alike), in `triangle` the rest; `lines` and `stroke` do the same for lines and points, `canvas` for what is given
-//! on the screen.
-//!
-//! A frame is drawn by a closure that calls [`Scene::draw`]. The closure runs in one of three phases: it *records* a band
-//! of strips (stages 1 to 7), it *replays* the records of one strip (stages 8 to 11), or, where the records are too
-//! small even for one strip, it draws that strip *directly* (all stages at once).
+//! The scene: what the stages of a frame share; phases, draws and stage 1 of [the pipeline](crate#the-pipeline), bounds.
 
 use super::state::State;
 use crate::math::Projective;
@@ -14,11 +8,18 @@ use crate::target::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::vertex::{DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, Varyings, VertexShader, Viewport};
 use core::ops::Range;
 
-/// What the closure's calls do.
+/// Phases of a frame's closure: what one call of it does, see [the pipeline](crate#the-pipeline).
+///
+/// Three things are close to each other and not the same. [`Direct`](Self::Direct) is a phase. While it lasts, a draw may
+/// still keep its vertices, see `Scene::keeps_vertices`. And a framebuffer type with `RECORDS = false` has no other
+/// phase, so that code for records is not linked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
+    /// Stages 1 to 7 for the strips of a band, into the records.
     Record,
+    /// Stages 8 to 11 for one strip, from the records.
     Replay,
+    /// Stages 1 to 11 for one strip, without records of triangles.
     Direct,
 }
 
@@ -114,7 +115,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         visible
     }
 
-    /// Stage 1 of a draw of any kind: enters it into the records, or prepares to draw it directly, unless its bounds are out
+    /// Stage 1, bounds, of a draw of any kind: enters it into the records, or prepares to draw it directly, unless its bounds are out
     /// of view. Returns whether there is anything to do.
     ///
     /// Makes the transform of the vertex stage in `transform`, where one is wanted.
