@@ -1,4 +1,20 @@
-//! Fills with one value, two or four pixels a word.
+//! Fills with one value.
+//!
+//! The plain loop:
+//!
+//! ```text
+//! for each pixel:
+//!     pixel = value
+//! ```
+//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. W1 is a quad that fills the
+//! screen, in instructions per pixel.
+//!
+//! 1. **Whole words**, of two or four pixels, four words at a time and out of line: W1 2.5 → 2.0 and 2.8 → 1.3.
+//! 2. **Four words by one instruction**, from registers whose numbers ascend: W1 1.85 → 1.78 and 1.24 → 1.17, clearing 1.39 → 0.89 and
+//!    0.88 → 0.63 per pixel.
+//! 3. **Values handed over as arguments**, which are in such registers from the start; eight words at a time on larger cores, with
+//!    an overlapping first store in place of a tail: W1 1.53 → 1.34 and 0.96 → 0.82.
+//! 4. **Five words at a time** on small cores for whole buffers, which have no rows to divide by four.
 
 use crate::math::SMALL_CORE;
 use bytemuck::Pod;

@@ -1,4 +1,19 @@
-//! The depth test.
+//! The depth test, and the loops that test the depths of a run in front of its colours.
+//!
+//! The plain loop:
+//!
+//! ```text
+//! for each depth of the run:
+//!     if z >> 16 does not pass: stop
+//!     store z >> 16
+//!     z += dz_dx
+//! ```
+//! The departures from it:
+//!
+//! 1. **Unrolled by hand**, 16 times or by 8, 4, 2 and 1: at `opt-level = "s"` a loop stays a loop, and its counter takes a register
+//!    and three instructions per pixel.
+//! 2. **Out of line on small cores**, where the registers are its own. What tests and colours in one loop keeps a part of its values
+//!    on the stack there: two passes took W2, a Gouraud quad, from 25.4 to 19.3 instructions per pixel.
 
 use crate::math::SMALL_CORE;
 

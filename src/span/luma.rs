@@ -1,4 +1,16 @@
-//! Grey pixels: three channels are one quantity, their luma, and interpolated as one.
+//! Spans of greys whose varyings are colours.
+//!
+//! The plain loop, over channels in 8.16:
+//!
+//! ```text
+//! for each pixel:
+//!     if z >> 16 passes against the stored depth:
+//!         store z >> 16
+//!         color = luma(r >> 16, g >> 16, b >> 16)
+//!     z += dz_dx;  r += dr;  g += dg;  b += db
+//! ```
+//! The one departure: luma is a weighted sum, so it is itself linear on the screen. It is computed at the first pixel and stepped
+//! from there, which takes the place of three products and two additions per pixel.
 
 use super::color_setup::{ColorSetup, weighted};
 use super::depth::DepthTest;
@@ -24,5 +36,42 @@ pub(crate) fn luma_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 3]
         }
         z = z.wrapping_add_signed(dz_dx);
         luma = luma.wrapping_add(step);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::color::squeeze;
+    use crate::math::random::Rng;
+    use crate::span::{DepthLess, Primitive, TriangleSetup, naive};
+    use crate::vertex::Side;
+    use embedded_graphics_core::pixelcolor::Gray8;
+
+    #[test]
+    fn spans_are_those_pixel_by_pixel() {
+        let mut rng = Rng::new(1);
+        for _ in 0..1000 {
+            let length = 1 + rng.below(70) as usize;
+            let ends = [(); 3].map(|()| [rng.below(256), rng.below(256)].map(|c| squeeze((c << 8) as i32)));
+            let d_dx = ends.map(|[a, b]| (b - a) / length as i32);
+            let at_origin = ends.map(|[a, _]| a);
+            let (side, dz_dx, z) = (Side::Front, rng.below(4096) as i32 - 2048, 20_000 << 16);
+            let corners = [&at_origin; 3];
+            let triangle = TriangleSetup { corners, area: 1, flat: 0, side, at_origin: &at_origin, d_dx: &d_dx };
+            let setup = ColorSetup::new::<Gray8>(&triangle);
+            let primitive = &Primitive { dz_dx, d_dx, ..Primitive::constant(at_origin, 0, side, setup) };
+            let case = naive::Case { length, z, dz_dx, background: 77_u8 };
+            naive::compare(
+                DepthLess,
+                case,
+                &mut rng,
+                |depth| depth,
+                |k| Some((weighted(primitive.at((k as i32, 0))) >> 24) as u8),
+                &mut [("luma", &mut |color, depth| {
+                    luma_span(Span::<Gray8, _, _, _> { color, depth, z, position: (0, 0), primitive }, DepthLess);
+                })],
+            );
+        }
     }
 }

@@ -4,6 +4,8 @@ mod color_setup;
 mod depth;
 mod depth_bias;
 mod luma;
+#[cfg(test)]
+mod naive;
 mod packed;
 mod perspective;
 mod shader;

@@ -9,6 +9,98 @@ use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
 /// The programmable fragment stage: colours pixels of format `P`.
 ///
 /// A shader is compiled into the pixel loop; nothing is called indirectly.
+///
+/// # A shader from scratch
+///
+/// A toon shader: a texture in three tones of light, whose transparent texels are left out. In the order in which the
+/// pipeline calls it:
+///
+/// 1. [`VertexShader::vertex`], once per vertex while records are used, otherwise up to once per corner of a triangle. It
+///    returns the varyings: here, texture coordinates that are [perspective-correct](crate::vertex::Perspective), and one
+///    varying that is linear on the screen.
+/// 2. [`VertexShader::face`], once per visible triangle, for a word that is constant on it. Not used here.
+/// 3. [`setup`](Self::setup), once per triangle and strip: all that its fragments share. Here, how bright the triangle is.
+/// 4. [`span`](Self::span), once per row of a triangle; as it is not overridden, it draws fragment by fragment.
+/// 5. [`fragment`](Self::fragment), once per pixel that passes the depth test. `None` leaves the pixel, and its depth, as it
+///    was.
+///
+/// ```
+/// use zstrip::color::PixelFormat;
+/// use zstrip::prelude::*;
+/// use zstrip::span::{Fragment, Shader, TriangleSetup};
+/// use zstrip::vertex::{Perspective, VertexRef, VertexShader};
+///
+/// struct Toon {
+///     /// Red, green, blue and opacity of 4 × 4 texels.
+///     texels: [[[u8; 4]; 4]; 4],
+/// }
+///
+/// impl VertexShader for Toon {
+///     /// u and v in 16.16, perspective-correct; brightness, linear. The third number counts one more, for 1 / w.
+///     type Varyings = Perspective<2, 4>;
+///
+///     fn vertex(&self, vertex: &VertexRef<'_>) -> Perspective<2, 4> {
+///         let [u, v] = vertex.uv();
+///         // The light comes from the viewer: the brightness is z of the normal, 2.14.
+///         let [_, _, z] = vertex.normal();
+///         Perspective::new([u.to_bits(), v.to_bits()], [i32::from(z).max(0) << 8])
+///     }
+/// }
+///
+/// /// How bright a triangle is, in 256ths.
+/// #[derive(Clone, Copy, Default)]
+/// struct Tone(u32);
+///
+/// impl<P: PixelFormat> Shader<P> for Toon {
+///     /// Coordinates are divided at every eighth pixel.
+///     const STEP: usize = 8;
+///     type Setup = Tone;
+///
+///     fn setup(&self, triangle: &TriangleSetup<'_, Perspective<2, 4>>) -> Tone {
+///         let brightness: i32 = triangle.corners.iter().map(|corner| corner.linear()[0] / 3).sum();
+///         Tone(match brightness >> 8 {
+///             ..5_000 => 64,
+///             ..12_000 => 160,
+///             _ => 256,
+///         })
+///     }
+///
+///     fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 4>, Tone>) -> Option<P::Raw> {
+///         // 16.16 to texels: two bits after the point, repeated.
+///         let [column, row] = fragment.varyings.corrected().map(|c| (c >> 14) as usize & 3);
+///         let [r, g, b, opacity] = self.texels[row][column];
+///         if opacity < 128 {
+///             return None;
+///         }
+///         let Tone(tone) = *fragment.setup;
+///         let [r, g, b] = [r, g, b].map(|channel| (u32::from(channel) * tone >> 8) as u8);
+///         Some(P::pack_at([r, g, b], fragment.position))
+///     }
+/// }
+///
+/// // A square that fills the screen and faces the viewer; its texture is white, but for a hole in the first texel.
+/// let at = |x, y| [x, y, 0, 1].map(|c| Scalar::from_bits(c << 16));
+/// let corners = [at(-1, 1), at(-1, -1), at(1, -1), at(1, 1)];
+/// let uvs = [[0, 0], [0, 1], [1, 1], [1, 0]].map(|uv| uv.map(|c| Scalar::from_bits(c << 16)));
+/// let normals = [[0, 0, 10_000]; 4];
+/// let data = MeshData { uvs: Some(&uvs), normals: Some(&normals), ..MeshData::new(Positions::Homogeneous(&corners)) };
+/// let square = Mesh::new(MeshData { topology: Topology::Fan, ..data })?;
+/// let mut toon = Toon { texels: [[[255; 4]; 4]; 4] };
+/// toon.texels[0][0][3] = 0;
+///
+/// let mut pixels = [0; 16 * 16];
+/// let mut depth = [u16::MAX; 16 * 16];
+/// let mut renderer = Renderer::<Rgb565>::new(Size::new(16, 16))?.with_depth(&mut depth)?;
+/// let mut frame = renderer.begin(Rgb888::BLUE);
+/// while frame.next_strip(&mut pixels, |scene| scene.draw(&square, &Projective::IDENTITY, &toon))?.is_some() {}
+///
+/// // The background through the hole; 160/256 of white elsewhere.
+/// assert_eq!(pixels[0], Rgb565::pack([0, 0, 255]));
+/// assert_eq!(pixels[3 * 16 + 3], Rgb565::pack([0, 0, 255]));
+/// assert_eq!(pixels[4], Rgb565::pack([159; 3]));
+/// assert_eq!(pixels[15 * 16 + 15], Rgb565::pack([159; 3]));
+/// # Ok::<(), Box<dyn core::error::Error>>(())
+/// ```
 pub trait Shader<P: PixelFormat>: VertexShader {
     /// Pixels over which perspective-correct varyings are taken as linear. 1 divides at each pixel; 4, 8, 16 or 32 divide at
     /// every fourth, eighth, ... pixel and at both ends of a span, which is faster, and off by little: see

@@ -1,4 +1,22 @@
 //! Spans of one colour.
+//!
+//! The plain loop:
+//!
+//! ```text
+//! for each pixel:
+//!     if z >> 16 passes against the stored depth:
+//!         store z >> 16
+//!         color = value
+//!     z += dz_dx
+//! ```
+//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made, in instructions per pixel of
+//! a quad that fills the screen:
+//!
+//! 1. **Without a depth test, a span is filled** with whole words: see `color/fill.rs`.
+//! 2. **Spans of nine pixels and more have a function of their own**, where the loop gets the registers that it needs: 14.14 → 9.72
+//!    and 12.77 → 10.08. On small cores it goes by runs of 16, depths first and colours then; on others by four pixels.
+//! 3. **Short spans stay in the caller**, as a line draws each of its pixels as a span: a pixel of a thin line 40.4 → 36.4 and
+//!    35.1 → 26.1.
 
 use super::color_setup::ColorSetup;
 use super::depth::{DepthTest, RUN, count_passing_prefix};
@@ -141,23 +159,37 @@ fn draw<R: Copy, D: DepthTest>(
 mod tests {
     use super::*;
     use crate::math::random::Rng;
-    use crate::span::DepthLess;
+    use crate::span::{DepthLess, naive};
 
     #[test]
-    fn runs_in_two_are_those_pixel_by_pixel() {
+    fn spans_are_those_pixel_by_pixel() {
         let mut rng = Rng::new(1);
-        let mut random = || rng.next_u32();
         for case in 0..2000 {
-            let (z, dz_dx) = (random() >> 1, random() as i32 >> 12);
-            // All pass, all but a few, few.
-            let far = [0, 1, 5, 13][case % 4];
-            let depths: [u16; RUN] = core::array::from_fn(|_| if random() % 16 < far { 0 } else { u16::MAX });
-            let (mut expected, mut found) = (([0_u16; RUN], depths, z), ([0_u16; RUN], depths, z));
-            for (color, depth) in expected.0.iter_mut().zip(&mut expected.1) {
-                draw(DepthLess, &mut expected.2, dz_dx, 7, color, depth);
-            }
-            run16(DepthLess, &mut found.2, dz_dx, 7, &mut found.0, &mut found.1);
-            assert_eq!(found, expected, "{case}");
+            let (z, dz_dx) = (20_000 << 16, rng.next_u32() as i32 >> 20);
+            let length = if case % 2 == 0 { RUN } else { rng.below(70) as usize };
+            let case = naive::Case { length, z, dz_dx, background: 0_u16 };
+            naive::compare(
+                DepthLess,
+                case,
+                &mut rng,
+                |depth| depth,
+                |_| Some(7),
+                &mut [
+                    ("run by run", &mut |color, depth| {
+                        let mut z = z;
+                        for (color, depth) in color.chunks_mut(RUN).zip(depth.chunks_mut(RUN)) {
+                            if let (Ok(color), Ok(depth)) = ((&mut *color).try_into(), (&mut *depth).try_into()) {
+                                run16(DepthLess, &mut z, dz_dx, 7, color, depth);
+                                continue;
+                            }
+                            for (color, depth) in color.iter_mut().zip(depth) {
+                                draw(DepthLess, &mut z, dz_dx, 7, color, depth);
+                            }
+                        }
+                    }),
+                    ("a long span", &mut |color, depth| tested_span(color, depth, z, dz_dx, 7, DepthLess)),
+                ],
+            );
         }
     }
 }

@@ -1,11 +1,29 @@
-//! The fastest loop for textures: nearest texels of what repeats, both coordinates in one word.
+//! Spans of textures that repeat, nearest texels: the fastest loop for textures.
+//!
+//! The plain loop, over u q, v q and q = 1 / w, which are linear on the screen:
 //!
 //! ```text
-//! bits   31 .. 16   15 .. 0
-//!           v          u        fractions of the texture; what is carried from u into v is 2⁻¹⁶ of it
+//! for each pixel:
+//!     if z >> 16 passes against the stored depth:
+//!         color = texel(uq / q, vq / q)
+//!         store z >> 16, unless the texel is transparent
+//!     z += dz_dx;  uq += duq;  vq += dvq;  q += dq
 //! ```
-//! Every [`STEP`] pixels, and at the last pixel of a span, both are made anew. In between, steps rounded to 2⁻¹⁶ are off
-//! by at most 2⁻¹³; in the last run of a span they are taken backwards from its end, so that ends are exact.
+//! The departures from it, with what each gained in instructions per pixel of W3, a tilted quad, on a Cortex-M0+ and a Cortex-M4
+//! when it was made:
+//!
+//! 1. **A division every 16 pixels**, and at the last pixel; in between u and v are linear, both in one word:
+//!
+//!    ```text
+//!    bits   31 .. 16   15 .. 0
+//!              v          u        fractions of the texture; what is carried from u into v is 2⁻¹⁶ of it
+//!    ```
+//!    Steps rounded to 2⁻¹⁶ are off by at most 2⁻¹³. In the last run of a span they are taken backwards from its end, so that
+//!    both ends are exact.
+//! 2. **Runs of 16 pixels in two passes** on small cores, depths first and texels then, each with its values in registers: 33.5 → 31.3.
+//! 3. **q, u q and v q are normalized once per span**, and a run gets its word and step out of line: 30.6 → 29.0 and 20.7 → 20.2.
+//! 4. **Texels of a run out of line, the last few pixels in two passes too**: 29.0 → 27.3.
+//! 5. **Divided and scaled in two instructions each** where products are long: 19.7 → 18.9 on a Cortex-M4.
 
 use super::depth::{DepthTest, RUN, count_passing_prefix, untested_tail};
 use super::perspective::nth;
@@ -376,7 +394,8 @@ impl Scale {
 
 #[cfg(test)]
 mod tests {
-    use super::super::depth::{Compare, DepthDyn, DepthLess, DepthState};
+    use super::super::depth::{Compare, DepthDyn, DepthLess, DepthOff, DepthState};
+    use super::super::naive;
     use super::super::perspective::Corrected;
     use super::*;
     use crate::math::random::Rng;
@@ -391,27 +410,63 @@ mod tests {
         UvStepper { at, step: [0, du, dv], uv: (u, v), u: scale(), v: scale(), end: [0; 3], dz_dx: 0 }
     }
 
-    #[test]
-    fn a_few_in_two_are_those_pixel_by_pixel() {
-        let texels: [[u16; 8]; 4] = core::array::from_fn(|y| core::array::from_fn(|x| (8 * y + x) as u16));
+    /// All loops, over a tile of which no texel is transparent.
+    fn compare<D: DepthTest<Depth: PartialEq + core::fmt::Debug>>(test: D, stored: impl Fn(u16) -> D::Depth) {
+        let texels: [[u16; 8]; 4] =
+            core::array::from_fn(|y| core::array::from_fn(|x| ((8 * y + x) as u16).wrapping_mul(0x0843)));
         let tile = &Tile::new(&texels);
-        for (length, hidden) in (0..=STEP).flat_map(|length| (0..=length).map(move |hidden| (length, hidden))) {
-            let cursor = || TexelCursor { z: 7 << 16, dz_dx: 1 << 15, vu: 0x1234_5678, step: 0x2345_6789 };
-            let mut depths = [u16::MAX; STEP];
-            if let Some(depth) = depths.get_mut(hidden) {
-                *depth = 0;
-            }
-            let (mut expected, mut found) = (([0_u16; STEP], depths), ([0_u16; STEP], depths));
-            let (colors, depths) = (&mut expected.0[..length], &mut expected.1[..length]);
-            cursor().tail::<Rgb565, _, _>(tile, DepthLess, colors, depths);
-            let (colors, depths) = (&mut found.0[..length], &mut found.1[..length]);
-            cursor().short_two_pass::<Rgb565, _, _>(tile, DepthLess, colors, depths);
-            assert_eq!(found, expected, "{length} {hidden}");
+        let mut rng = Rng::new(1);
+        for _ in 0..1000 {
+            let (z, dz_dx) = (20_000 << 16, rng.next_u32() as i32 >> 20);
+            let mut uv = || rng.next_u32() as i32 >> 8;
+            let (uv, duv) = ([uv(), uv()], [uv(), uv()]);
+            let (vu, step) = stepper(uv, duv).next_run();
+            let cursor = || TexelCursor { z, dz_dx, vu, step };
+            let pixel = |k: usize| tile.fetch::<Rgb565>(vu.wrapping_add(step.wrapping_mul(k as u32)));
+            let case = naive::Case { length: STEP, z, dz_dx, background: 0x1234_u16 };
+            naive::compare(
+                test,
+                case,
+                &mut rng,
+                &stored,
+                pixel,
+                &mut [
+                    ("a run in one pass", &mut |color, depth| {
+                        let (Ok(color), Ok(depth)) = (color.try_into(), depth.try_into()) else { return };
+                        cursor().run16::<Rgb565, _, D>(tile, test, color, depth);
+                    }),
+                    ("a run in two passes", &mut |color, depth| {
+                        let (Ok(color), Ok(depth)) = (color.try_into(), depth.try_into()) else { return };
+                        cursor().run16_two_pass::<Rgb565, _, D>(tile, test, &mut stepper(uv, duv), color, depth);
+                    }),
+                ],
+            );
+            let case = naive::Case { length: rng.below(STEP as u64 + 1) as usize, ..case };
+            naive::compare(
+                test,
+                case,
+                &mut rng,
+                &stored,
+                pixel,
+                &mut [
+                    ("a tail", &mut |color, depth| cursor().tail::<Rgb565, _, D>(tile, test, color, depth)),
+                    ("a tail in two passes", &mut |color, depth| {
+                        cursor().short_two_pass::<Rgb565, _, D>(tile, test, color, depth);
+                    }),
+                ],
+            );
         }
     }
 
     #[test]
-    fn walks_are_where_divisors_are() {
+    fn spans_are_those_pixel_by_pixel() {
+        compare(DepthLess, |depth| depth);
+        compare(DepthDyn::new(DepthState { compare: Compare::Greater, write: false }), |depth| depth);
+        compare(DepthOff, |_| ());
+    }
+
+    #[test]
+    fn steppers_are_where_divisors_are() {
         let mut rng = Rng::new(1);
         let mut random = || rng.next_u32();
         for case in 0..5000 {
@@ -453,44 +508,6 @@ mod tests {
             stepper.last((way % STEP as i32) as usize);
             exact.advance(way % STEP as i32);
             check(&stepper, &exact);
-        }
-    }
-
-    #[test]
-    fn runs_in_two_are_those_pixel_by_pixel() {
-        let texels: [[u16; 8]; 4] =
-            core::array::from_fn(|y| core::array::from_fn(|x| ((8 * y + x) as u16).wrapping_mul(0x0843)));
-        let mut rng = Rng::new(1);
-        let mut random = || rng.next_u32();
-        for case in 0..2000 {
-            let (z, dz_dx) = (random() >> 1, random() as i32 >> 12);
-            let (uv, duv) = ([random() as i32 >> 8; 2], [random() as i32 >> 8, random() as i32 >> 8]);
-            // All pass, all but a few, few.
-            let far = [0, 1, 5, 13][case % 4];
-            let depths: [u16; STEP] = core::array::from_fn(|_| if random() % 16 < far { 0 } else { u16::MAX });
-            let draw = |in_two: bool, greater: bool| {
-                let mut cursor = TexelCursor { z, dz_dx, vu: 0, step: 0 };
-                let mut stepper = stepper(uv, duv);
-                let (mut colors, mut depths) = ([0; STEP], depths);
-                let (tile, colors_mut, depths_mut) = (&Tile::new(&texels), &mut colors, &mut depths);
-                if !in_two {
-                    (cursor.vu, cursor.step) = stepper.next_run();
-                }
-                let any = DepthDyn::new(DepthState { compare: Compare::Greater, write: false });
-                match (in_two, greater) {
-                    (false, false) => cursor.run16::<Rgb565, _, _>(tile, DepthLess, colors_mut, depths_mut),
-                    (true, false) => {
-                        cursor.run16_two_pass::<Rgb565, _, _>(tile, DepthLess, &mut stepper, colors_mut, depths_mut)
-                    }
-                    (false, true) => cursor.run16::<Rgb565, _, _>(tile, any, colors_mut, depths_mut),
-                    (true, true) => {
-                        cursor.run16_two_pass::<Rgb565, _, _>(tile, any, &mut stepper, colors_mut, depths_mut)
-                    }
-                }
-                (colors, depths, cursor.z)
-            };
-            assert_eq!(draw(true, false), draw(false, false), "{case}");
-            assert_eq!(draw(true, true), draw(false, true), "{case}");
         }
     }
 }
