@@ -110,7 +110,7 @@ fn by_fours(a: u32, b: u32, c: u32, halves: &mut [u16]) {
     }
 }
 
-/// The same with one more, for long stretches.
+/// Does as [`by_fours`] with one more word, for long stretches.
 #[inline(never)]
 fn by_fives(a: u32, b: u32, c: u32, d: u32, blocks: &mut [[u32; 5]]) {
     let block = [a, b, c, d, a | b];
@@ -119,7 +119,7 @@ fn by_fives(a: u32, b: u32, c: u32, d: u32, blocks: &mut [[u32; 5]]) {
     }
 }
 
-/// The same for larger cores, eight times at once. The first eight overlap others, so that no rest is left.
+/// Does as [`by_fours`] for larger cores, with eight words. The first eight overlap others, so that no rest is left.
 #[inline(never)]
 fn by_eights(a: u32, b: u32, c: u32, d: u32, halves: &mut [u16]) {
     let [first, .., last] = &mut *halves else { return };

@@ -1,14 +1,14 @@
-//! What the fragment stage must know of a pixel format; the formats themselves belong to the output stage.
+//! The trait of pixel formats.
 
 use super::luma::luma;
 use super::packed::packed_channels;
 use super::rgb565::unpack_rgb565;
 use embedded_graphics_core::pixelcolor::{PixelColor, Rgb888};
 
-/// How colours are kept in a framebuffer. Implemented by marker types, which for formats that embedded-graphics knows are
+/// Format of the colours in a framebuffer. Implemented by marker types, which for formats that embedded-graphics knows are
 /// its own colour types.
 pub trait PixelFormat {
-    /// What one pixel is in memory, in the very bytes that [`Strip::bytes`](crate::target::StripPixels::bytes) hands out.
+    /// A pixel in memory, in the very bytes that [`Strip::bytes`](crate::target::StripPixels::bytes) hands out.
     type Raw: bytemuck::Pod;
 
     /// The embedded-graphics colour of this format.
@@ -27,7 +27,7 @@ pub trait PixelFormat {
         luma(Self::unpack(raw))
     }
 
-    /// Whether a pixel is a grey of 8 bits, for which [`from_luma`](Self::from_luma) is a short way.
+    /// A pixel is a grey of 8 bits, for which [`from_luma`](Self::from_luma) is a short way.
     const IS_LUMA: bool = false;
 
     /// The pixel of a grey.
@@ -56,7 +56,7 @@ pub trait PixelFormat {
         Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
     }
 
-    /// Whether there is an alpha channel: only in [`Rgba8888`](crate::color::Rgba8888), for colours that are about to be blended.
+    /// There is an alpha channel: only in [`Rgba8888`](crate::color::Rgba8888), for colours that are about to be blended.
     const ALPHA: bool = false;
 
     /// [`pack_at`](Self::pack_at) of red, green, blue and alpha, which is kept if there is a channel for it.
@@ -80,7 +80,7 @@ pub trait PixelFormat {
     /// Bits of red, green and blue that a dithered format keeps, up to 6.
     const DITHER: Option<[u32; 3]> = None;
 
-    /// What is added to packed channels, in the layout of [`from_packed`](Self::from_packed), at eight pixels from
+    /// Returns what is added to packed channels, in the layout of [`from_packed`](Self::from_packed), at eight pixels from
     /// `position` on, which is repeated every eight rows and columns of the screen.
     #[inline(always)]
     fn dither(position: (i32, i32)) -> &'static [u32; 8] {
@@ -88,10 +88,10 @@ pub trait PixelFormat {
         &[0; 8]
     }
 
-    /// Whether [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
+    /// [`from_packed`](Self::from_packed) is a short way to a pixel: true for formats of 5 or 6 bits a channel.
     const PACKED: bool = false;
 
-    /// What [`from_packed`](Self::from_packed) wants at hand in a register.
+    /// Returns the mask that [`from_packed`](Self::from_packed) wants at hand in a register.
     #[inline(always)]
     fn packed_mask() -> u32 {
         0

@@ -11,7 +11,7 @@ use embedded_graphics_core::pixelcolor::{
     Bgr565, Bgr888, Gray8, GrayColor, IntoStorage, Rgb565, Rgb666, Rgb888, RgbColor,
 };
 
-/// Where green is.
+/// Bits of green.
 const GREEN: u32 = 0x7E0;
 
 /// The mask that [`rgb565_from_packed`] wants at hand. It is hidden from the compiler, which would make it anew for each
@@ -21,7 +21,7 @@ fn packed_mask() -> u32 {
     core::hint::black_box(if SMALL_CORE { GREEN } else { !GREEN & 0xFFFF })
 }
 
-/// The same from channels in one word: red and blue lie as far apart there as here; green is exchanged for what lies
+/// Packs RGB565 from channels in one word: red and blue lie as far apart there as here; green is exchanged for what lies
 /// between them. Where registers are few, that takes one mask and no other constant.
 #[inline(always)]
 const fn rgb565_from_packed(word: u32, mask: u32) -> u16 {

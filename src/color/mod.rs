@@ -1,4 +1,4 @@
-//! What a pixel is: formats of colours, packed channels, ordered dither, fills.
+//! Pixels: formats of colours, packed channels, ordered dither, fills.
 
 mod channels;
 mod dither;

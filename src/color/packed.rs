@@ -25,7 +25,7 @@ pub(crate) fn spread_step(dither: Option<[u32; 3]>, channel: usize, step: i32) -
     }
 }
 
-/// What is to be added to packed channels of which so many bits stay, for a threshold of `rank`/64: an entry of
+/// Returns what is added to packed channels of which `bits` stay, for a threshold of `rank`/64: an entry of
 /// [`PixelFormat::dither`](crate::color::PixelFormat::dither).
 pub const fn dither_word(rank: u8, bits: [u32; 3]) -> u32 {
     // (s - 1) rank / 64 in 8.3, 8.2, 8.3.
@@ -68,7 +68,7 @@ pub(crate) fn store(rgb: &[i32; 3], words: &mut [u32]) {
     }
 }
 
-/// What [`store`] packed.
+/// Unpacks what [`store`] packed.
 #[inline]
 pub(crate) fn load(words: &[u32]) -> [i32; 3] {
     let word = words.first().copied().unwrap_or(0);

@@ -20,7 +20,7 @@ pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) hooks: &'p RasterHooks<F, S>,
 }
 
-/// What a draw's rasterization does only by some states, as functions chosen where the state is known: a program links what its
+/// Parts of the rasterization that only some states need, as functions chosen where the state is known: a program links what its
 /// states ask for.
 pub struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
     /// Draws the spans of a triangle, by a depth test: stage 9 of [the pipeline](crate#the-pipeline).
@@ -272,7 +272,7 @@ fn subslice<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]>
 }
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
-    /// What to draw triangles with, in the phases that draw.
+    /// Returns what draws triangles, in the phases that draw.
     pub(super) fn painter<'p, S: Shader<F::Format>>(
         &'p mut self,
         clip: &'p PixelRect,

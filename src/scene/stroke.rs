@@ -11,7 +11,7 @@ use crate::span::{
 use crate::target::Framebuffer;
 use crate::vertex::{ScreenVertex, Side, Varyings, VertexShader, Wrapper};
 
-/// How a line is drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
+/// Way to draw a line: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
 pub trait Stroke: Draw {}
 
 /// Draws lines in a stroke's way; not to be implemented outside of the crate.
@@ -71,11 +71,13 @@ const fn width_bits(width: Pixels) -> u32 {
 
 impl Thick {
     /// Creates a stroke of a width up to 2048 px; wider ones become as wide as that, negative ones 0.
+    #[must_use]
     pub const fn new(width: Pixels) -> Self {
         Self(width_bits(width))
     }
 
     /// Creates a stroke of a width in whole pixels.
+    #[must_use]
     pub const fn px(width: u8) -> Self {
         Self((width as u32) << 8)
     }
@@ -83,11 +85,13 @@ impl Thick {
 
 impl Smooth {
     /// Creates a stroke of a width up to 2048 px; wider ones become as wide as that, negative ones 0.
+    #[must_use]
     pub const fn new(width: Pixels) -> Self {
         Self(width_bits(width))
     }
 
     /// Creates a stroke of a width in whole pixels.
+    #[must_use]
     pub const fn px(width: u8) -> Self {
         Self((width as u32) << 8)
     }
@@ -388,7 +392,7 @@ impl Draw for Smooth {
     }
 }
 
-/// How much of a pixel a line covers: a box of 1 px, turned to the line, moved over it.
+/// Part of a pixel that a line covers: a box of 1 px, turned to the line, moved over it.
 ///
 /// Along and across the line the overlap of two intervals is a trapezoid; the product of both is what is covered.
 struct Coverage {

@@ -38,7 +38,7 @@ impl<P: PixelFormat> BlendMode<P> for Replace {
     }
 }
 
-/// The same opacity for all of a draw, 255 = opaque; see [`PixelFormat::mix`] for its steps.
+/// One opacity for all of a draw, 255 = opaque; see [`PixelFormat::mix`] for its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opacity(pub u8);
 
@@ -124,7 +124,7 @@ impl<P: PixelFormat> BlendMode<P> for Multiply {
 /// A shader whose colours are blended with what is there.
 ///
 /// It has to be the outermost of nested shaders, `Blend<Fogged<..>>`: inner ones do not see the pixel that is there.
-/// What is transparent is drawn after all else, from back to front: see
+/// Transparent things are drawn after all else, from back to front: see
 /// [`sort_back_to_front`](crate::mesh::sort_back_to_front); and without leaving its depth:
 /// [`DepthState::TEST`](crate::span::DepthState::TEST).
 ///
@@ -145,7 +145,8 @@ pub struct Blend<S, M> {
 }
 
 impl<S, M> Blend<S, M> {
-    /// A shader and how its colours are blended.
+    /// Wraps a shader, whose colours are blended by a mode.
+    #[must_use]
     pub const fn new(shader: S, mode: M) -> Self {
         Self { shader, mode }
     }

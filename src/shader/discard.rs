@@ -12,7 +12,8 @@ pub struct AlphaTest<S> {
 }
 
 impl<S> AlphaTest<S> {
-    /// A shader, and the least alpha that is drawn.
+    /// Wraps a shader; `threshold` is the least alpha that is drawn.
+    #[must_use]
     pub const fn new(shader: S, threshold: u8) -> Self {
         Self { shader, threshold }
     }
@@ -55,7 +56,8 @@ pub struct ScreenDoor<S> {
 }
 
 impl<S> ScreenDoor<S> {
-    /// A shader, and how many of 16 pixels it draws.
+    /// Wraps a shader, which draws `opacity` of 16 pixels.
+    #[must_use]
     pub const fn new(shader: S, opacity: u8) -> Self {
         Self { shader, opacity }
     }

@@ -1,4 +1,4 @@
-//! One colour a face.
+//! One colour per face.
 
 use crate::color::{PixelFormat, channels, packed, unpacked};
 use crate::light::Light;
@@ -8,7 +8,7 @@ use crate::vertex::{Face, VertexRef, VertexShader};
 /// Flat shading: each triangle in one colour, lit by its face normal.
 ///
 /// The colour is the shader's, or that of the provoking vertex.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flat {
     /// Red, green and blue in a word, blue lowest; otherwise the provoking vertices'.
     color: Option<u32>,
@@ -16,22 +16,26 @@ pub struct Flat {
 }
 
 impl Flat {
-    /// A colour under a light (given in object space, see [`Light::to_object`]).
+    /// Creates a shader of one colour under a light (given in object space, see [`Light::to_object`]).
+    #[must_use]
     pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
         Self { color: Some(packed(channels(color.into()))), light: Some(light) }
     }
 
-    /// A colour without light.
+    /// Creates a shader of one colour without light.
+    #[must_use]
     pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
         Self { color: Some(packed(channels(color.into()))), light: None }
     }
 
-    /// The colours of the mesh's vertices as they are, the provoking one's a triangle.
+    /// Creates a shader of the vertices' colours as they are: each triangle takes that of its provoking vertex.
+    #[must_use]
     pub const fn colors_unlit() -> Self {
         Self { color: None, light: None }
     }
 
-    /// The colours of the mesh's vertices (the provoking one's a triangle) under a light.
+    /// Creates a shader of the vertices' colours under a light: each triangle takes that of its provoking vertex.
+    #[must_use]
     pub const fn colors(light: Light) -> Self {
         Self { color: None, light: Some(light) }
     }
@@ -44,7 +48,7 @@ impl VertexShader for Flat {
         []
     }
 
-    /// The colour, 8 bits a channel, blue lowest.
+    /// Returns the colour, 8 bits per channel, blue lowest.
     #[inline]
     fn face(&self, face: &Face<'_>) -> u32 {
         let color = match self.color {

@@ -11,7 +11,7 @@ use crate::span::{Fragment, Shader, TriangleSetup};
 use crate::vertex::{VertexShader, Wrapper};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
-/// How fog thickens with the distance from the camera's plane.
+/// Law by which fog thickens with the distance from the camera's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FogCurve {
     /// None up to `start`, only fog from `end` on, evenly in between.
@@ -38,7 +38,7 @@ pub enum FogCurve {
 /// the first 16 are not used, but for the very first of the third, which ends the second.
 const ENTRIES: usize = 769;
 
-/// How much of a colour fog leaves at each depth. Make it a constant, or once for a camera.
+/// Part of a colour that fog leaves at each depth. Make it a constant, or once for a camera.
 ///
 /// ```
 /// use zstrip::shader::{FogCurve, FogTable};
@@ -139,6 +139,7 @@ impl FogTable {
     }
 
     /// Returns the part of a colour that is left at a depth, 255 = all.
+    #[must_use]
     #[inline]
     pub fn transmittance(&self, depth: u16) -> u8 {
         let steps = !depth;
@@ -178,6 +179,7 @@ pub struct Fogged<'t, S> {
 impl<'t, S> Fogged<'t, S> {
     /// A shader whose colours fade into `color`: usually that of the background; black for what is
     /// [added](crate::shader::Add).
+    #[must_use]
     pub fn new(shader: S, table: &'t FogTable, color: impl Into<Rgb888>) -> Self {
         Self { shader, table, color: channels(color.into()) }
     }

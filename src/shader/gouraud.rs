@@ -1,4 +1,4 @@
-//! Colours a vertex, interpolated over the triangle.
+//! Colours per vertex, interpolated over the triangle.
 
 use super::vertex_colors::VertexColors;
 use crate::color::{channels, load, squeeze, store};
@@ -8,13 +8,13 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// Gouraud shading: lit at the vertices, by the mesh's normals, and interpolated linearly on the screen. A mesh without
 /// normals shows the ambient light only.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gouraud {
     colors: Colors,
 }
 
-/// Where the colours of vertices come from.
-#[derive(Clone, Copy, Debug)]
+/// Source of the colours of vertices.
+#[derive(Clone, Copy, Debug, PartialEq)]
 enum Colors {
     /// One for the whole mesh, lit.
     One(Lit),
@@ -25,24 +25,28 @@ enum Colors {
 }
 
 impl Gouraud {
-    /// One colour under a light (given in object space, see [`Light::to_object`]).
+    /// Creates a shader of one colour under a light (given in object space, see [`Light::to_object`]).
+    #[must_use]
     pub fn new(light: Light, color: impl Into<Rgb888>) -> Self {
         Self { colors: Colors::One(light.on(channels(color.into()))) }
     }
 
-    /// The colours of the mesh's vertices under a light.
+    /// Creates a shader of the vertices' colours under a light.
+    #[must_use]
     pub const fn colors(light: Light) -> Self {
         Self { colors: Colors::Lit(light) }
     }
 
-    /// The varyings of a vertex that has this colour.
+    /// Returns the varyings of a vertex that has this colour.
+    #[must_use]
     #[inline]
     pub fn varyings(color: Rgb888) -> [i32; 3] {
         let [r, g, b] = channels(color);
         [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)]
     }
 
-    /// The colours of the mesh's vertices as they are.
+    /// Creates a shader of the vertices' colours as they are.
+    #[must_use]
     pub const fn colors_unlit() -> Self {
         Self { colors: Colors::Unlit }
     }

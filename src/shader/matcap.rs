@@ -9,7 +9,7 @@ use crate::vertex::{VertexRef, VertexShader};
 /// ball has, the surface gets, for one look-up a fragment.
 ///
 /// Rows go from the top down; `N` is a power of two. Normals are interpolated linearly on the screen.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matcap<'a, T: PixelFormat, const N: usize> {
     picture: &'a [[T::Raw; N]; N],
     /// To the right and down in eye space, 2.14.
@@ -19,6 +19,7 @@ pub struct Matcap<'a, T: PixelFormat, const N: usize> {
 
 impl<'a, T: PixelFormat, const N: usize> Matcap<'a, T, N> {
     /// A picture for a mesh that `model` (which may rotate, move and scale evenly) brings into eye space.
+    #[must_use]
     pub fn new(picture: &'a [[T::Raw; N]; N], model: &Affine) -> Self {
         const { assert!(N.is_power_of_two() && N <= 4096, "the side of a matcap is a power of two, up to 4096") };
         let [x, y, _] = model.to_rows();

@@ -8,17 +8,17 @@ use crate::span::{DepthTest, Fragment, Shader, SpanOf, flat_span};
 use crate::vertex::{Face, Side, VertexRef, VertexShader};
 use core::marker::PhantomData;
 
-/// How often a [`Shaded`] surface is lit: a colour a face, lit at its middle.
+/// Frequency of a [`Shaded`] surface: one colour per face, lit at its middle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PerFace;
 
-/// How often a [`Shaded`] surface is lit: at its vertices; colours are interpolated, linearly on the screen.
+/// Frequency of a [`Shaded`] surface: lit at its vertices; colours are interpolated, linearly on the screen.
 ///
 /// The vertices of two-sided materials turn their normals towards the viewer, as they may belong to faces of both sides.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PerVertex;
 
-/// How often a [`Shaded`] surface is lit: at each fragment, by interpolated normals made unit vectors again. For
+/// Frequency of a [`Shaded`] surface: lit at each fragment, by interpolated normals made unit vectors again. For
 /// directional lights (a point light does not compile) and a far viewer: a [`Viewer::At`](crate::light::Viewer::At)
 /// looks from the direction in which it is from the middle of the mesh's box. The cheaper of the two ways.
 ///
@@ -56,7 +56,8 @@ pub struct Shaded<Frequency, const D: usize, const P: usize> {
 }
 
 impl<Frequency: Copy, const D: usize, const P: usize> Shaded<Frequency, D, P> {
-    /// Lit as often as `frequency` says.
+    /// Creates a shader that lights as often as `frequency` says.
+    #[must_use]
     pub const fn new(frequency: Frequency, material: LitMaterial<D, P>) -> Self {
         let _ = frequency;
         Self { material, frequency: PhantomData }
@@ -148,7 +149,7 @@ const fn halves(a: i32, b: i32) -> u32 {
     (a as u32 & 0xFFFF_0000) | (b as u32 >> 16)
 }
 
-/// What [`halves`] made a word of.
+/// Undoes [`halves`].
 #[inline]
 const fn unhalved(word: u32) -> (i32, i32) {
     ((word & 0xFFFF_0000) as i32, (word << 16) as i32)

@@ -20,7 +20,7 @@ use core::marker::PhantomData;
 /// let smooth = Textured::new(&TILE).wrap(Clamp).filter(Bilinear);
 /// # let _ = (pixelated, smooth);
 /// ```
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Textured<'a, T, W = Repeat, F = Nearest> {
     /// The texture, and smaller ones of half its size each.
     levels: &'a [T],
@@ -28,12 +28,13 @@ pub struct Textured<'a, T, W = Repeat, F = Nearest> {
 }
 
 impl<'a, T: Texture> Textured<'a, T> {
-    /// One texture for all sizes on the screen.
+    /// Creates a shader of one texture for all sizes on the screen.
+    #[must_use]
     pub const fn new(texture: &'a T) -> Self {
         Self { levels: core::slice::from_ref(texture), how: PhantomData }
     }
 
-    /// A mip chain: each level half the size of the one before, rounded down, at least 1. Each triangle takes the level
+    /// Creates a shader of a mip chain: each level half the size of the one before, rounded down, at least 1. Each triangle takes the level
     /// whose texels are nearest in size to its pixels, and not smaller than 1/2 of one.
     ///
     /// # Errors
@@ -53,22 +54,26 @@ impl<'a, T: Texture> Textured<'a, T> {
 }
 
 impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
-    /// The same, with something else outside of the texture.
+    /// Returns the shader with another rule for what is outside of the texture.
+    #[must_use]
     pub const fn wrap<V: Wrap>(self, _: V) -> Textured<'a, T, V, F> {
         Textured { levels: self.levels, how: PhantomData }
     }
 
-    /// The same, filtered in another way.
+    /// Returns the shader with another filter.
+    #[must_use]
     pub const fn filter<G: Filter>(self, _: G) -> Textured<'a, T, W, G> {
         Textured { levels: self.levels, how: PhantomData }
     }
 
-    /// The same under a light (given in object space, see [`Light::to_object`]), lit at the vertices by the mesh's normals.
+    /// Returns the shader under a light (given in object space, see [`Light::to_object`]): lit at the vertices by the mesh's
+    /// normals.
+    #[must_use]
     pub fn lit(self, light: Light) -> LitTexture<'a, T, W, F> {
         LitTexture { texture: self, light: light.on([255; 3]) }
     }
 
-    /// The level for a triangle; there is always one.
+    /// Returns a level by its number; there is always one.
     #[inline]
     fn level(&self, level: u32) -> Option<&'a T> {
         self.levels.get(level as usize)
@@ -145,7 +150,7 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
 }
 
 /// [`Textured`] under a light: see [`Textured::lit`].
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LitTexture<'a, T, W = Repeat, F = Nearest> {
     texture: Textured<'a, T, W, F>,
     /// The light on white.

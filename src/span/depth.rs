@@ -17,7 +17,7 @@
 
 use crate::math::SMALL_CORE;
 
-/// How a fragment's depth must compare with the stored one to be drawn.
+/// Comparison of a fragment's depth with the stored one that lets it be drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Compare {
@@ -40,13 +40,13 @@ pub enum Compare {
     Always,
 }
 
-/// What to do with depth.
+/// Depth test of a draw, and its write mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DepthState {
     /// The test.
     pub compare: Compare,
-    /// Whether a fragment that passes leaves its depth.
+    /// A fragment that passes leaves its depth.
     pub write: bool,
 }
 
@@ -78,7 +78,7 @@ pub trait DepthStorage<Z>: Copy {
 
 /// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
 pub trait DepthTest: DepthStorage<<Self as DepthTest>::Depth> {
-    /// Whether depth plays a part at all; otherwise neither `passes` nor `write` has to be called.
+    /// Depth plays a part; where it does not, neither `passes` nor `write` has to be called.
     const ENABLED: bool;
 
     /// Stored depth of a pixel: `u16`, or `()` where depth plays no part.

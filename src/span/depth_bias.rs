@@ -3,7 +3,7 @@
 use crate::math::Scalar;
 use core::ops::Range;
 
-/// What is added to the depths of a draw's triangles, in steps of depth: below zero is nearer.
+/// Steps of depth that are added to the depths of a draw's triangles: below zero is nearer.
 ///
 /// Decals and outlines on a surface want about `DepthBias { constant: -1, slope: -Scalar::ONE }`: interpolated depths of two
 /// coplanar triangles differ by a step, and by what depth changes within a pixel, if they have not the same vertices.
@@ -29,7 +29,7 @@ impl DepthBias {
     /// No bias.
     pub const NONE: Self = Self { constant: 0, slope: Scalar::ZERO };
 
-    /// Whether there is nothing to add.
+    /// Returns whether there is nothing to add.
     pub(crate) fn is_none(self) -> bool {
         self == Self::NONE
     }

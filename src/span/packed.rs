@@ -41,7 +41,7 @@ const RUN: usize = super::depth::RUN;
 /// A primitive whose varyings are colours.
 type Colored = Primitive<[i32; 3], ColorSetup>;
 
-/// What a word of channels leaves out, 9 or 10 bits of each, with a bit above for what they carry into the word.
+/// Packs the bits that a word of channels leaves out, 9 or 10 bits of each, with a bit above for what they carry into the word.
 ///
 /// ```text
 /// bits   31      30 .. 21   20      19 .. 11   10      9 .. 0
@@ -55,7 +55,7 @@ const fn low([r, g, b]: [i32; 3]) -> u32 {
 /// Half of the units of [`low`]: what rounds to them.
 const LOW_HALVES: [i32; 3] = [4, 8, 8];
 
-/// How far above the units of the word the carries of [`low`] are, and what they are there.
+/// Distance of [`low`]'s carries from the units of the word that they carry into, and those units.
 const CARRY: u32 = 10;
 const UNITS: u32 = 1 << 21 | 1 << 10 | 1;
 
@@ -182,7 +182,7 @@ fn draw_runs<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     }
 }
 
-/// Draws less than a run, from a pixel on.
+/// Draws less than a run, from a pixel at (x, y) on.
 #[inline(never)]
 fn draw_short_at<P: PixelFormat, D: DepthTest>(
     test: D,
@@ -200,7 +200,7 @@ fn draw_short_at<P: PixelFormat, D: DepthTest>(
     SpanCursor::new(z, word, primitive).draw_short::<P, D>(test, primitive, P::dither((x, y)), color, depth);
 }
 
-/// The same, from a word on.
+/// Draws less than a run, from a word of channels on.
 #[inline(never)]
 fn draw_short<P: PixelFormat, D: DepthTest>(
     test: D,
@@ -230,7 +230,7 @@ fn color_short_at<P: PixelFormat>(color: &mut [P::Raw], primitive: &Colored, x: 
     );
 }
 
-/// The same, from a word on.
+/// Colours less than a run, from a word of channels on.
 #[inline(never)]
 fn color_short<P: PixelFormat>(color: &mut [P::Raw], word: u32, primitive: &Colored, addends: &[u32; 8]) {
     let mut nothing = [(); usize::MAX];
@@ -264,7 +264,7 @@ fn draw_partial_at<P: PixelFormat, D: DepthTest>(
     );
 }
 
-/// The same for up to a run, from a word on.
+/// Draws up to a run, from a word of channels on, of which the depths have been tested but for the last ones.
 #[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
 #[cold]
 #[inline(never)]
@@ -322,7 +322,7 @@ fn draw_partial_inlined<P: PixelFormat, D: DepthTest>(
     }
 }
 
-/// Whether none of the depths passes: where the first one does not, that is usual.
+/// Returns whether none of the depths passes: where the first one does not, that is usual.
 #[inline(always)]
 fn all_hidden<D: DepthTest>(test: D, depths: &[D::Depth], mut z: u32, dz_dx: i32) -> bool {
     for depth in depths {
@@ -353,13 +353,13 @@ fn draw_long<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     }
 }
 
-/// What dithering adds to a pixel of a run.
+/// Returns what dithering adds to a pixel of a run.
 #[inline(always)]
 fn addend<P: PixelFormat>(addends: &[u32; 8], pixel: usize) -> u32 {
     if P::DITHER.is_some() { addends.get(pixel % 8).copied().unwrap_or(0) } else { 0 }
 }
 
-/// What changes from pixel to pixel in [`packed_span`].
+/// Place in a span of packed channels: all that changes from pixel to pixel.
 struct SpanCursor {
     z: u32,
     dz_dx: i32,

@@ -193,7 +193,7 @@ fn fragments_without_depth<P: PixelFormat, S: Shader<P> + ?Sized>(
     }
 }
 
-/// Where [`linear_fragments`] is, and how it goes on.
+/// Place of [`linear_fragments`] in a span, and all that it steps.
 struct Pixels<'a, V: Varyings, T> {
     z: u32,
     varyings: &'a mut V,

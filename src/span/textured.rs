@@ -122,7 +122,7 @@ const fn step([du, dv]: [i32; 2]) -> u32 {
     ((dv as u32) << 16).wrapping_add(du as u32)
 }
 
-/// What changes from pixel to pixel.
+/// Place in a textured span: all that changes from pixel to pixel.
 struct TexelCursor {
     z: u32,
     dz_dx: i32,
@@ -356,7 +356,7 @@ impl UvStepper {
     }
 }
 
-/// How to scale what is interpolated of a coordinate back.
+/// Scale from the interpolated form of a coordinate back to the coordinate.
 struct Scale {
     /// Half of what is shifted out; 4 times that on cores with a long product.
     half: i32,

@@ -16,10 +16,10 @@ pub trait Texture {
     /// A pixel from it, unless it is transparent.
     fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw>;
 
-    /// Whether all texels are what [`rgb565`](Self::rgb565) says.
+    /// All texels are exactly what [`rgb565`](Self::rgb565) returns.
     const IS_RGB565: bool = false;
 
-    /// Whether no texel is transparent.
+    /// No texel is transparent.
     const IS_OPAQUE: bool = Self::IS_RGB565;
 
     /// The texel as RGB565.

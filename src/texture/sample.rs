@@ -6,9 +6,9 @@ use super::image::Texture;
 use super::texel::OPAQUE;
 use crate::color::{PixelFormat, fold_rgb565, mix_spread_rgb565, spread_rgb565};
 
-/// What is outside of the texture.
+/// Rule for coordinates outside of the texture.
 pub trait Wrap: Copy {
-    /// Whether a coordinate's fraction is all that counts.
+    /// A coordinate's fraction is all that counts.
     const REPEATS: bool = false;
 
     /// The place in the texture, 0.16, for a coordinate of 16.16.
@@ -74,9 +74,9 @@ impl Wrap for Clamp {
     }
 }
 
-/// How texels become a colour.
+/// Way from texels to a colour.
 pub trait Filter: Copy {
-    /// Whether that is the nearest texel, as it is.
+    /// The colour is that of the nearest texel.
     const NEAREST: bool = false;
 
     /// The colour at coordinates of 16.16.

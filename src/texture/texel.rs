@@ -5,20 +5,20 @@ use crate::color::{PixelFormat, unpack_rgb565};
 /// Alpha from which on a texel is drawn at all.
 pub(crate) const OPAQUE: u8 = 128;
 
-/// How texels are kept in an [`Image`](crate::texture::Image): `BITS` bits each, in the order of embedded-graphics' `ImageRaw`. Rows
+/// Format of the texels of an [`Image`](crate::texture::Image): `BITS` bits each, in the order of embedded-graphics' `ImageRaw`. Rows
 /// start at whole bytes; of texels that share a byte the first is in the upper bits, of those with more bytes the first byte
 /// is the upper one.
 pub trait TexelFormat: Copy {
     /// Bits a texel: 1, 2, 4, 8, 16 or 24.
     const BITS: usize;
 
-    /// Whether [`rgb565`](Self::rgb565) is exact: texels of 16 bits, none of them transparent.
+    /// [`rgb565`](Self::rgb565) is exact: texels of 16 bits, none of them transparent.
     const IS_RGB565: bool = false;
 
-    /// What a texel's bits mean, 8 bits a channel.
+    /// Decodes a texel, 8 bits per channel.
     fn rgba(&self, texel: u32) -> [u8; 4];
 
-    /// The same as RGB565.
+    /// Decodes a texel to RGB565.
     #[inline(always)]
     fn rgb565(&self, texel: u32) -> u16 {
         let [r, g, b, _] = self.rgba(texel);
