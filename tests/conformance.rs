@@ -1,4 +1,4 @@
-//! The crate against the conformance files, through its whole pipeline.
+//! The crate against the conformance files: draws of scenes, in one strip and in many, recorded and direct.
 
 mod reference;
 
@@ -42,6 +42,15 @@ fn coverage_is_right_in_strips_of_1_7_and_16_rows() {
 fn coverage_is_right_without_records() {
     for stem in COVERAGE {
         assert_right(stem, Subject { strip_rows: 16, records: 0 });
+    }
+    // Lines are checked in the order of their pixels, which strips would change.
+    assert_right("lines", Subject { records: 0, ..Subject::default() });
+}
+
+#[test]
+fn points_are_right_in_strips() {
+    for (strip_rows, records) in [(1, 2000), (7, 2000), (16, 0)] {
+        assert_right("points", Subject { strip_rows, records });
     }
 }
 

@@ -1,4 +1,5 @@
-//! The crate itself, through its whole pipeline, behind the checker's trait.
+//! The crate itself behind the checker's trait: triangles, lines and points are draws of a scene, in one strip or many, recorded
+//! or drawn directly.
 //!
 //! Screen positions become homogeneous vertices with w = 1 that project to exactly the same 1/256 px: the viewports of
 //! the data are powers of two.
@@ -8,13 +9,15 @@ use std::cell::RefCell;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::frame::FramebufferRenderer;
-use zstrip::internals::{Line, PixelRect, square};
-use zstrip::math::{Projective, Scalar};
-use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::math::{Pixels, Projective, Scalar};
+use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Vertices};
 use zstrip::span::{DepthState, DepthTest, Fragment, Shader, SpanOf};
 use zstrip::target::FrameSlice;
 use zstrip::vertex::{Face, Perspective, VertexRef, VertexShader};
-use zstrip::{Cull, State};
+use zstrip::{Cull, Scene, State, Thin};
+
+/// Nothing is culled, and depths do not matter.
+const ALL: State = State { cull: Cull::None, depth: DepthState::OFF, ..State::DEFAULT };
 
 /// Draws with zstrip; strips of `strip_rows` rows, and `records` words of records.
 pub struct Subject {
@@ -138,22 +141,27 @@ impl Subject {
         shader: &S,
     ) -> (Vec<u16>, Vec<u16>) {
         let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(vertices))).expect("a mesh");
-        let pixels = (width * height) as usize;
-        let mut color = vec![0; pixels];
+        let state = State { depth: depth_state, ..ALL };
+        self.frame((width, height), |scene| scene.draw_with(state, &mesh, &y_down(), shader))
+    }
+
+    /// Draws a frame, and returns its colours and the depths of its last strip.
+    fn frame(
+        &self,
+        (width, height): (u32, u32),
+        draw: impl FnMut(&mut Scene<'_, FrameSlice<'_, Rgb565>>),
+    ) -> (Vec<u16>, Vec<u16>) {
+        let size = Size::new(width, height);
+        let mut color = vec![0; (width * height) as usize];
         let mut depth = vec![0; width as usize * self.strip_rows.min(height as usize)];
         let mut records = vec![0; self.records];
-        let size = (width as u16, height as u16);
-        let mut frame =
-            FrameSlice::<Rgb565>::new(&mut color, Size::new(size.0.into(), size.1.into())).expect("a framebuffer");
-        let mut renderer = FramebufferRenderer::new(Size::new(size.0.into(), size.1.into()))
+        let mut frame = FrameSlice::<Rgb565>::new(&mut color, size).expect("a framebuffer");
+        let mut renderer = FramebufferRenderer::new(size)
             .expect("a renderer")
             .with_depth(&mut depth)
             .expect("a renderer")
             .with_records(&mut records);
-        let state = State { cull: Cull::None, depth: depth_state, ..State::default() };
-        renderer
-            .frame_over(&mut frame, |scene| scene.draw_with(state, &mesh, &y_down(), shader))
-            .expect("the same scene each time");
+        renderer.frame_over(&mut frame, draw).expect("the same scene each time");
         (color, depth)
     }
 
@@ -209,20 +217,19 @@ impl Rasterizer for Subject {
         self.reach((width, height), &vertices, hit);
     }
 
-    fn line(&mut self, width: u32, height: u32, [a, b]: [[i32; 2]; 2], hit: &mut dyn FnMut(u32, u32)) {
-        for (x, y) in Line::new(a.into(), b.into()).pixels(&whole(width, height)).1 {
-            hit(x as u32, y as u32);
-        }
+    fn line(&mut self, width: u32, height: u32, ends: [[i32; 2]; 2], hit: &mut dyn FnMut(u32, u32)) {
+        let ends = ends.map(|end| on_screen(end, 0, width, height));
+        let line = Lines::new(Vertices::new(Positions::Homogeneous(&ends)), LineTopology::Pairs, None).expect("a line");
+        let mut hit = |_: usize, x: u32, y: u32| hit(x, y);
+        let shader = Reached(RefCell::new(&mut hit));
+        self.frame((width, height), |scene| scene.draw_lines_with(ALL, &line, &y_down(), &shader, &Thin));
     }
 
     fn point(&mut self, width: u32, height: u32, center: [i32; 2], side: u32, hit: &mut dyn FnMut(u32, u32)) {
-        let rect = square(center.into(), side).intersection(&whole(width, height));
-        for y in rect.y {
-            rect.x.clone().for_each(|x| hit(x as u32, y as u32));
-        }
+        let vertices = [on_screen(center, 0, width, height)];
+        let point = Points::new(Vertices::new(Positions::Homogeneous(&vertices))).expect("a point");
+        let mut hit = |_: usize, x: u32, y: u32| hit(x, y);
+        let (shader, side) = (Reached(RefCell::new(&mut hit)), Pixels::from_bits(side as i32));
+        self.frame((width, height), |scene| scene.draw_points_with(ALL, &point, &y_down(), &shader, side));
     }
-}
-
-fn whole(width: u32, height: u32) -> PixelRect {
-    PixelRect { x: 0..width as i32, y: 0..height as i32 }
 }
