@@ -1,4 +1,4 @@
-//! How much RAM a frame needs, as constants.
+//! The RAM that a frame needs, as constants.
 
 use crate::color::PixelFormat;
 use crate::target::records_len;

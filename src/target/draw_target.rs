@@ -18,7 +18,7 @@ use embedded_graphics_core::pixelcolor::PixelColor;
 use embedded_graphics_core::primitives::Rectangle;
 use embedded_graphics_core::{Drawable, Pixel};
 
-/// What a framebuffer's pixels are in memory, and as colours.
+/// A framebuffer's pixels in memory, and as colours.
 type Raw<F> = <<F as Framebuffer>::Format as PixelFormat>::Raw;
 type Color<F> = <<F as Framebuffer>::Format as PixelFormat>::Color;
 
@@ -41,7 +41,7 @@ pub struct Overlay<'o, F, D> {
 }
 
 impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
-    /// Over `rows` of a screen.
+    /// Makes an overlay over `rows` of a screen.
     pub(crate) fn new(
         target: Option<(&'o mut F, &'o mut [u16], Range<i32>)>,
         screen: (u16, u16),
@@ -56,9 +56,11 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
         Self { framebuffer, depth, first_row: clip.y.start, screen, clip, z, test }
     }
 
-    /// Whether any pixel of an area is drawn just now; where not, what draws nothing outside of it need not be drawn.
+    /// Tells if any pixel of an area is in the strip that is being drawn. If none is, a drawing that stays within the
+    /// area can be left out.
     ///
-    /// The answer changes from strip to strip, so it must not decide about meshes, which have to be drawn each time.
+    /// The answer changes from strip to strip, so it must not decide about meshes, which have to be drawn in each call
+    /// of the closure.
     #[inline(never)]
     pub fn is_visible(&self, area: &Rectangle) -> bool {
         !self.clip.intersection(&pixels(area)).is_empty()
@@ -102,7 +104,7 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     }
 }
 
-/// An overlay with its origin elsewhere and its colours converted: what images draw on.
+/// An overlay with its origin elsewhere and its colours converted: the target that images draw on.
 struct Moved<'m, 'o, F, D, C> {
     overlay: &'m mut Overlay<'o, F, D>,
     origin: Point,
@@ -143,7 +145,7 @@ impl<F: Framebuffer, D: DepthTest, C: PixelColor + Into<Color<F>>> DrawTarget fo
     }
 }
 
-/// The pixels of an area; cut at what 32 bits hold.
+/// Returns the pixels of an area, cut at the ends of 32 bits.
 fn pixels(area: &Rectangle) -> PixelRect {
     let Rectangle { top_left, size } = *area;
     PixelRect {
@@ -152,13 +154,13 @@ fn pixels(area: &Rectangle) -> PixelRect {
     }
 }
 
-/// Columns of a row of the strip: the pixels that there are.
+/// Returns the pixels of a row of the strip, in a range of columns.
 #[inline(never)]
 fn colors<'r, F: Framebuffer>(framebuffer: &'r mut F, y: i32, columns: &Range<i32>) -> &'r mut [Raw<F>] {
     framebuffer.span(y as u32, columns.start as usize, (columns.end - columns.start) as usize)
 }
 
-/// What is stored of their depths; nothing where there is no depth buffer.
+/// Returns the stored depths of those columns; nothing where there is no depth buffer.
 #[inline(always)]
 fn depths<'r, D: DepthTest>(
     depth: &'r mut [u16],
@@ -172,7 +174,7 @@ fn depths<'r, D: DepthTest>(
     stored.get_mut(..(columns.end - columns.start) as usize).unwrap_or_default()
 }
 
-/// Tests a depth against the stored one, and leaves it if it passes.
+/// Tests a depth against the stored one. A depth that passes is stored.
 #[inline(always)]
 fn passes<D: DepthTest>(test: D, z: u16, stored: &mut D::Depth) -> bool {
     let passes = test.passes(z, *stored);

@@ -1,4 +1,4 @@
-//! What is drawn into: anything that has rows of pixels.
+//! Framebuffers: anything that has rows of pixels to draw into.
 
 use super::choice::{DepthChoice, RecordsChoice, WithoutDepth, WithoutRecords};
 use crate::color::PixelFormat;
@@ -14,25 +14,25 @@ pub trait Framebuffer {
     /// The format of the pixels.
     type Format: PixelFormat;
 
-    /// Whether there is a depth buffer beside it; without one, every depth test passes. A constant, so that a program
+    /// True if there is a depth buffer beside it. Without one, every depth test passes. A constant, so that a program
     /// links only the loops that it needs.
     const DEPTH: bool = true;
 
-    /// Whether there may be records for it. Without them, the closure is called once a strip, and the code that records
-    /// and replays is not linked.
+    /// True if there may be records for it. Without them, the closure is called once per strip, and the code that
+    /// records and replays is not linked.
     const RECORDS: bool = true;
 
-    /// Row `y` of the screen, from column 0.
+    /// Returns row `y` of the screen, from column 0.
     fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
 
-    /// Up to `length` pixels of row `y` from `column` on: those that there are.
+    /// Returns up to `length` pixels of row `y`, from `column` on: no more than the row has.
     #[inline]
     fn span(&mut self, y: u32, column: usize, length: usize) -> &mut [<Self::Format as PixelFormat>::Raw] {
         first(self.row(y).get_mut(column..).unwrap_or_default(), length)
     }
 
-    /// The rows from `first_row` on, one after the other, if they lie in memory so, `width` pixels each, and no more
-    /// than there are. Triangles and lines are drawn faster then.
+    /// Returns the rows from `first_row` on, if they lie in memory one after the other, `width` pixels each. Triangles
+    /// and lines are drawn faster then, because rows need not be looked up one by one.
     #[inline]
     fn rows(&mut self, first_row: u32, width: usize) -> Option<&mut [<Self::Format as PixelFormat>::Raw]> {
         let _ = (first_row, width);
@@ -40,7 +40,7 @@ pub trait Framebuffer {
     }
 }
 
-/// The first `length` of some pixels, or all of them.
+/// Returns the first `length` of some pixels, or all of them if there are fewer.
 #[inline]
 fn first<R>(pixels: &mut [R], length: usize) -> &mut [R] {
     let length = length.min(pixels.len());

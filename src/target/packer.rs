@@ -11,15 +11,15 @@ use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::Size;
 use embedded_graphics_core::pixelcolor::BinaryColor;
 
-/// How pixels share bytes.
+/// A way for pixels to share bytes.
 pub trait PackedFormat {
-    /// What a pixel can be.
+    /// The colours that a pixel can have.
     type Color: Levels;
 
-    /// How many rows share a byte: strips begin at multiples of that.
+    /// Rows that share a byte: strips begin at multiples of this number.
     const ROWS: u16;
 
-    /// Bytes of so many pixels in a row, and so many rows.
+    /// Counts the bytes of `rows` rows of `width` pixels.
     fn bytes(width: u16, rows: u16) -> usize;
 
     /// Packs whole rows of `width` pixels, the first one row `y` of the screen.
@@ -271,7 +271,7 @@ impl<'b, F: PackedFormat> Packer<'b, F> {
         Ok(Self { dither, bytes })
     }
 
-    /// The bytes of a strip, for the part of the panel that the strip covers.
+    /// Packs a strip. Returns its bytes, for the part of the panel that the strip covers.
     ///
     /// A strip larger than those the packer was made for is cut at the end of its buffer.
     pub fn pack<P: PixelFormat>(&mut self, strip: &StripPixels<'_, P>) -> &[u8] {
@@ -292,7 +292,7 @@ pub struct DitheredDisplay<'d, D: DrawTarget<Color: Levels>> {
 }
 
 impl<'d, D: DrawTarget<Color: Levels>> DitheredDisplay<'d, D> {
-    /// Draws on `display`.
+    /// Makes a sink that draws on `display`.
     pub const fn new(display: &'d mut D, dither: Dither<D::Color>) -> Self {
         Self { display, dither }
     }

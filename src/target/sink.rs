@@ -1,4 +1,4 @@
-//! Where finished strips go.
+//! Finished strips, and sinks that take them.
 
 use crate::color::PixelFormat;
 use embedded_graphics_core::draw_target::DrawTarget;
@@ -60,10 +60,10 @@ impl<'c, P: PixelFormat> StripPixels<'c, P> {
 
 /// Takes the strips of a frame, from top to bottom. A closure will do.
 pub trait StripSink<P: PixelFormat> {
-    /// What can go wrong; it ends the frame.
+    /// The error of a sink; it ends the frame.
     type Error;
 
-    /// Takes a strip; called once for each.
+    /// Takes a strip. Called once per strip.
     ///
     /// # Errors
     /// The sink's own; the frame stops and hands it on.
@@ -86,13 +86,13 @@ pub struct OnDisplay<'d, D> {
 }
 
 impl<'d, D> OnDisplay<'d, D> {
-    /// From the display's own corner on.
+    /// Makes a sink that draws from the display's own corner on.
     pub const fn new(display: &'d mut D) -> Self {
         Self::at(display, Point::zero())
     }
 
-    /// As a rectangle of the display with its corner at `top_left`; what is off the display is the display's to leave
-    /// out.
+    /// Makes a sink that draws a rectangle of the display with its corner at `top_left`. The display has to leave out
+    /// pixels that are off it.
     pub const fn at(display: &'d mut D, top_left: Point) -> Self {
         Self { display, top_left }
     }

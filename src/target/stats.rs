@@ -1,4 +1,4 @@
-//! What a frame did: counters of every stage.
+//! Counters of every stage of a frame.
 
 /// Counters of a frame. Work that is done again, for another band or strip, is counted again; counters
 /// wrap at 2³².

@@ -1,4 +1,4 @@
-//! Which strip a row is in.
+//! The strip that a row is in.
 
 use crate::math::{divided, leading_zeros_long};
 use core::num::NonZeroU32;
@@ -30,14 +30,15 @@ impl StripRows {
         Self { rows, factor: (whole_rows((1 << shift) - 1, rows) + 1) as u32, shift }
     }
 
-    /// The strip that a row is in.
+    /// Returns the number of the strip that a row is in.
     #[inline]
     pub(crate) const fn of(&self, row: u32) -> usize {
         (row.wrapping_mul(self.factor) >> self.shift) as usize
     }
 }
 
-/// Rows of `width` pixels that `length` of them fill; 1 for a screen without width, which is an error of its own.
+/// Counts the whole rows of `width` pixels in `length` pixels. Returns 1 for a screen without width, which is an error
+/// of its own.
 pub(crate) fn whole_rows(length: usize, width: u16) -> usize {
     let length = u32::try_from(length).unwrap_or(u32::MAX);
     NonZeroU32::new(width.into()).map_or(1, |width| divided(length, width).0 as usize)
