@@ -15,6 +15,7 @@ use crate::vertex::{
     MAX_DISTANCES, Outcode, Projected, Transform, Varyings, VertexRef, VertexShader, inverse_w, weighted,
 };
 use core::ops::Range;
+use heapless::deque::Deque;
 use heapless::vec::{Vec, VecView};
 
 /// A corner of a clipped polygon on the screen. Its varyings are made when it is drawn, or recorded.
@@ -363,8 +364,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         all.skip(S::CLIP_DISTANCES).take(S::CULL_DISTANCES).any(|sign| sign < 0)
     }
 
-    /// Clips a triangle and projects the corners of what is left. In a function of its own, so that the polygons in clip space
-    /// have left the stack when the fan is drawn.
+    /// Clips a triangle and projects the corners of what is left. In a function of its own, so that the polygon in clip space
+    /// has left the stack when the fan is drawn.
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,
@@ -373,11 +374,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         slab: DepthSlab,
         fan: &mut VecView<FanCorner>,
     ) {
-        let (mut polygon, mut spare) = (Vec::<ClipCorner, N>::new(), Vec::<ClipCorner, N>::new());
+        let mut polygon = Deque::<ClipCorner, N>::new();
         for (k, index) in corners.iter().enumerate() {
-            let _ = polygon.push(ClipCorner::new(self.transformed(usize::from(*index)), k));
+            let _ = polygon.push_back(ClipCorner::new(self.transformed(usize::from(*index)), k));
         }
-        let mut clipping = Clipping::new(&mut polygon, &mut spare);
+        let mut clipping = Clipping::new(&mut polygon);
         clipping.clip(codes, slab);
         if S::CLIP_DISTANCES > 0 {
             let [i, j, k] = corners;
@@ -386,7 +387,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                 clipping.cut_by_distance([i, j, k]);
             }
         }
-        project_corners(clipping.corners(), self.transform, S::Varyings::PERSPECTIVE > 0, fan);
+        project_corners(&clipping, self.transform, S::Varyings::PERSPECTIVE > 0, fan);
     }
 
     /// The varyings of a vertex, with 1 / w if they take it.
@@ -423,8 +424,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 
 /// Projects the corners of a clipped polygon.
 #[inline(never)]
-fn project_corners(corners: &[ClipCorner], transform: &Transform, perspective: bool, fan: &mut VecView<FanCorner>) {
-    for ClipCorner { vertex, weights } in corners {
+fn project_corners(clipping: &Clipping<'_>, transform: &Transform, perspective: bool, fan: &mut VecView<FanCorner>) {
+    for ClipCorner { vertex, weights } in clipping.corners() {
         // All of them can be projected, as nothing behind the eye is left.
         let projected = transform.project(vertex).unwrap_or_default();
         let inverse_w = if perspective { inverse_w(vertex) } else { 0 };

@@ -5,7 +5,7 @@
 //! no planes here: the rasterizer is exact to ±32,767 px, and only at that guard band anything is cut.
 
 use super::varyings::Varyings;
-use heapless::vec::{Vec, VecView};
+use heapless::deque::{Deque, DequeView};
 
 /// A vertex in clip space, in any common scale: x / w, y / w in units of 512 px from the screen's corner, z / w depth.
 ///
@@ -142,15 +142,10 @@ pub fn weighted<V: Varyings>(weights: &[i32; 3], corners: &[V; 3]) -> V {
 /// Most corners of a triangle that is cut by seven planes.
 pub const CLIPPED_CORNERS: usize = 3 + PLANES;
 
-/// The corners of a convex polygon, in order.
-pub(crate) type Polygon = VecView<ClipCorner>;
-
-/// A triangle that is being clipped: its polygon, and room for the polygon of the next cut. Both have room for all corners
-/// that may come to be.
+/// A triangle that is being clipped: the corners of its polygon, in order. There is room for as many as may come to be.
 #[derive(Debug)]
 pub(crate) struct Clipping<'p> {
-    polygon: &'p mut Polygon,
-    spare: &'p mut Polygon,
+    polygon: &'p mut DequeView<ClipCorner>,
 }
 
 /// A part of a triangle, by depth.
@@ -186,19 +181,19 @@ impl DepthRange {
 /// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on the corners of what is
 /// left in one part of it: a convex polygon, or nothing.
 pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: DepthSlab, emit: impl FnMut(&ClipCorner)) {
-    let (mut polygon, mut spare) = (Vec::<_, CLIPPED_CORNERS>::new(), Vec::<_, CLIPPED_CORNERS>::new());
+    let mut polygon = Deque::<_, CLIPPED_CORNERS>::new();
     for (k, vertex) in triangle.into_iter().enumerate() {
-        let _ = polygon.push(ClipCorner::new(vertex, k));
+        let _ = polygon.push_back(ClipCorner::new(vertex, k));
     }
-    let mut clipping = Clipping::new(&mut polygon, &mut spare);
+    let mut clipping = Clipping::new(&mut polygon);
     clipping.clip(codes, part);
-    clipping.corners().iter().for_each(emit);
+    clipping.corners().for_each(emit);
 }
 
 impl<'p> Clipping<'p> {
-    /// Begins with a triangle. `spare` has as much room as `polygon`: one corner more per plane.
-    pub(crate) fn new(polygon: &'p mut Polygon, spare: &'p mut Polygon) -> Self {
-        Self { polygon, spare }
+    /// Begins with a triangle, in a queue with room for one corner more per plane.
+    pub(crate) fn new(polygon: &'p mut DequeView<ClipCorner>) -> Self {
+        Self { polygon }
     }
 
     /// Clips the triangle by the planes in `codes` (the outcodes of its vertices, united): leaves what is inside of them, in one
@@ -221,35 +216,34 @@ impl<'p> Clipping<'p> {
 
     /// Leaves the part of the polygon that is on one side of a plane: inside, where distances are not negative, or outside.
     ///
+    /// Takes each corner from the front of the queue and puts what is left of it, and of the edge to it, at the back. Entering the
+    /// side that is kept adds one corner, and leaving it takes one: so one corner more than before is all that is ever there.
+    ///
     /// # Source
     /// Sutherland and Hodgman 1974, "Reentrant polygon clipping".
     #[inline]
     pub(super) fn cut(&mut self, plane: usize, inside: bool, distance: impl Fn(&ClipCorner) -> i64) {
-        let Self { polygon, spare } = self;
-        spare.clear();
-        if let Some(mut from) = polygon.last() {
-            let mut df = distance(from);
-            for to in polygon.iter() {
-                let dt = distance(to);
-                // There is room for a corner more per plane, and a cut of a convex polygon makes no more.
-                if (df >= 0) != (dt >= 0) {
-                    let _ = spare.push(crossing(plane, from, to, df, dt));
-                }
-                if (dt >= 0) == inside {
-                    let _ = spare.push(*to);
-                }
-                (from, df) = (to, dt);
+        let Some(mut from) = self.polygon.back().copied() else { return };
+        let mut df = distance(&from);
+        for _ in 0..self.polygon.storage_len() {
+            let Some(to) = self.polygon.pop_front() else { return };
+            let dt = distance(&to);
+            if (df >= 0) != (dt >= 0) {
+                let _ = self.polygon.push_back(crossing(plane, &from, &to, df, dt));
             }
+            if (dt >= 0) == inside {
+                let _ = self.polygon.push_back(to);
+            }
+            (from, df) = (to, dt);
         }
-        if spare.len() < 3 {
-            spare.clear();
+        if self.polygon.storage_len() < 3 {
+            self.polygon.clear();
         }
-        core::mem::swap(polygon, spare);
     }
 
     /// Returns the corners of what is left, in order.
-    pub(crate) fn corners(&self) -> &[ClipCorner] {
-        self.polygon
+    pub(crate) fn corners(&self) -> impl Iterator<Item = &ClipCorner> {
+        self.polygon.iter()
     }
 }
 
