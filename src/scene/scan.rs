@@ -143,11 +143,9 @@ impl<'m> Scan<'m> {
         stats: &mut Stats,
     ) -> ScanEvent {
         loop {
-            let event = self.scan_small(records, strips, band, clip, stats);
-            if event != ScanEvent::Visible {
-                return event;
+            if !self.scan_small(records, strips, band, clip, stats) {
+                return ScanEvent::Done;
             }
-            // A large one, or one far away.
             if self.triangle.v.iter().any(|v| v.x == PackedVertex::OFF_SCREEN_X) {
                 return ScanEvent::NeedsVertices;
             }
@@ -161,8 +159,9 @@ impl<'m> Scan<'m> {
         }
     }
 
-    /// Records triangles up to one that needs the exact test of [`ScreenTriangle::passes_culling`], or that is to be drawn.
-    /// Nearly all triangles pass here: small ones, on the screen or not far off it.
+    /// Records small triangles, on the screen or not far off it: nearly all. Stops at any other, and, where nothing is
+    /// recorded, at the first that may be seen. Returns whether there is such a triangle, for the exact test of
+    /// [`ScreenTriangle::passes_culling`].
     #[inline(never)]
     fn scan_small(
         &mut self,
@@ -171,12 +170,10 @@ impl<'m> Scan<'m> {
         band: i32,
         clip: &PixelRect,
         stats: &mut Stats,
-    ) -> ScanEvent {
+    ) -> bool {
         let mut triangles = records.triangles();
         let first = triangles.count();
-        if !self.recording {
-            triangles.close();
-        }
+        let recording = self.recording;
         // In an empty rectangle is nothing: nor in one that is far away, which takes no test of its own.
         let clip = if clip.is_empty() { &NOWHERE } else { clip };
         let strips = *strips;
@@ -223,13 +220,12 @@ impl<'m> Scan<'m> {
                 stats.outside = stats.outside.wrapping_add(1);
                 continue;
             }
+            if !recording {
+                break Some((corners, positions));
+            }
             // Stage 6, recording: into the list of the strip it begins in.
             let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
             if !triangles.push(u32::from(i) | u32::from(j) << 16, k, PendingFace::new(number, area).0, strip) {
-                // There is no room, or none of it is to be used.
-                if !self.recording {
-                    break Some((corners, positions));
-                }
                 triangles.overflow();
                 break None;
             }
@@ -240,11 +236,11 @@ impl<'m> Scan<'m> {
         self.list = list;
         self.next = number;
         self.triangle.number = number.wrapping_sub(1) as u16;
-        let Some((corners, [a, b, c])) = found else { return ScanEvent::Done };
+        let Some((corners, [a, b, c])) = found else { return false };
         self.triangle.corners = corners;
         self.triangle.v =
             [PackedVertex::signed(a).screen(), PackedVertex::signed(b).screen(), PackedVertex::signed(c).screen()];
-        ScanEvent::Visible
+        true
     }
 }
 

@@ -191,11 +191,6 @@ impl Triangles<'_> {
         self.count
     }
 
-    /// Leaves no room for more.
-    pub(crate) fn close(&mut self) {
-        self.triangles = &mut [];
-    }
-
     /// Notes that there was no room for a triangle.
     pub(crate) const fn overflow(&mut self) {
         self.layout.overflow = true;
