@@ -20,7 +20,7 @@ use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{Compare, DepthState};
 use zstrip::vertex::{DepthScale, ScreenVertex, Viewport};
-use zstrip::{Cull, Framebuffer, Scene, State};
+use zstrip::{Cull, Framebuffer, Scene, ScreenPoint, State};
 
 const SCREEN: (u16, u16) = (64, 48);
 const PIXELS: usize = 64 * 48;
@@ -411,6 +411,37 @@ fn points_are_projected_to_where_vertices_would_be() {
         }
     }
     assert!(seen > 150 && unseen > 50, "{seen} seen, {unseen} not");
+}
+
+/// A point of the scene, its place on the screen, and what lies there at its depth.
+#[test]
+fn what_is_under_a_point_of_the_screen_is_the_point_that_was_projected() {
+    let lens = Projective::perspective(
+        Angle16::from_degrees(60),
+        Size::new(SCREEN.0.into(), SCREEN.1.into()),
+        Scalar::ONE,
+        Scalar::ONE * 9,
+    )
+    .expect("a camera");
+    let mvp = lens * Affine::translation(Vec3::from_ints(0, 0, -4)) * Affine::rotation_y(Angle16::from_degrees(25));
+    let mut seen = 0;
+    strips::<Rgb565>(SCREEN, SCREEN.1.into(), 0, Rgb565::BLACK, |scene| {
+        seen = 0;
+        let mut rng = Rng::new(3);
+        for case in 0..200 {
+            let point = Vec3::from_bits([(); 3].map(|()| rng.between(-100_000, 100_000)));
+            let Some(v) = scene.project(point, &mvp) else { continue };
+            let found = scene.unproject(ScreenPoint::from(v), v.z, &mvp).expect("the camera has an inverse");
+            seen += 1;
+            // Half a step of depth is 1/1800 of the way at the far end; half of 1/256 px far less.
+            for (found, point) in found.to_bits().iter().zip(point.to_bits()) {
+                assert!((found - point).abs() < 120, "case {case}: {found} instead of {point}");
+            }
+        }
+        let flat = Projective::from_rows([[0; 4]; 4]);
+        assert_eq!(scene.unproject(ScreenPoint::center(3, 3), 100, &flat), None);
+    });
+    assert!(seen > 100, "{seen}");
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! 2-D drawing among the 3-D by embedded-graphics: targets over the strip at hand, and where on the screen a point of the world is.
 
+use super::canvas::ScreenPoint;
 use super::scene::Scene;
 use super::state::State;
-use crate::math::{Projective, Vec3};
+use crate::math::{Pixels, Projective, Vec3};
 use crate::mesh::{Mesh, MeshData, Positions};
 use crate::span::{DepthDyn, DepthLess, DepthOff, DepthState, DepthTest};
 use crate::target::{Framebuffer, Overlay};
@@ -57,5 +58,33 @@ impl<F: Framebuffer> Scene<'_, F> {
             Projected::OnScreen(vertex) => Some(vertex),
             Projected::NeedsClip(_) => None,
         }
+    }
+
+    /// Returns the point of object space that is drawn at a place on the screen and at a depth, as [`project`](Self::project)
+    /// tells both of a point: what lies under a finger. `None` if `mvp` has no inverse, or the point is out of range.
+    ///
+    /// A depth stands for all points that are rounded to it: `DepthPrecision` tells how far apart they are.
+    ///
+    /// # Format
+    /// Clip coordinates are computed in 32.32, and rounded down; the sums have 128 bits.
+    #[inline(never)]
+    pub fn unproject(&self, at: ScreenPoint, z: u16, mvp: &Projective) -> Option<Vec3> {
+        let inverse = mvp.inverse()?;
+        // Places in 24.8: x of clip space is 2 (X - left) / width - 1.
+        let across = |at: Pixels, start: i16, size: u16| {
+            let from_start = i64::from(at.to_bits()) - 256 * i64::from(start);
+            ((from_start << 25).checked_div(size.into())).map(|part| i128::from(part - (1 << 32)))
+        };
+        let x = across(at.x(), self.viewport.x(), self.viewport.width())?;
+        let y = -across(at.y(), self.viewport.y(), self.viewport.height())?;
+        let z = (i128::from(z) << 32) / 65_535;
+        let sum = |[a, b, c, d]: &[i64; 4]| {
+            // 64 by less than 48 bits each.
+            (i128::from(*a) * x + i128::from(*b) * y + i128::from(*c) * z + (i128::from(*d) << 32)) >> 32
+        };
+        let [rx, ry, rz, rw] = inverse.rows();
+        let w = sum(rw);
+        let coordinate = |row| (sum(row) << 16).checked_div(w).and_then(|bits| i32::try_from(bits).ok());
+        Some(Vec3::from_bits([coordinate(rx)?, coordinate(ry)?, coordinate(rz)?]))
     }
 }
