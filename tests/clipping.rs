@@ -353,7 +353,7 @@ fn extreme_positions_and_matrices_never_panic() {
                     scene.set_viewport(viewport);
                     scene.draw_with(NO_CULLING, &mesh, &mvp, &Flat::new(light, Rgb888::CSS_CORAL));
                     scene.draw_with(NO_CULLING, &mesh, &mvp, &Gouraud::new(light, Rgb888::CSS_CORAL));
-                    scene.is_visible(mesh.bounds(), &mvp);
+                    let _ = scene.is_visible(mesh.bounds(), &mvp);
                 });
             }
         }

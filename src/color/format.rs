@@ -32,12 +32,14 @@ pub trait PixelFormat {
 
     /// The pixel of a grey.
     #[inline(always)]
+    #[must_use]
     fn from_luma(luma: u8) -> Self::Raw {
         Self::pack([luma; 3])
     }
 
     /// From RGB565.
     #[inline(always)]
+    #[must_use]
     fn from_rgb565(raw: u16) -> Self::Raw {
         Self::pack(unpack_rgb565(raw))
     }
@@ -61,12 +63,14 @@ pub trait PixelFormat {
 
     /// [`pack_at`](Self::pack_at) of red, green, blue and alpha, which is kept if there is a channel for it.
     #[inline(always)]
+    #[must_use]
     fn pack_rgba([r, g, b, _]: [u8; 4], position: (i32, i32)) -> Self::Raw {
         Self::pack_at([r, g, b], position)
     }
 
     /// Packs a colour for a pixel of the screen: dithered, if the format dithers.
     #[inline(always)]
+    #[must_use]
     fn pack_at(rgb: [u8; 3], position: (i32, i32)) -> Self::Raw {
         match Self::DITHER {
             None => Self::pack(rgb),
@@ -83,6 +87,7 @@ pub trait PixelFormat {
     /// Returns what is added to packed channels, in the layout of [`from_packed`](Self::from_packed), at eight pixels from
     /// `position` on, which is repeated every eight rows and columns of the screen.
     #[inline(always)]
+    #[must_use]
     fn dither(position: (i32, i32)) -> &'static [u32; 8] {
         let _ = position;
         &[0; 8]
@@ -93,12 +98,14 @@ pub trait PixelFormat {
 
     /// Returns the mask that [`from_packed`](Self::from_packed) wants at hand in a register.
     #[inline(always)]
+    #[must_use]
     fn packed_mask() -> u32 {
         0
     }
 
     /// From channels in one word, eight bits each: red in the bits 24 to 31, blue in 13 to 20, green in 2 to 9.
     #[inline(always)]
+    #[must_use]
     fn from_packed(word: u32, mask: u32) -> Self::Raw {
         let _ = mask;
         Self::pack([(word >> 24) as u8, (word >> 2) as u8, (word >> 13) as u8])

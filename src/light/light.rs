@@ -65,18 +65,21 @@ impl Light {
     /// A light that comes from `direction`, a vector of any length that points *towards* it, beside an ambient one.
     ///
     /// A zero vector leaves the ambient light alone.
+    #[must_use]
     pub fn new(direction: Vec3, diffuse: Rgb888, ambient: Rgb888) -> Self {
         let channels = |color: Rgb888| [color.r(), color.g(), color.b()];
         Self::from_channels(direction, channels(diffuse), channels(ambient))
     }
 
     /// [`new`](Self::new) for constants: colours as red, green and blue.
+    #[must_use]
     pub const fn from_channels(direction: Vec3, diffuse: [u8; 3], ambient: [u8; 3]) -> Self {
         Self { direction: unit(direction), diffuse: levels(diffuse), ambient: levels(ambient) }
     }
 
     /// The same light, given in world (or eye) space, as seen from object space: what a shader needs, as normals are in
     /// object space. `model` may rotate, move and scale evenly.
+    #[must_use]
     pub const fn to_object(&self, model: &Affine) -> Self {
         let [x, y, z] = self.direction;
         let direction = Vec3::from_bits([(x as i32) << 2, (y as i32) << 2, (z as i32) << 2]);
@@ -86,6 +89,7 @@ impl Light {
     /// The colour of a surface with a unit normal, rounded from what [`on`](Self::on) and [`Lit::shade`] make of it: red, green
     /// and blue in a word, blue lowest.
     #[inline(never)]
+    #[must_use]
     pub fn shade(&self, mut color: u32, normal: [i16; 3]) -> u32 {
         let cosine = cosine(normal, self.direction);
         let mut shaded = 0;
@@ -104,6 +108,7 @@ impl Light {
     }
 
     /// Light on a surface of a colour: what is the same for all its normals, worked out once.
+    #[must_use]
     pub fn on(&self, color: [u8; 3]) -> Lit {
         // At most 255 · 256.
         let times = |level: [u16; 3]| {
@@ -144,6 +149,7 @@ impl Lit {
     /// # Format
     /// Normal 2.14; result 8.8, within 1/64 of the exact value for the same 2.14 vectors. n · l: 2²⁸ and a little.
     #[inline]
+    #[must_use]
     pub fn shade(&self, normal: [i16; 3]) -> [i32; 3] {
         let cosine = cosine(normal, self.direction);
         let channel =

@@ -107,6 +107,7 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
     ///
     /// # Format
     /// Directions within 2⁻¹⁴; positions of lights within 2⁻¹⁵ of the extent of the mesh, and at most 16,384 extents away.
+    #[must_use]
     pub fn on(&self, material: &Material, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
         let space = ToLocal::new(model, bounds);
         let colors = |light: [u8; 3]| LitColors {

@@ -172,18 +172,21 @@ fn add(sum: &mut [i32; 3], color: &[u16; 3], factor: i32) {
 impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// Whether the mesh's colours take part.
     #[inline]
+    #[must_use]
     pub const fn vertex_colors(&self) -> bool {
         self.vertex_colors
     }
 
     /// Whether normals of faces that show their back are turned round.
     #[inline]
+    #[must_use]
     pub const fn is_two_sided(&self) -> bool {
         self.two_sided
     }
 
     /// The space of [`near`](Self::near)'s positions.
     #[inline]
+    #[must_use]
     pub const fn space(&self) -> &LocalSpace {
         &self.space
     }
@@ -220,6 +223,7 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// # Format
     /// `normal` 2.14, of length 1; result 8.8, at most 255. `color` is that of the vertex, or white.
     #[inline]
+    #[must_use]
     pub fn far(&self, normal: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
         let mut look = self.look(normal);
         for light in &self.directional {
@@ -245,6 +249,7 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// # Format
     /// As [`far`](Self::far).
     #[inline(never)]
+    #[must_use]
     pub fn near(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
         self.near_here(normal, p, color)
     }
@@ -308,6 +313,7 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
 
     /// A position of the mesh in local units.
     #[inline]
+    #[must_use]
     pub fn local(&self, position: Vec3) -> [i32; 3] {
         let [x, y, z] = self.space.fine(position);
         [x >> 14, y >> 14, z >> 14]

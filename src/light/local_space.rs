@@ -40,6 +40,7 @@ impl LocalSpace {
 
     /// A position of the mesh, 2¹⁴ local units: below 2²⁹.
     #[inline]
+    #[must_use]
     pub fn fine(&self, position: Vec3) -> [i32; 3] {
         let p = position.to_bits();
         let along = |k: usize| shifted(i64::from(p[k]) - i64::from(self.center[k]), self.shift());

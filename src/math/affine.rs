@@ -35,6 +35,7 @@ impl Affine {
     pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0]] };
 
     /// From the three rows of the matrix and the translation.
+    #[must_use]
     pub const fn from_rows(x: Vec3, y: Vec3, z: Vec3, translation: Vec3) -> Self {
         let t = translation.to_bits();
         let (x, y, z) = (x.to_bits(), y.to_bits(), z.to_bits());
@@ -42,34 +43,40 @@ impl Affine {
     }
 
     /// Moves by `offset`.
+    #[must_use]
     pub const fn translation(offset: Vec3) -> Self {
         Self::from_rows(Vec3::X, Vec3::Y, Vec3::Z, offset)
     }
 
     /// Scales about the origin by the same factor on each axis.
+    #[must_use]
     pub const fn scale(factor: Scalar) -> Self {
         Self::scale_axes(Vec3::new(factor, factor, factor))
     }
 
     /// Scales about the origin by a factor an axis.
+    #[must_use]
     pub const fn scale_axes(factors: Vec3) -> Self {
         let f = factors.to_bits();
         Self { rows: [[f[0], 0, 0, 0], [0, f[1], 0, 0], [0, 0, f[2], 0]] }
     }
 
     /// Rotates about the x axis, y towards z.
+    #[must_use]
     pub const fn rotation_x(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[ONE, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0]] }
     }
 
     /// Rotates about the y axis, z towards x.
+    #[must_use]
     pub const fn rotation_y(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[c, 0, s, 0], [0, ONE, 0, 0], [-s, 0, c, 0]] }
     }
 
     /// Rotates about the z axis, x towards y.
+    #[must_use]
     pub const fn rotation_z(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, ONE, 0]] }
@@ -79,6 +86,7 @@ impl Affine {
     ///
     /// # Source
     /// Rodrigues' formula; entries within 2⁻¹⁴.
+    #[must_use]
     pub const fn rotation(axis: Vec3, angle: Angle16) -> Self {
         let Some(unit) = axis.normalized() else {
             return Self::IDENTITY;
@@ -134,6 +142,7 @@ impl Affine {
     }
 
     /// `self` after `first`: `const` version of `self * first`. Entries are rounded down and saturate.
+    #[must_use]
     pub const fn compose(&self, first: &Self) -> Self {
         let mut rows = [[0; 4]; 3];
         let mut i = 0;
@@ -152,6 +161,7 @@ impl Affine {
     /// The inverse of a rigid transform (rotation and translation only): the transposed matrix.
     ///
     /// Of a transform that scales or shears it is not the inverse.
+    #[must_use]
     pub const fn inverse_rigid(&self) -> Self {
         let r = &self.rows;
         let t = Vec3::from_bits([r[0][3], r[1][3], r[2][3]]);
@@ -226,6 +236,7 @@ impl Affine {
     }
 
     /// `M p + t`, rounded down, saturating.
+    #[must_use]
     pub const fn transform_point(&self, point: Vec3) -> Vec3 {
         let p = point.to_bits();
         Vec3::new(
@@ -236,6 +247,7 @@ impl Affine {
     }
 
     /// `M v`: a direction, which the translation does not touch.
+    #[must_use]
     pub const fn transform_vector(&self, vector: Vec3) -> Vec3 {
         let v = vector.to_bits();
         Vec3::new(
@@ -246,6 +258,7 @@ impl Affine {
     }
 
     /// The rows, raw 16.16, with the translation as fourth column.
+    #[must_use]
     pub const fn to_rows(&self) -> [[i32; 4]; 3] {
         self.rows
     }

@@ -59,11 +59,13 @@ impl Angle16 {
     ///
     /// # Format
     /// 16.16, error at most 2⁻¹⁶, half of it rounding.
+    #[must_use]
     pub const fn sin(self) -> Scalar {
         Scalar::from_bits(((self.sin_q30() + (1 << 13)) >> 14) as i32)
     }
 
     /// Cosine; see [`sin`](Self::sin).
+    #[must_use]
     pub const fn cos(self) -> Scalar {
         Self(self.0.wrapping_add(0x4000)).sin()
     }

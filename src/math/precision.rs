@@ -119,6 +119,7 @@ impl DepthPrecision {
 
     /// The depth of what is so far away along the camera's axis, rounded to nearest; 0 before the near plane, 65,535 beyond
     /// the far one.
+    #[must_use]
     pub const fn depth(&self, distance: Scalar) -> u16 {
         let (n, f) = self.planes();
         let d = distance.to_bits() as i128;
@@ -145,18 +146,21 @@ impl DepthPrecision {
     }
 
     /// The distance at which depth is exactly so many steps, rounded to nearest.
+    #[must_use]
     pub const fn distance(&self, depth: u16) -> Scalar {
         Scalar::from_bits(((self.boundary(2 * depth as i128) + (1 << 15)) >> 16) as i32)
     }
 
     /// Size of the range of distances that have the same depth as `distance`: what is that far apart may look as if at the same
     /// place, what is twice as far apart does not.
+    #[must_use]
     pub const fn bin(&self, distance: Scalar) -> Wide {
         let depth = self.depth(distance) as i128;
         Wide::from_bits((self.boundary(2 * depth + 1) - self.boundary(2 * depth - 1)) as i64)
     }
 
     /// The same for [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform), at any distance, rounded up.
+    #[must_use]
     pub const fn uniform_bin(&self) -> Wide {
         let (n, f) = self.planes();
         Wide::from_bits(((((f - n) << 16) + STEPS - 1) / STEPS) as i64)

@@ -67,11 +67,13 @@ impl Projective {
     pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0], [0, 0, 0, ONE]] };
 
     /// From rows of raw 32.32 bits.
+    #[must_use]
     pub const fn from_rows(rows: [[i64; 4]; 4]) -> Self {
         Self { rows }
     }
 
     /// The rows, raw 32.32.
+    #[must_use]
     pub const fn to_rows(&self) -> [[i64; 4]; 4] {
         self.rows
     }
@@ -82,6 +84,7 @@ impl Projective {
     }
 
     /// The entry in `row` and `column`; `None` outside the matrix.
+    #[must_use]
     pub fn entry(&self, row: usize, column: usize) -> Option<Wide> {
         self.rows.get(row)?.get(column).map(|&bits| Wide::from_bits(bits))
     }
@@ -155,6 +158,7 @@ impl Projective {
     }
 
     /// `self` after `first`: `const` version of `self * first`. Entries are rounded to nearest and saturate.
+    #[must_use]
     pub const fn compose(&self, first: &Self) -> Self {
         let mut rows = [[0; 4]; 4];
         let mut i = 0;
@@ -253,11 +257,13 @@ impl Projective {
 
     /// `self` after an affine transform: `const` version of `self * model`.
     #[inline(never)]
+    #[must_use]
     pub const fn compose_affine(&self, model: &Affine) -> Self {
         self.compose(&Self::from_affine(model))
     }
 
     /// Where a point goes: x, y, z, w, rounded to nearest and saturating. Divided by w they are its place in clip space.
+    #[must_use]
     pub const fn transform_point(&self, point: Vec3) -> [Wide; 4] {
         let p = point.to_bits();
         let mut result = [Wide::ZERO; 4];
@@ -276,6 +282,7 @@ impl Projective {
     }
 
     /// The same transform as a 4×4 matrix.
+    #[must_use]
     pub const fn from_affine(model: &Affine) -> Self {
         let a = model.to_rows();
         let mut rows = [[0; 4], [0; 4], [0; 4], [0, 0, 0, ONE]];

@@ -94,6 +94,7 @@ pub struct MeshData<'a> {
 
 impl<'a> MeshData<'a> {
     /// Just positions: a list of triangles.
+    #[must_use]
     pub const fn new(positions: Positions<'a>) -> Self {
         Self {
             positions,
@@ -310,6 +311,7 @@ impl<'a> Mesh<'a> {
     ///
     /// # Panics
     /// When the mesh is wrong. Called at run time instead of in a constant, prefer [`new`](Self::new).
+    #[must_use]
     pub const fn constant(data: MeshData<'a>) -> Self {
         match Self::new(data) {
             Ok(mesh) => mesh,
@@ -320,6 +322,7 @@ impl<'a> Mesh<'a> {
     }
 
     /// Number of vertices.
+    #[must_use]
     pub const fn vertex_count(&self) -> usize {
         match self.data.positions {
             Positions::Quantized { points, .. } => points.len(),
@@ -329,22 +332,26 @@ impl<'a> Mesh<'a> {
     }
 
     /// Number of triangles, after strips, fans and quads are taken apart.
+    #[must_use]
     pub const fn triangle_count(&self) -> usize {
         self.triangles as usize
     }
 
     /// The slices.
+    #[must_use]
     pub const fn data(&self) -> &MeshData<'a> {
         &self.data
     }
 
     /// Returns the box around all vertices, in object space; w of homogeneous positions does not count.
+    #[must_use]
     pub const fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
     /// Vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
     #[inline]
+    #[must_use]
     pub const fn triangle(&self, n: usize) -> Option<[u16; 3]> {
         // The usual mesh, by the shortest way.
         if let (Topology::Triangles, Some(indices)) = (self.data.topology, self.data.indices) {
@@ -382,6 +389,7 @@ impl<'a> Mesh<'a> {
     }
 
     /// Position of a vertex, rounded to 16.16 and saturated; `Homogeneous` positions without their w.
+    #[must_use]
     pub fn position(&self, vertex: usize) -> Vec3 {
         match self.data.positions {
             Positions::Quantized { points, scale, offset } => {

@@ -45,12 +45,14 @@ impl<F: Framebuffer> Scene<'_, F> {
     /// the near plane, beyond the far plane or farther off the screen than 32,767 px.
     ///
     /// The answer is the same each time the closure is called.
+    #[must_use]
     pub fn project(&self, point: Vec3, mvp: &Projective) -> Option<ScreenVertex> {
         self.project_with(State::DEFAULT, point, mvp)
     }
 
     /// The same with the depth that [`State::depth_scale`] leads to. Neither [`State::range`] nor [`State::bias`] counts.
     #[inline(never)]
+    #[must_use]
     pub fn project_with(&self, state: State, point: Vec3, mvp: &Projective) -> Option<ScreenVertex> {
         let mut transform = Transform::new(mvp, &self.viewport, &POINTS, false);
         transform.set_depth_scale(state.depth_scale);

@@ -57,6 +57,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// The answer is the same in all calls of the closure that must draw the same. It counts near and far plane as borders,
     /// whatever [`State::range`] says of what lies beyond them.
     #[inline(never)]
+    #[must_use]
     pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
         let mut screen = ScreenMatrix::EMPTY;
         screen.set_from(mvp, &self.viewport);
@@ -70,6 +71,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 
     /// Width and height of the screen.
+    #[must_use]
     pub const fn screen(&self) -> (u16, u16) {
         self.screen
     }

@@ -166,6 +166,7 @@ pub struct DepthDyn {
 
 impl DepthDyn {
     /// From its description.
+    #[must_use]
     pub const fn new(state: DepthState) -> Self {
         let (lowest, count) = match state.compare {
             Compare::Never => (0, 0),

@@ -101,6 +101,7 @@ impl<P: PixelFormat, V: Varyings, T, Z> Span<'_, P, V, T, Z> {
     /// Computes the varyings at the first pixel. Perspective-correct ones come as what is linear on the screen, for
     /// [`Corrected`](crate::span::Corrected).
     #[inline(always)]
+    #[must_use]
     pub fn varyings(&self) -> V {
         self.primitive.at(self.position)
     }

@@ -30,6 +30,7 @@ pub(crate) const VERTEX_WORDS: usize = 2;
 /// ([`VertexShader::WORDS`](crate::vertex::VertexShader::WORDS)).
 ///
 /// With less, the frame takes more walks over the scene; with none, one a strip.
+#[must_use]
 pub const fn records_len(
     strips: usize,
     draws: usize,

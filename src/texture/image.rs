@@ -174,6 +174,7 @@ pub struct Tile<'a, const W: usize, const H: usize>(&'a [[u16; W]; H]);
 
 impl<'a, const W: usize, const H: usize> Tile<'a, W, H> {
     /// From rows of texels, in the processor's byte order.
+    #[must_use]
     pub const fn new(texels: &'a [[u16; W]; H]) -> Self {
         const { assert!(W.is_power_of_two() && H.is_power_of_two(), "the sides of a tile are powers of two") };
         const { assert!(W <= 1 << 15 && H <= 1 << 15, "the sides of a tile are at most 32,768") };

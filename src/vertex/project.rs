@@ -18,11 +18,13 @@ pub struct ScreenVertex {
 
 impl ScreenVertex {
     /// From raw 24.8 coordinates and depth.
+    #[must_use]
     pub const fn new(x: i32, y: i32, z: u16) -> Self {
         Self { x, y, z }
     }
 
     /// The pixel it is in.
+    #[must_use]
     pub const fn pixel(&self) -> Point {
         Point::new(self.x >> 8, self.y >> 8)
     }
@@ -33,6 +35,7 @@ impl ScreenVertex {
 /// # Format
 /// Differences of 24.8 coordinates are at most 2²⁴, the result below 2⁵⁰ in units of 2⁻¹⁶ px². Exact.
 #[inline]
+#[must_use]
 pub fn signed_area(a: &ScreenVertex, b: &ScreenVertex, c: &ScreenVertex) -> i64 {
     let (bx, by) = (b.x - a.x, b.y - a.y);
     let (cx, cy) = (c.x - a.x, c.y - a.y);
@@ -64,6 +67,7 @@ pub(crate) fn small(difference: i32) -> bool {
 /// 2⁻²⁵ of w, and x / w, on the guard band 2²³ steps, comes in units of 2⁻⁷ and is off by less than 5.
 /// Depth: 65,535 z / w rounded to nearest, within 2⁻¹² of a step besides.
 #[inline(never)]
+#[must_use]
 pub fn project(v: &ClipVertex) -> Option<ScreenVertex> {
     if v.w <= 0 {
         return None;

@@ -19,23 +19,27 @@ impl<'a> VertexRef<'a> {
     }
 
     /// Number of the vertex in its mesh.
+    #[must_use]
     pub const fn index(&self) -> usize {
         self.index
     }
 
     /// Position in object space.
+    #[must_use]
     pub fn position(&self) -> Vec3 {
         self.mesh.position(self.index)
     }
 
     /// Normal in object space, 2.14.
     #[inline]
+    #[must_use]
     pub fn normal(&self) -> [i16; 3] {
         self.mesh.data().normals.and_then(|n| n.get(self.index)).copied().unwrap_or_default()
     }
 
     /// Colour: red, green, blue.
     #[inline]
+    #[must_use]
     pub fn color(&self) -> [u8; 3] {
         // Channel by channel: three bytes at once are put together and taken apart.
         match self.mesh.data().colors.and_then(|colors| colors.get(self.index)) {
@@ -46,6 +50,7 @@ impl<'a> VertexRef<'a> {
 
     /// Texture coordinates.
     #[inline]
+    #[must_use]
     pub fn uv(&self) -> [crate::math::Scalar; 2] {
         self.mesh.data().uvs.and_then(|c| c.get(self.index)).copied().unwrap_or_default()
     }
@@ -80,21 +85,25 @@ impl<'a> Face<'a> {
 
     /// Which side is seen: faces that show their back are drawn if [`State::cull`](crate::scene::State::cull) lets them, and may
     /// be lit the other way round.
+    #[must_use]
     pub const fn side(&self) -> Side {
         self.side
     }
 
     /// Number of the triangle in its mesh.
+    #[must_use]
     pub const fn index(&self) -> usize {
         self.triangle
     }
 
     /// The provoking vertex: the first of the triangle, which flat attributes come from.
+    #[must_use]
     pub fn provoking(&self) -> VertexRef<'a> {
         VertexRef::new(self.mesh, usize::from(self.corners[0]))
     }
 
     /// The three vertices, the provoking one first.
+    #[must_use]
     pub fn corners(&self) -> [VertexRef<'a>; 3] {
         let [a, b, c] = self.corners;
         let corner = |k: u16| VertexRef::new(self.mesh, usize::from(k));
@@ -104,6 +113,7 @@ impl<'a> Face<'a> {
     /// Normal of the face in object space, 2.14: the mesh's own where it has face normals, computed otherwise. Zero for
     /// a triangle without area.
     #[inline]
+    #[must_use]
     pub fn normal(&self) -> [i16; 3] {
         match self.mesh.data().face_normals {
             Some(normals) => normals.get(self.triangle).copied().unwrap_or_default(),
@@ -226,6 +236,7 @@ pub trait VertexShader {
 
     /// Unpacks what [`store`](Self::store) packed.
     #[inline]
+    #[must_use]
     fn load(words: &[u32]) -> Self::Varyings {
         let mut varyings = Self::Varyings::ZERO;
         for (value, word) in varyings.as_mut().iter_mut().zip(words) {

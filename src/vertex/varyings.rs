@@ -143,6 +143,7 @@ pub struct Perspective<const P: usize, const N: usize>([i32; N]);
 impl<const P: usize, const N: usize> Perspective<P, N> {
     /// From the perspective-correct and the linear ones.
     #[inline]
+    #[must_use]
     pub const fn new<const L: usize>(corrected: [i32; P], linear: [i32; L]) -> Self {
         const { assert!(P > 0 && P + L + 1 == N, "N is one more than all varyings, for 1 / w") };
         let mut all = [0; N];
@@ -160,12 +161,14 @@ impl<const P: usize, const N: usize> Perspective<P, N> {
 
     /// The perspective-correct ones.
     #[inline]
+    #[must_use]
     pub fn corrected(&self) -> [i32; P] {
         self.0.first_chunk().copied().unwrap_or([0; P])
     }
 
     /// Those that are linear on the screen.
     #[inline]
+    #[must_use]
     pub fn linear(&self) -> &[i32] {
         self.0.get(P..N - 1).unwrap_or_default()
     }
