@@ -1,4 +1,5 @@
-//! Frames: bands and strips, renderers, views, RAM budgets.
+//! Frames, drawn strip by strip. A program meets [`Renderer`] first. [`FramebufferRenderer`] draws without strips,
+//! [`FrameView`] is an embedded-graphics `Drawable`, [`RamBudget`] counts bytes in constants.
 
 mod budget;
 mod engine;

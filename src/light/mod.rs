@@ -1,4 +1,5 @@
-//! Lights and materials, in a mesh's own space.
+//! Lights and materials, in a mesh's own space. A program meets [`Light`] first: one direction and one ambient
+//! colour. [`Lighting`] and [`Material`] are for several lights and for highlights.
 
 mod light;
 mod lighting;

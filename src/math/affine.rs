@@ -34,7 +34,7 @@ impl Affine {
     /// Leaves everything where it is.
     pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0]] };
 
-    /// From the three rows of the matrix and the translation.
+    /// Makes a transform of the three rows of its matrix and its translation.
     #[must_use]
     pub const fn from_rows(x: Vec3, y: Vec3, z: Vec3, translation: Vec3) -> Self {
         let t = translation.to_bits();
@@ -48,13 +48,13 @@ impl Affine {
         Self::from_rows(Vec3::X, Vec3::Y, Vec3::Z, offset)
     }
 
-    /// Scales about the origin by the same factor on each axis.
+    /// Scales about the origin by one factor on all axes.
     #[must_use]
     pub const fn scale(factor: Scalar) -> Self {
         Self::scale_axes(Vec3::new(factor, factor, factor))
     }
 
-    /// Scales about the origin by a factor an axis.
+    /// Scales about the origin by a factor per axis.
     #[must_use]
     pub const fn scale_axes(factors: Vec3) -> Self {
         let f = factors.to_bits();
@@ -114,7 +114,7 @@ impl Affine {
         Self { rows }
     }
 
-    /// The view transform of a camera at `eye` that looks at `target`: world to eye coordinates, looking along -z.
+    /// Returns the view transform of a camera at `eye` that looks at `target`: world to eye coordinates, looking along -z.
     ///
     /// # Errors
     /// [`ProjectionError::DegenerateView`] if `eye == target`, or `up` is zero or parallel to the view direction.
@@ -141,7 +141,7 @@ impl Affine {
         Ok(Self::from_rows(x, y, z, t))
     }
 
-    /// `self` after `first`: `const` version of `self * first`. Entries are rounded down and saturate.
+    /// Returns `self` after `first`: a `const` form of `self * first`. Entries are rounded down and saturate.
     #[must_use]
     pub const fn compose(&self, first: &Self) -> Self {
         let mut rows = [[0; 4]; 3];
@@ -158,7 +158,7 @@ impl Affine {
         Self { rows }
     }
 
-    /// The inverse of a rigid transform (rotation and translation only): the transposed matrix.
+    /// Returns the inverse of a rigid transform (rotation and translation only): the transposed matrix.
     ///
     /// Of a transform that scales or shears it is not the inverse.
     #[must_use]
@@ -235,7 +235,7 @@ impl Affine {
         Some(Self { rows })
     }
 
-    /// `M p + t`, rounded down, saturating.
+    /// Returns `M p + t`, rounded down, saturating.
     #[must_use]
     pub const fn transform_point(&self, point: Vec3) -> Vec3 {
         let p = point.to_bits();
@@ -246,7 +246,7 @@ impl Affine {
         )
     }
 
-    /// `M v`: a direction, which the translation does not touch.
+    /// Returns `M v`: a direction, which the translation does not touch.
     #[must_use]
     pub const fn transform_vector(&self, vector: Vec3) -> Vec3 {
         let v = vector.to_bits();
@@ -257,7 +257,7 @@ impl Affine {
         )
     }
 
-    /// The rows, raw 16.16, with the translation as fourth column.
+    /// Returns the rows, raw 16.16, with the translation as fourth column.
     #[must_use]
     pub const fn to_rows(&self) -> [[i32; 4]; 3] {
         self.rows

@@ -1,6 +1,9 @@
-//! The numbers: fixed-point formats, binary angles, vectors, matrices, reciprocals, inverse roots and powers.
+//! Fixed-point numbers, binary angles, vectors and matrices. A program meets [`Scalar`] first, a number of 16.16;
+//! models are placed by [`Affine`], cameras made by [`Projective::perspective`].
 //!
-//! Everything here is exact integer arithmetic with a stated rounding; most of it is `const`.
+//! Everything here is integer arithmetic with a stated rounding; most of it is `const`. Vectors and matrices
+//! saturate. A `Scalar`'s own operators overflow as integers do: they panic where overflow checks are on (debug
+//! builds) and wrap where they are off (release builds); [`SaturatingScalar`] does neither.
 
 mod affine;
 mod angle;

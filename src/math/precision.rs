@@ -7,7 +7,7 @@ use core::fmt;
 /// Steps of depth.
 const STEPS: i128 = 65_535;
 
-/// What 16-bit depth makes of distances, for a perspective camera's near and far distance.
+/// Precision of 16-bit depth at any distance, for a perspective camera's near and far distance.
 ///
 /// Depth is far (d - near) / ((far - near) d): half of all steps lie between near and twice near. At distance d a step is
 /// about d² (far - near) / (65,535 near far), so it is the near plane that counts; far hardly does, once it is far.
@@ -99,7 +99,7 @@ const fn rounded(num: i128, den: i128) -> i128 {
 }
 
 impl DepthPrecision {
-    /// Of a camera with these distances.
+    /// Takes the distances of a camera's near and far plane.
     ///
     /// # Errors
     /// When `near ≤ 0` or `near ≥ far`, as the camera's.
@@ -117,7 +117,7 @@ impl DepthPrecision {
         (self.near.to_bits() as i128, self.far.to_bits() as i128)
     }
 
-    /// The depth of what is so far away along the camera's axis, rounded to nearest; 0 before the near plane, 65,535 beyond
+    /// Returns the depth of things at `distance` along the camera's axis, rounded to nearest; 0 in front of the near plane, 65,535 beyond
     /// the far one.
     #[must_use]
     pub const fn depth(&self, distance: Scalar) -> u16 {
@@ -145,28 +145,28 @@ impl DepthPrecision {
         rounded((2 * STEPS * n * f) << 16, 2 * STEPS * f - halves * (f - n))
     }
 
-    /// The distance at which depth is exactly so many steps, rounded to nearest.
+    /// Returns the distance at which depth is exactly `depth` steps, rounded to nearest.
     #[must_use]
     pub const fn distance(&self, depth: u16) -> Scalar {
         Scalar::from_bits(((self.boundary(2 * depth as i128) + (1 << 15)) >> 16) as i32)
     }
 
-    /// Size of the range of distances that have the same depth as `distance`: what is that far apart may look as if at the same
-    /// place, what is twice as far apart does not.
+    /// Returns the size of the range of distances that share one depth with `distance`: things that far apart may share a
+    /// depth, things twice as far apart do not.
     #[must_use]
     pub const fn bin(&self, distance: Scalar) -> Wide {
         let depth = self.depth(distance) as i128;
         Wide::from_bits((self.boundary(2 * depth + 1) - self.boundary(2 * depth - 1)) as i64)
     }
 
-    /// The same for [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform), at any distance, rounded up.
+    /// Returns the size of a step of depth for [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform), at any distance, rounded up.
     #[must_use]
     pub const fn uniform_bin(&self) -> Wide {
         let (n, f) = self.planes();
         Wide::from_bits(((((f - n) << 16) + STEPS - 1) / STEPS) as i64)
     }
 
-    /// The smallest near distance, or a trifle above it, with which the [`bin`](Self::bin) at `distance` is at most `bin`.
+    /// Returns the smallest near distance, or a trifle above it, with which the [`bin`](Self::bin) at `distance` is at most `bin`.
     ///
     /// # Errors
     /// When `distance` is not in 0..=far, `bin` is not above 0, or the near plane would be beyond `distance`.

@@ -66,30 +66,30 @@ impl Projective {
     /// Leaves everything where it is.
     pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0], [0, 0, 0, ONE]] };
 
-    /// From rows of raw 32.32 bits.
+    /// Makes a transform of rows of raw 32.32 bits.
     #[must_use]
     pub const fn from_rows(rows: [[i64; 4]; 4]) -> Self {
         Self { rows }
     }
 
-    /// The rows, raw 32.32.
+    /// Returns the rows, raw 32.32.
     #[must_use]
     pub const fn to_rows(&self) -> [[i64; 4]; 4] {
         self.rows
     }
 
-    /// The same, where they are.
+    /// Lends the rows.
     pub(crate) const fn rows(&self) -> &[[i64; 4]; 4] {
         &self.rows
     }
 
-    /// The entry in `row` and `column`; `None` outside the matrix.
+    /// Returns the entry in `row` and `column`; `None` outside the matrix.
     #[must_use]
     pub fn entry(&self, row: usize, column: usize) -> Option<Wide> {
         self.rows.get(row)?.get(column).map(|&bits| Wide::from_bits(bits))
     }
 
-    /// A perspective camera at the origin that looks along -z.
+    /// Makes a perspective camera at the origin that looks along -z.
     ///
     /// `field_of_view` is the vertical opening angle, `aspect` width and height of the screen or viewport, or any two numbers in their ratio. Depth is
     /// 0 at distance `near` and 1 at `far`.
@@ -157,7 +157,7 @@ impl Projective {
         })
     }
 
-    /// `self` after `first`: `const` version of `self * first`. Entries are rounded to nearest and saturate.
+    /// Returns `self` after `first`: a `const` form of `self * first`. Entries are rounded to nearest and saturate.
     #[must_use]
     pub const fn compose(&self, first: &Self) -> Self {
         let mut rows = [[0; 4]; 4];
@@ -182,8 +182,7 @@ impl Projective {
 
     /// Returns the transform that undoes this one: from the screen back to the world, for instance.
     ///
-    /// `None` where there is none (the determinant is 0), or where an entry of it does not fit 32.32: a camera whose near plane
-    /// is below 2⁻³² of what it divides by.
+    /// `None` where there is none (the determinant is 0), or where an entry of it does not fit 32.32.
     ///
     /// # Format
     /// Each entry is that of the exact inverse of these entries, rounded to nearest: within 2⁻³³. Determinants are taken in
@@ -255,14 +254,14 @@ impl Projective {
         if (row + column) & 1 == 0 { sum } else { sum.negated() }
     }
 
-    /// `self` after an affine transform: `const` version of `self * model`.
+    /// Returns `self` after an affine transform: a `const` form of `self * model`.
     #[inline(never)]
     #[must_use]
     pub const fn compose_affine(&self, model: &Affine) -> Self {
         self.compose(&Self::from_affine(model))
     }
 
-    /// Where a point goes: x, y, z, w, rounded to nearest and saturating. Divided by w they are its place in clip space.
+    /// Returns the clip coordinates of a point: x, y, z, w, rounded to nearest and saturating. Divided by w they are its place in clip space.
     #[must_use]
     pub const fn transform_point(&self, point: Vec3) -> [Wide; 4] {
         let p = point.to_bits();
@@ -281,7 +280,7 @@ impl Projective {
         result
     }
 
-    /// The same transform as a 4×4 matrix.
+    /// Makes a 4×4 matrix of an affine transform.
     #[must_use]
     pub const fn from_affine(model: &Affine) -> Self {
         let a = model.to_rows();

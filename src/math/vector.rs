@@ -35,19 +35,19 @@ impl Vec3 {
     /// Unit vector towards the viewer.
     pub const Z: Self = Self::new(Scalar::ZERO, Scalar::ZERO, Scalar::ONE);
 
-    /// From components.
+    /// Makes a vector of its components.
     #[must_use]
     pub const fn new(x: Scalar, y: Scalar, z: Scalar) -> Self {
         Self { x, y, z }
     }
 
-    /// From whole numbers.
+    /// Makes a vector of whole numbers.
     #[must_use]
     pub const fn from_ints(x: i16, y: i16, z: i16) -> Self {
         Self::from_bits([(x as i32) << 16, (y as i32) << 16, (z as i32) << 16])
     }
 
-    /// From thousandths: a readable way to write constants, rounded down to 2⁻¹⁶.
+    /// Makes a vector of thousandths: a readable way to write constants, rounded down to 2⁻¹⁶.
     #[must_use]
     pub const fn from_milli(x: i32, y: i32, z: i32) -> Self {
         Self::new(
@@ -57,19 +57,19 @@ impl Vec3 {
         )
     }
 
-    /// From raw 16.16 bits.
+    /// Makes a vector of raw 16.16 bits.
     #[must_use]
     pub const fn from_bits(bits: [i32; 3]) -> Self {
         Self::new(Scalar::from_bits(bits[0]), Scalar::from_bits(bits[1]), Scalar::from_bits(bits[2]))
     }
 
-    /// Raw 16.16 bits.
+    /// Returns raw 16.16 bits.
     #[must_use]
     pub const fn to_bits(self) -> [i32; 3] {
         [self.x.to_bits(), self.y.to_bits(), self.z.to_bits()]
     }
 
-    /// Dot product, rounded down to 2⁻¹⁶.
+    /// Returns the dot product, rounded down to 2⁻¹⁶.
     #[must_use]
     pub const fn dot(self, other: Self) -> Scalar {
         let (a, b) = (self.to_bits(), other.to_bits());
@@ -80,21 +80,21 @@ impl Vec3 {
         saturate(sum >> 14)
     }
 
-    /// Cross product, right-handed, rounded down to 2⁻¹⁶.
+    /// Returns the cross product, right-handed, rounded down to 2⁻¹⁶.
     #[must_use]
     pub const fn cross(self, other: Self) -> Self {
         let (a, b) = (self.to_bits(), other.to_bits());
         Self::new(minor(a[1], b[2], a[2], b[1]), minor(a[2], b[0], a[0], b[2]), minor(a[0], b[1], a[1], b[0]))
     }
 
-    /// Length, rounded down to 2⁻¹⁶; saturates.
+    /// Returns the length, rounded down to 2⁻¹⁶; saturates.
     #[must_use]
     pub const fn length(self) -> Scalar {
         let root = self.length_bits();
         if root > i32::MAX as u64 { Scalar::MAX } else { Scalar::from_bits(root as i32) }
     }
 
-    /// The vector of length 1 in the same direction, each component within 2⁻¹⁵; `None` for the zero vector.
+    /// Returns the vector of length 1 in its direction, each component within 2⁻¹⁵; `None` for the zero vector.
     #[must_use]
     pub const fn normalized(self) -> Option<Self> {
         let bits = self.to_bits();

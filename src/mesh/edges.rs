@@ -3,11 +3,12 @@
 use super::mesh::Mesh;
 use core::fmt;
 
-/// Not all edges of a mesh fit.
+/// An error of [`edges`]: the edges of a mesh do not fit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub struct EdgesError {
-    /// For how many there is room.
+    /// Number of edges there is room for.
     pub room: usize,
 }
 

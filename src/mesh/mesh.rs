@@ -7,10 +7,10 @@ use super::bounds::{Bounds, BoundsNode, bounding_box};
 use crate::math::{Scalar, Vec3};
 use core::fmt;
 
-/// Where the vertices of a mesh are.
+/// Positions of the vertices of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Positions<'a> {
-    /// Fractions of a cube, 6 bytes a vertex: position = `offset` + `scale` · q / 32,768. The fastest and smallest.
+    /// Fractions of a cube, 6 bytes per vertex: position = `offset` + `scale` · q / 32,768. The fastest and smallest.
     Quantized {
         /// Fractions, 1.15.
         points: &'a [[i16; 3]],
@@ -19,7 +19,7 @@ pub enum Positions<'a> {
         /// The middle of the cube.
         offset: Vec3,
     },
-    /// 16.16 coordinates, 12 bytes a vertex.
+    /// 16.16 coordinates, 12 bytes per vertex.
     Exact(&'a [Vec3]),
     /// Homogeneous 16.16 coordinates x, y, z, w, for points at infinity or vertices that are in clip space already.
     Homogeneous(&'a [[Scalar; 4]]),
@@ -46,18 +46,18 @@ impl Positions<'_> {
 /// How vertices, or indices, form triangles. A counter-clockwise triangle (y up) is a front face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Topology {
-    /// Three a triangle.
+    /// Three for each triangle.
     #[default]
     Triangles,
-    /// Each vertex after the second makes a triangle with the two before it; every other one is turned round.
+    /// Each vertex after the second makes a triangle with its two predecessors; every other triangle is turned round.
     Strip,
-    /// Each vertex after the second makes a triangle with the one before it and the first.
+    /// Each vertex after the second makes a triangle with its predecessor and the first.
     Fan,
-    /// Four a quad, corners in order; drawn as (0, 1, 2) and (0, 2, 3).
+    /// Four for each quad, corners in order; drawn as (0, 1, 2) and (0, 2, 3).
     Quads,
 }
 
-/// The slices of a mesh, before they are checked. Fill in what there is:
+/// The slices of a mesh, before they are checked. Fill in the slices that there are:
 ///
 /// ```
 /// use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
@@ -73,17 +73,17 @@ pub enum Topology {
 pub struct MeshData<'a> {
     /// Vertex positions, at most 65,535.
     pub positions: Positions<'a>,
-    /// How they form triangles.
+    /// How vertices form triangles.
     pub topology: Topology,
     /// Vertex numbers in drawing order; without them the vertices are drawn as they stand.
     pub indices: Option<&'a [u16]>,
-    /// Unit normals a vertex, 2.14 ([`NORMAL_ONE`](crate::light::NORMAL_ONE) is 1).
+    /// Unit normals per vertex, 2.14 ([`NORMAL_ONE`](crate::light::NORMAL_ONE) is 1).
     pub normals: Option<&'a [[i16; 3]]>,
-    /// Unit normals a triangle, 2.14, for flat shading; computed from the positions where absent.
+    /// Unit normals per triangle, 2.14, for flat shading; computed from the positions where absent.
     pub face_normals: Option<&'a [[i16; 3]]>,
-    /// Colours a vertex: red, green, blue.
+    /// Colours per vertex: red, green, blue, a byte each, as they lie in flash.
     pub colors: Option<&'a [[u8; 3]]>,
-    /// Texture coordinates a vertex, u to the right and v down, 1 = the whole texture.
+    /// Texture coordinates per vertex, u to the right and v down, 1 = the whole texture.
     pub uvs: Option<&'a [[Scalar; 2]]>,
     /// Bounds, where they are known better than a pass over the positions would find.
     pub bounds: Option<Bounds>,
@@ -93,7 +93,7 @@ pub struct MeshData<'a> {
 }
 
 impl<'a> MeshData<'a> {
-    /// Just positions: a list of triangles.
+    /// A list of triangles: positions and nothing else.
     #[must_use]
     pub const fn new(positions: Positions<'a>) -> Self {
         Self {
@@ -307,7 +307,7 @@ impl<'a> Mesh<'a> {
         Ok(Self { data, bounds, triangles: triangles as u16 })
     }
 
-    /// [`new`](Self::new) for `const` and `static` meshes: one that is wrong does not compile.
+    /// Makes a `const` or `static` mesh as [`new`](Self::new) does: one that is wrong does not compile.
     ///
     /// # Panics
     /// When the mesh is wrong. Called at run time instead of in a constant, prefer [`new`](Self::new).
@@ -321,7 +321,7 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Number of vertices.
+    /// Returns the number of vertices.
     #[must_use]
     pub const fn vertex_count(&self) -> usize {
         match self.data.positions {
@@ -331,13 +331,13 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Number of triangles, after strips, fans and quads are taken apart.
+    /// Returns the number of triangles, after strips, fans and quads are taken apart.
     #[must_use]
     pub const fn triangle_count(&self) -> usize {
         self.triangles as usize
     }
 
-    /// The slices.
+    /// Returns the slices.
     #[must_use]
     pub const fn data(&self) -> &MeshData<'a> {
         &self.data
@@ -349,7 +349,7 @@ impl<'a> Mesh<'a> {
         &self.bounds
     }
 
-    /// Vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
+    /// Returns the vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
     #[inline]
     #[must_use]
     pub const fn triangle(&self, n: usize) -> Option<[u16; 3]> {
@@ -388,7 +388,7 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Position of a vertex, rounded to 16.16 and saturated; `Homogeneous` positions without their w.
+    /// Returns the position of a vertex, rounded to 16.16 and saturated; `Homogeneous` positions without their w.
     #[must_use]
     pub fn position(&self, vertex: usize) -> Vec3 {
         match self.data.positions {

@@ -1,4 +1,6 @@
-//! Meshes, lines and points in flash, their bounds and edges, and the order of draws.
+//! Meshes, lines and points, borrowed from flash or RAM and checked once, with their bounds and edges, and the order
+//! of draws. A program meets [`Mesh`] first, made of a [`MeshData`]; [`Lines`] and [`Points`] are made of
+//! [`Vertices`].
 
 mod bounds;
 mod edges;

@@ -1,4 +1,5 @@
-//! Span → pixels: the fragment stage's seam, the depth test, and the loops over pixels.
+//! The seam between triangles and pixels: the depth test, and the trait that colours fragments. A program meets
+//! [`DepthState`] first, in a [`State`](crate::scene::State); [`Shader`] is for shaders of one's own.
 
 mod color_setup;
 mod depth;

@@ -1,4 +1,5 @@
-//! Where pixels go: framebuffers, strips, sinks, packers, embedded-graphics targets, and the records of a band.
+//! Where pixels go: framebuffers, strips, sinks, packers, embedded-graphics targets. A program meets [`StripPixels`]
+//! first, a finished strip; [`StripSink`] takes them, [`Packer`] packs them for panels of less than a byte per pixel.
 
 mod choice;
 mod draw_target;

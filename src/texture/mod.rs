@@ -1,4 +1,5 @@
-//! Images in flash: how texels are kept, and how they are sampled.
+//! Images in flash: how texels are kept, and how they are sampled. A program meets [`Image`] first, made of an
+//! image's bytes and a [`TexelFormat`]; a [`Tile`] is the fast one, with sides that are powers of two.
 
 mod image;
 mod sample;

@@ -1,4 +1,6 @@
-//! The vertex stage: what a vertex shader sees and returns; transform, clip, project.
+//! The vertex stage: what a vertex shader sees and returns, and where the picture lies. A program meets [`Viewport`]
+//! first, if any: a part of the screen to draw in. [`VertexShader`] is for shaders of one's own, [`painters_order`]
+//! for scenes without a depth buffer.
 
 pub(crate) mod clip;
 mod clip_distance;
