@@ -38,10 +38,10 @@ impl<'a, T: Texture> Textured<'a, T> {
     /// whose texels are nearest in size to its pixels, and not smaller than 1/2 of one.
     ///
     /// # Errors
-    /// If a level's size is not that.
+    /// If a level's size is not that, or there are no levels.
     pub fn mipmapped(levels: &'a [T]) -> Result<Self, TextureError> {
         let mut sizes = levels.iter().map(Texture::size);
-        let mut size = sizes.next().ok_or(TextureError::Empty)?;
+        let mut size = sizes.next().ok_or(TextureError::NoLevels)?;
         for found in sizes {
             let expected = ((size.0 / 2).max(1), (size.1 / 2).max(1));
             if found != expected {

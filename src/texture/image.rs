@@ -37,24 +37,30 @@ pub trait Texture {
     }
 }
 
-/// Why bytes are no image.
+/// An error in the bytes or the sizes of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
+#[non_exhaustive]
 pub enum TextureError {
     /// No columns or no rows.
-    Empty,
+    Empty {
+        /// Columns and rows.
+        size: (u16, u16),
+    },
+    /// A mip chain without levels.
+    NoLevels,
     /// More or fewer bytes than the size takes.
     Length {
-        /// How many there are.
+        /// Number of bytes.
         found: usize,
-        /// How many there must be.
+        /// Number of bytes that the size takes.
         expected: usize,
     },
     /// A size of another image does not fit this one: alpha beside colours, or a level of a mip chain.
     Size {
-        /// What it is.
+        /// Columns and rows of that image.
         found: (u16, u16),
-        /// What it must be.
+        /// Columns and rows that fit.
         expected: (u16, u16),
     },
 }
@@ -62,7 +68,10 @@ pub enum TextureError {
 impl core::fmt::Display for TextureError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
-            Self::Empty => write!(f, "a texture has at least one column and one row"),
+            Self::Empty { size } => {
+                write!(f, "{} x {} texels: a texture has at least one column and one row", size.0, size.1)
+            }
+            Self::NoLevels => f.write_str("a mip chain has at least one level"),
             Self::Length { found, expected } => write!(f, "{found} bytes, but the size takes {expected}"),
             Self::Size { found, expected } => {
                 write!(f, "{} x {} texels instead of {} x {}", found.0, found.1, expected.0, expected.1)
@@ -100,7 +109,7 @@ impl<'a, F: TexelFormat> Image<'a, F> {
     /// If it is empty, or the bytes are not as many as the size takes.
     pub const fn new(data: &'a [u8], (width, height): (u16, u16), format: F) -> Result<Self, TextureError> {
         if width == 0 || height == 0 {
-            return Err(TextureError::Empty);
+            return Err(TextureError::Empty { size: (width, height) });
         }
         let stride = (width as usize * F::BITS).div_ceil(8);
         let expected = stride * height as usize;
@@ -267,7 +276,7 @@ mod tests {
 
     #[test]
     fn images_check_their_length() {
-        assert_eq!(Image::new(&[], (0, 4), Rgb565Texel).err(), Some(TextureError::Empty));
+        assert_eq!(Image::new(&[], (0, 4), Rgb565Texel).err(), Some(TextureError::Empty { size: (0, 4) }));
         let expected = TextureError::Length { found: 5, expected: 4 };
         // Nine texels of one bit take two bytes.
         assert_eq!(Image::new(&[0; 5], (9, 2), PaletteTexel::<1>(&[])).err(), Some(expected));
