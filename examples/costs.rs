@@ -67,7 +67,7 @@ mod rows {
         ("`Fogged` `Gouraud`", |s| square(s, &Fogged::new(GOURAUD, &MIST, Rgb888::new(200, 200, 200)))),
     ];
 
-    const GOURAUD: Gouraud = Gouraud::colors_unlit();
+    const GOURAUD: Gouraud = Gouraud::vertex_colors();
 
     fn flat() -> Flat {
         Flat::unlit(Rgb888::new(200, 100, 50))

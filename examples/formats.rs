@@ -103,7 +103,7 @@ mod counting {
                 };
                 let stats = renderer.frame_to(sink, color, Rgb888::new(0, 0, 0), |scene| {
                     if is_drawn {
-                        scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+                        scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
                     }
                 });
                 black_box(stats).expect("the same scene");

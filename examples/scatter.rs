@@ -126,14 +126,14 @@ impl Demo for Scatter {
                 .unzip();
             let data = Vertices { colors: Some(&colors), ..Vertices::new(Positions::Exact(&ends)) };
             if let Ok(stems) = Lines::new(data, LineTopology::Pairs, None) {
-                scene.draw_lines_with(State::DEFAULT, &stems, &self.mvp, &Gouraud::colors_unlit(), &Thin);
+                scene.draw_lines_with(State::DEFAULT, &stems, &self.mvp, &Gouraud::vertex_colors(), &Thin);
             }
         }
         let size = if mode == 2 { 1800 } else { 900 };
         // A rim first: the square itself is at the same depth.
         scene.draw_points(&points, &self.mvp, &Flat::unlit(Rgb888::new(8, 10, 12)), Pixels::from_bits(size + 400));
         let inside = State { depth: DepthState { compare: Compare::LessEqual, write: true }, ..State::DEFAULT };
-        scene.draw_points_with(inside, &points, &self.mvp, &Flat::colors_unlit(), Pixels::from_bits(size));
+        scene.draw_points_with(inside, &points, &self.mvp, &Flat::vertex_colors(), Pixels::from_bits(size));
         // The plot's frame, over all.
         let (width, height) = scene.screen();
         let mut canvas = scene.canvas();

@@ -93,7 +93,7 @@ fn flat(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
 }
 
 fn gouraud(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {
-    scene.draw_lines(&input.lines, &Projective::IDENTITY, &Gouraud::colors_unlit(), &Thin);
+    scene.draw_lines(&input.lines, &Projective::IDENTITY, &Gouraud::vertex_colors(), &Thin);
 }
 
 fn torus(scene: &mut Scene<'_, Target<'_>>, input: &Input<'_>) {

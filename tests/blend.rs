@@ -146,13 +146,13 @@ const TEST: State = State { depth: DepthState::TEST, cull: Cull::None, ..State::
 fn blended_draws_see_what_is_there_and_leave_depth() {
     let color = [200, 100, 50];
     let (opaque, depth, _) = whole::<Rgb888>(SCREEN, Rgb888::CSS_DARK_SLATE_BLUE, |scene| {
-        scene.draw(&SQUARE, &Projective::IDENTITY, &Gouraud::colors_unlit());
+        scene.draw(&SQUARE, &Projective::IDENTITY, &Gouraud::vertex_colors());
     });
     // Depth runs from 1/4 at the bottom to 3/4 at the top; nearer by 1/8 everything passes, farther by 1/8 nothing does.
     for (offset, passes) in [(-125, true), (125, false)] {
         let nearer = Projective::from(Affine::translation(Vec3::from_milli(0, 0, offset)));
         let (picture, after, _) = whole::<Rgb888>(SCREEN, Rgb888::CSS_DARK_SLATE_BLUE, |scene| {
-            scene.draw(&SQUARE, &Projective::IDENTITY, &Gouraud::colors_unlit());
+            scene.draw(&SQUARE, &Projective::IDENTITY, &Gouraud::vertex_colors());
             scene.draw_with(TEST, &SQUARE, &nearer, &Blend::new(Ramp(color), Alpha));
         });
         assert_eq!(after, depth);
@@ -323,13 +323,13 @@ fn blended_pictures_do_not_depend_on_strips() {
     let draw = |rows: usize, records: usize| {
         strips::<Rgb565>(SCREEN, rows, records, Rgb565::CSS_DARK_SLATE_BLUE, |scene| {
             let turned = |angle: i32| Projective::from(Affine::rotation_z(Angle16::from_degrees(angle)));
-            scene.draw_with(TEST, &SQUARE, &turned(10), &Fogged::new(Gouraud::colors_unlit(), &table, Rgb888::WHITE));
-            scene.draw_with(TEST, &SQUARE, &turned(30), &Blend::new(Gouraud::colors_unlit(), Opacity(100)));
+            scene.draw_with(TEST, &SQUARE, &turned(10), &Fogged::new(Gouraud::vertex_colors(), &table, Rgb888::WHITE));
+            scene.draw_with(TEST, &SQUARE, &turned(30), &Blend::new(Gouraud::vertex_colors(), Opacity(100)));
             scene.draw_with(TEST, &SQUARE, &turned(50), &Blend::new(Ramp([250, 20, 10]), AddAlpha));
-            scene.draw_with(TEST, &SQUARE, &turned(70), &Blend::new(Gouraud::colors_unlit(), Multiply));
+            scene.draw_with(TEST, &SQUARE, &turned(70), &Blend::new(Gouraud::vertex_colors(), Multiply));
             let inner = Fogged::new(Ramp([9, 120, 80]), &table, Rgb888::BLACK);
             scene.draw_with(TEST, &SQUARE, &turned(90), &Blend::new(inner, Alpha));
-            scene.draw(&SQUARE, &turned(40), &ScreenDoor::new(Gouraud::colors_unlit(), 5));
+            scene.draw(&SQUARE, &turned(40), &ScreenDoor::new(Gouraud::vertex_colors(), 5));
             scene.draw_with(TEST, &SQUARE, &turned(120), &Blend::new(AlphaTest::new(Ramp([90, 90, 0]), 100), Add));
         })
         .0

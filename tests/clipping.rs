@@ -292,7 +292,7 @@ fn no_input_panics_in_any_state() {
             |scene| {
                 scene.draw_with(state, &mesh, &Projective::IDENTITY, &Flat::colors(light));
                 scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors(light));
-                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
             },
         )
         .1;

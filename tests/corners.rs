@@ -176,7 +176,7 @@ fn steep_channels_on_slivers_do_not_overflow() {
     let mesh = Mesh::new(MeshData { colors: Some(&colors), ..MeshData::new(Positions::Homogeneous(&corners)) });
     let state = State { cull: Cull::None, ..State::default() };
     let mesh = mesh.expect("a mesh");
-    let (_, stats) = lit(|scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit()));
+    let (_, stats) = lit(|scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors()));
     assert_eq!(stats.drawn, 1);
 }
 

@@ -203,7 +203,7 @@ fn hierarchy_draws_the_same_picture_and_culls_something() {
         let mvp = camera * Affine::rotation_y(Angle16(rng.between(-6000, 6000) as u16)) * Affine::translation(-eye);
         let draw = |mesh| {
             strips::<Rgb565>((64, 48), 8, records, Rgb565::BLACK, |scene| {
-                scene.draw_with(state, mesh, &mvp, &Gouraud::colors_unlit())
+                scene.draw_with(state, mesh, &mvp, &Gouraud::vertex_colors())
             })
         };
         let ((expected, all), (picture, some)) = (draw(&plain), draw(&tree));
@@ -244,7 +244,7 @@ fn hierarchy_of_many_leaves_draws_all_that_are_seen() {
         for records in [0, 5000] {
             let draw = |mesh| {
                 strips::<Rgb565>((64, 64), 64, records, Rgb565::BLACK, |scene| {
-                    scene.draw(mesh, &camera, &Gouraud::colors_unlit())
+                    scene.draw(mesh, &camera, &Gouraud::vertex_colors())
                 })
             };
             let ((expected, _), (picture, stats)) = (draw(&Mesh::new(plain).expect("squares")), draw(&tree));
@@ -306,7 +306,7 @@ fn far_corners_of_a_large_world_are_seen_from_the_front_and_culled_behind() {
         for (turn, seen) in [(Angle16(0), true), (Angle16(1 << 15), false)] {
             let mvp = lens * Affine::rotation_y(turn) * there;
             let (picture, stats) = strips::<Rgb565>((512, 512), 512, 100, Rgb565::BLACK, |scene| {
-                scene.draw_with(State { cull: Cull::None, ..State::default() }, &mesh, &mvp, &Gouraud::colors_unlit());
+                scene.draw_with(State { cull: Cull::None, ..State::default() }, &mesh, &mvp, &Gouraud::vertex_colors());
             });
             let lit = picture.iter().filter(|pixel| **pixel != 0).count();
             let case = format!("case {case}: ({x}, {y}, {z}) from {eye:?}, {turn:?}: {lit} pixels, {stats:?}");

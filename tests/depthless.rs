@@ -50,20 +50,20 @@ where
 {
     let state = State { cull: Cull::None, depth, ..State::DEFAULT };
     let mvp = &Projective::IDENTITY;
-    scene.draw_with(state, mesh, mvp, &Gouraud::colors_unlit());
+    scene.draw_with(state, mesh, mvp, &Gouraud::vertex_colors());
     let turned = Projective::from(Affine::rotation_z(Angle16(9999)));
     scene.draw_with(state, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
     let turned = Projective::from(Affine::rotation_z(Angle16(40_000)));
-    scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
+    scene.draw_with(state, mesh, &turned, &Gouraud::vertex_colors());
     // Lines, points and shapes on the screen.
     let MeshData { positions, normals, colors, uvs, .. } = *mesh.data();
     let data = Vertices { positions, normals, colors, uvs, bounds: None };
     let lines = Lines::new(data, LineTopology::Strip, None).expect("vertices are lines");
-    scene.draw_lines_with(state, &lines, mvp, &Gouraud::colors_unlit(), &Thin);
+    scene.draw_lines_with(state, &lines, mvp, &Gouraud::vertex_colors(), &Thin);
     scene.draw_lines_with(state, &lines, mvp, &Flat::unlit(Rgb888::CSS_TEAL), &Dashed(0xF0F0_3333));
     scene.draw_lines_with(state, &lines, &turned, &Flat::unlit(Rgb888::CSS_GOLD), &Smooth::px(2));
     let points = Points::new(data).expect("vertices are points");
-    scene.draw_points_with(state, &points, &turned, &Gouraud::colors_unlit(), Pixels::from_bits(700));
+    scene.draw_points_with(state, &points, &turned, &Gouraud::vertex_colors(), Pixels::from_bits(700));
     let mut canvas = scene.canvas();
     canvas.set_depth(9000, depth);
     canvas.rectangle(&Rectangle::new(Point::new(50, 3), Size::new(9, 40)), Rgb888::CSS_PLUM);

@@ -88,7 +88,7 @@ fn black_and_white_have_no_pattern() {
         for level in [0, 255] {
             rectangle([[level; 3]; 4], |mesh| {
                 let (picture, _, _) = whole::<Dithered<P>>((70, 50), P::to_color(P::pack([99; 3])), |scene| {
-                    scene.draw(mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+                    scene.draw(mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
                 });
                 assert!(picture.into_iter().all(|pixel| P::unpack(pixel) == [level; 3]));
             });
@@ -106,10 +106,10 @@ fn check_ramp<P: Ditherable>(bound: f64) {
     rectangle([corner(0, 255), corner(0, 0), corner(255, 0), corner(255, 255)], |mesh| {
         let size = (256, 128);
         let (exact, _, _) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| {
-            scene.draw(mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+            scene.draw(mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
         });
         let (picture, _, _) = whole::<Dithered<P>>(size, P::to_color(P::pack([0; 3])), |scene| {
-            scene.draw(mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+            scene.draw(mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
         });
         let mut worst = 0_f64;
         for (cell_x, cell_y) in (0..256 / 8).flat_map(|x| (0..128 / 8).map(move |y| (x, y))) {
@@ -137,10 +137,10 @@ fn check_levels<P: Ditherable>(seed: u64, bound: [u8; 3]) {
     let soup = Soup::new(&mut rng, 30);
     let (mesh, size) = (soup.mesh(), (150, 110));
     let (exact, _, _) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| {
-        scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+        scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
     });
     let (picture, _, _) = whole::<Dithered<P>>(size, P::to_color(P::pack([0; 3])), |scene| {
-        scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+        scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
     });
     for (k, (exact, pixel)) in exact.iter().zip(picture).enumerate() {
         let rgb = P::unpack(pixel);

@@ -69,7 +69,7 @@ fn check_lit<P: PixelFormat<Raw: PartialEq + Debug>>() {
     let lighting = Lighting::directional(Rgb888::new(255, 255, 255), []);
     for_meshes::<P>(|mesh, depth, case| {
         let lit = Shaded::new(PerVertex, lighting.on(&material, &Affine::IDENTITY, mesh.bounds()));
-        let (lit, gouraud) = (picture::<P>(mesh, depth, &lit), picture::<P>(mesh, depth, &Gouraud::colors_unlit()));
+        let (lit, gouraud) = (picture::<P>(mesh, depth, &lit), picture::<P>(mesh, depth, &Gouraud::vertex_colors()));
         assert_eq!(difference(&lit, &gouraud, SCREEN.0), None, "{case}");
     });
 }
@@ -78,7 +78,8 @@ fn check_lit<P: PixelFormat<Raw: PartialEq + Debug>>() {
 fn check_plain<P: PixelFormat<Raw: PartialEq + Debug>>(near: i32) {
     for_meshes::<P>(|mesh, depth, case| {
         let colors = picture::<Rgb888>(mesh, depth, &Plain);
-        let (plain, gouraud) = (picture::<P>(mesh, depth, &Plain), picture::<P>(mesh, depth, &Gouraud::colors_unlit()));
+        let (plain, gouraud) =
+            (picture::<P>(mesh, depth, &Plain), picture::<P>(mesh, depth, &Gouraud::vertex_colors()));
         let drawn = picture::<Gray8>(mesh, depth, &Everywhere);
         for (k, color) in colors.iter().enumerate().filter(|(k, _)| drawn[*k] != 0) {
             let position = (k as i32 % i32::from(SCREEN.0), k as i32 / i32::from(SCREEN.0));

@@ -173,7 +173,7 @@ fn lines_may_be_pulled_forward_instead() {
         let bias = DepthBias { constant, ..DepthBias::NONE };
         let state = State { bias, ..State::DEFAULT };
         let (picture, ..) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| {
-            scene.draw(&quad, &mvp, &Gouraud::colors_unlit());
+            scene.draw(&quad, &mvp, &Gouraud::vertex_colors());
             scene.draw_lines_with(state, &diagonal, &mvp, &Flat::unlit(Rgb888::RED), &Thin);
         });
         picture.iter().filter(|pixel| **pixel == 0xF800).count()

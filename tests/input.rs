@@ -184,7 +184,7 @@ fn empty_mesh_draws_nothing() {
             let mesh = mesh.expect("an empty mesh is a mesh");
             for records in [0, 100] {
                 let (picture, stats) = strips::<Gray8>((8, 8), 3, records, Gray8::new(9), |scene| {
-                    scene.draw(&mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+                    scene.draw(&mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
                 });
                 assert_eq!((stats.triangles, stats.vertices, stats.drawn), (0, 0, 0), "{topology:?}");
                 assert!(picture.iter().all(|p| *p == 9));

@@ -107,7 +107,7 @@ fn drawing_at_a_depth_tests_each_pixel_against_the_meshes() {
         let soup = Soup::new(&mut rng, 8);
         let mesh = soup.mesh();
         let (colors, depths, _) = whole::<Rgb565>(SCREEN, Rgb565::BLUE, |s| {
-            s.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+            s.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
         });
         // Depths that are there, so that equality matters.
         let z = if rng.one_in(2) { depths[rng.below(PIXELS as u64) as usize] } else { rng.next_u64() as u16 };
@@ -119,7 +119,7 @@ fn drawing_at_a_depth_tests_each_pixel_against_the_meshes() {
         seen += usize::from(model.colors != before);
         for (rows, records) in [(48, 20_000), (48, 0), (7, 20_000), (7, 200), (1, 0)] {
             let (picture, _) = strips::<Rgb565>(SCREEN, rows, records, Rgb565::BLUE, |s| {
-                s.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+                s.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
                 let mut rng = Rng::new(colors_seed);
                 match kind {
                     0 => areas(&mut s.overlay(), &mut rng),

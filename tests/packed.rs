@@ -185,10 +185,10 @@ fn luma_of_smooth_shading_is_that_of_its_colours() {
         let soup = support::Soup::new(&mut reference::rng::Rng::new(seed), 30);
         let (mesh, state) = (soup.mesh(), State { cull: Cull::None, ..State::DEFAULT });
         let (grey, ..) = support::whole::<Gray8>((150, 110), Gray8::new(0), |scene| {
-            scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+            scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
         });
         let (colors, ..) = support::whole::<Rgb888>((150, 110), Rgb888::new(0, 0, 0), |scene| {
-            scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+            scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
         });
         for (place, (grey, [r, g, b])) in grey.into_iter().zip(colors).enumerate() {
             let exact = 0.299 * f64::from(r) + 0.587 * f64::from(g) + 0.114 * f64::from(b);

@@ -39,7 +39,7 @@ fn compare(mesh: &Mesh<'_>, mvp: &Projective) -> (usize, usize, SortReport) {
     let order = painters_order(mesh, mvp, &viewport, &mut memory, &mut indices).expect("room for all");
     let draw = |mesh: &Mesh<'_>, state: State| {
         let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::new(1, 2, 3), |scene| {
-            scene.draw_with(state, mesh, mvp, &Gouraud::colors_unlit());
+            scene.draw_with(state, mesh, mvp, &Gouraud::vertex_colors());
         });
         picture
     };

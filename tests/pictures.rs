@@ -343,7 +343,13 @@ fn points_are_squares_about_their_vertices() {
         ],
         |scene| {
             scene.draw_with(BOTH_SIDES, &wall, &pixels(), &Flat::unlit(Rgb888::WHITE));
-            scene.draw_points_with(BOTH_SIDES, &points, &pixels(), &Gouraud::colors_unlit(), Pixels::from_bits(4 << 8));
+            scene.draw_points_with(
+                BOTH_SIDES,
+                &points,
+                &pixels(),
+                &Gouraud::vertex_colors(),
+                Pixels::from_bits(4 << 8),
+            );
         },
     );
 }

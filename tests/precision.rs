@@ -276,7 +276,7 @@ fn gouraud_pixels<P: PixelFormat>(black: P::Color, mut check: impl FnMut(P::Raw,
                 Mesh::new(MeshData { colors: Some(&colors), ..MeshData::new(Positions::Homogeneous(&vertices)) })
                     .expect("a triangle");
             let (picture, ..) = whole::<P>((width as u16, height as u16), black, |scene| {
-                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit())
+                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors())
             });
             let tri = exact::widen(snaps);
             exact::for_each_pixel(tri, width, height, |x, y| {

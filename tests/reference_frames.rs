@@ -216,7 +216,7 @@ fn depth_and_colours_agree_with_the_snapped_reference() {
         let (ids, depths) = draw_ids(size, &parts, DepthState::LESS);
         let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| {
             for part in &parts {
-                scene.draw_with(state(part, DepthState::LESS), part.mesh, &part.mvp, &Gouraud::colors_unlit());
+                scene.draw_with(state(part, DepthState::LESS), part.mesh, &part.mvp, &Gouraud::vertex_colors());
             }
         });
         let mut excluded = 0;
@@ -315,7 +315,7 @@ fn colours_agree_with_homogeneous_rasterization() {
         let reference = homogeneous_frame(size, &parts);
         let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| {
             for part in &parts {
-                scene.draw_with(state(part, DepthState::LESS), part.mesh, &part.mvp, &Gouraud::colors_unlit());
+                scene.draw_with(state(part, DepthState::LESS), part.mesh, &part.mvp, &Gouraud::vertex_colors());
             }
         });
         for (i, found) in picture.iter().enumerate().filter(|(i, _)| reference.is_clear_cut(*i, MARGIN, GAP)) {

@@ -88,11 +88,11 @@ where
 {
     let (width, height) = scene.screen();
     scene.set_viewport(part);
-    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
     scene.set_viewport(Viewport::full(Size::new(width.into(), height.into())).expect("the screen is a viewport"));
     let turned = Projective::from(Affine::rotation_z(Angle16(9999)));
     scene.draw_with(BOTH_SIDES, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
-    scene.draw_with(state, mesh, &turned, &Gouraud::colors_unlit());
+    scene.draw_with(state, mesh, &turned, &Gouraud::vertex_colors());
 }
 
 fn random_state(rng: &mut Rng) -> State {
@@ -175,7 +175,7 @@ proptest! {
         let soup = Soup::new(&mut Rng::new(seed), triangles);
         let mesh = soup.mesh();
         let draw = |rows, records| strips::<Gray8>(screen, rows, records, Gray8::new(3), |scene| {
-            scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+            scene.draw_with(BOTH_SIDES, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
         }).0;
         prop_assert_eq!(difference(&draw(rows, records), &draw(48, 20_000), 64), None);
     }

@@ -134,7 +134,7 @@ fn backdrop<F: Framebuffer>(scene: &mut Scene<'_, F>) {
         MeshData { topology: Topology::Quads, colors: Some(&colors), ..MeshData::new(Positions::Exact(&corners)) };
     let square = Mesh::new(square).expect("a square");
     let state = State { cull: Cull::None, ..State::DEFAULT };
-    scene.draw_with(state, &square, &Projective::IDENTITY, &Gouraud::colors_unlit());
+    scene.draw_with(state, &square, &Projective::IDENTITY, &Gouraud::vertex_colors());
 }
 
 fn passes(compare: Compare, depth: u16, there: u16) -> bool {

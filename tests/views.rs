@@ -38,7 +38,7 @@ where
     Gouraud: zstrip::span::Shader<F::Format>,
 {
     let state = State { cull: Cull::None, ..State::DEFAULT };
-    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::colors_unlit());
+    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
 }
 
 /// The display must show the view at `at` and nothing new around it.

@@ -51,7 +51,7 @@ impl Ends {
 fn draw_all<F: Framebuffer>(scene: &mut Scene<'_, F>, ends: &Ends, turn: Angle16, range: DepthRange) {
     let mvp = Projective::from(Affine::rotation_z(turn));
     let lines = |joined| Lines::new(ends.data(), joined, None).expect("lines");
-    let shader = Gouraud::colors_unlit();
+    let shader = Gouraud::vertex_colors();
     let state = State { range, ..State::DEFAULT };
     scene.draw_lines_with(state, &lines(LineTopology::Strip), &mvp, &shader, &Thin);
     scene.draw_lines_with(state, &lines(LineTopology::Loop), &mvp, &shader, &Dashed::EVEN);

@@ -121,7 +121,7 @@ pub const LIGHT: Light = Light::from_channels(Vec3::from_milli(400, 700, 600), [
 
 /// Colours of the mesh under [`LIGHT`], as they are in flat triangles, and without any light.
 static LIT: Flat = Flat::colors(LIGHT);
-static UNLIT: Gouraud = Gouraud::colors_unlit();
+static UNLIT: Gouraud = Gouraud::vertex_colors();
 
 /// Where the torus is: tumbling, since a turn about its axis would not show.
 pub fn torus_model(turn: Angle16) -> Affine {

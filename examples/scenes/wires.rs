@@ -74,12 +74,12 @@ fn torus_lines<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
 
 #[inline(never)]
 fn axes<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    scene.draw_lines_with(State::DEFAULT, &AXES, mvp, &Gouraud::colors_unlit(), &Thick::px(2));
+    scene.draw_lines_with(State::DEFAULT, &AXES, mvp, &Gouraud::vertex_colors(), &Thick::px(2));
 }
 
 #[inline(never)]
 fn hidden_axes<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    scene.draw_lines_with(HIDDEN, &AXES, mvp, &Flat::colors_unlit(), &Dashed::EVEN);
+    scene.draw_lines_with(HIDDEN, &AXES, mvp, &Flat::vertex_colors(), &Dashed::EVEN);
 }
 
 #[inline(never)]

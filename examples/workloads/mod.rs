@@ -125,7 +125,7 @@ pub fn quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
 
 #[inline(never)]
 pub fn gouraud_quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
-    frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::colors_unlit()))
+    frame(buffers, &mut sink, &mut |scene| scene.draw(&QUAD, &IN_VIEW, &Gouraud::vertex_colors()))
 }
 
 #[inline(never)]

@@ -207,7 +207,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
 
     /// Fills a convex polygon with the colours of its corners: with more than three, as a fan of triangles about the first.
     pub fn gradient(&mut self, corners: &[(ScreenPoint, Rgb888)]) {
-        self.fan(corners, |(corner, color)| (*corner, Gouraud::varyings(*color)), &Gouraud::colors_unlit(), 0);
+        self.fan(corners, |(corner, color)| (*corner, Gouraud::varyings(*color)), &Gouraud::vertex_colors(), 0);
     }
 
     /// Fills a convex polygon with a shader, whose varyings are given at the corners, and which gets `face` as its face's
@@ -262,7 +262,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
     /// Draws a line that goes from one colour to another.
     pub fn gradient_line(&mut self, a: (ScreenPoint, Rgb888), b: (ScreenPoint, Rgb888), stroke: &impl Stroke) {
         let ends = [(a.0, Gouraud::varyings(a.1)), (b.0, Gouraud::varyings(b.1))];
-        self.segment(&ends, &Gouraud::colors_unlit(), 0, stroke);
+        self.segment(&ends, &Gouraud::vertex_colors(), 0, stroke);
     }
 
     /// Draws lines from point to point; thin ones draw each pixel of a joint once.

@@ -30,7 +30,7 @@ impl Flat {
 
     /// Creates a shader of the vertices' colours as they are: each triangle takes that of its provoking vertex.
     #[must_use]
-    pub const fn colors_unlit() -> Self {
+    pub const fn vertex_colors() -> Self {
         Self { color: None, light: None }
     }
 

@@ -48,7 +48,7 @@ impl Gouraud {
 
     /// Creates a shader of the vertices' colours as they are.
     #[must_use]
-    pub const fn colors_unlit() -> Self {
+    pub const fn vertex_colors() -> Self {
         Self { colors: Colors::Unlit }
     }
 }
