@@ -141,7 +141,6 @@ impl FogTable {
     /// Returns the part of a colour that is left at a depth, 255 = all.
     #[must_use]
     #[inline]
-    #[must_use]
     pub fn transmittance(&self, depth: u16) -> u8 {
         let steps = !depth;
         let (entry, fraction) = match steps {

@@ -40,7 +40,6 @@ impl Gouraud {
     /// Returns the varyings of a vertex that has this colour.
     #[must_use]
     #[inline]
-    #[must_use]
     pub fn varyings(color: Rgb888) -> [i32; 3] {
         let [r, g, b] = channels(color);
         [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)]
