@@ -173,7 +173,11 @@ impl<'m> Scan<'m> {
     ) -> bool {
         let mut triangles = records.triangles();
         let first = triangles.count();
-        let recording = self.recording;
+        // Where nothing is recorded, a list without room ends the loop at the first visible triangle, at no cost per triangle: a
+        // test of `recording` there takes 4 % of the scan.
+        if !self.recording {
+            triangles.leave_no_room();
+        }
         // In an empty rectangle is nothing: nor in one that is far away, which takes no test of its own.
         let clip = if clip.is_empty() { &NOWHERE } else { clip };
         let strips = *strips;
@@ -220,12 +224,12 @@ impl<'m> Scan<'m> {
                 stats.outside = stats.outside.wrapping_add(1);
                 continue;
             }
-            if !recording {
-                break Some((corners, positions));
-            }
             // Stage 6, recording: into the list of the strip it begins in.
             let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
             if !triangles.push(u32::from(i) | u32::from(j) << 16, k, PendingFace::new(number, area).0, strip) {
+                if !self.recording {
+                    break Some((corners, positions));
+                }
                 triangles.overflow();
                 break None;
             }

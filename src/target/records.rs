@@ -192,6 +192,11 @@ impl Triangles<'_> {
         self.count
     }
 
+    /// Makes [`push`](Self::push) yield `false` from here on.
+    pub(crate) fn leave_no_room(&mut self) {
+        self.triangles = &mut [];
+    }
+
     /// Notes that there was no room for a triangle.
     pub(crate) const fn overflow(&mut self) {
         self.layout.overflow = true;
