@@ -346,7 +346,6 @@ fn lines_leave_nothing_but_depth() {
 }
 
 #[test]
-#[ignore = "smooth lines ask DepthOnly for a colour, get none, and leave no depth"]
 fn smooth_lines_leave_nothing_but_depth() {
     assert_eq!(Strokes::new(Smooth::new(Pixels::from_bits(700))).depth_only::<Rgb565>(), [""; 0]);
 }

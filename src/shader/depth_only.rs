@@ -20,9 +20,15 @@ impl VertexShader for DepthOnly {
 impl<P: PixelFormat> Shader<P> for DepthOnly {
     type Setup = ();
 
-    /// Not called: spans are drawn without fragments.
+    /// Returns no colour: there is none.
     fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
         None
+    }
+
+    /// Keeps the pixel as it is, and counts as drawn, so that its depth is left. Smooth strokes ask pixel by pixel.
+    #[inline(always)]
+    fn paint(&self, _: &Fragment<'_, [i32; 0]>, _: &mut P::Raw) -> bool {
+        true
     }
 
     #[inline]
