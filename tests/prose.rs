@@ -57,7 +57,8 @@ fn is_in_trait(text: &str, number: usize) -> bool {
     let before: Vec<_> = text.lines().take(number - 1).collect();
     let indent = |line: &str| line.len() - line.trim_start().len();
     let own = text.lines().nth(number - 1).map_or(0, indent);
-    let opening = before.iter().rev().find(|line| !line.trim().is_empty() && indent(line) < own && !line.starts_with('}'));
+    let opening =
+        before.iter().rev().find(|line| !line.trim().is_empty() && indent(line) < own && !line.starts_with('}'));
     opening.is_some_and(|line| line.trim_start().starts_with("pub trait "))
 }
 
@@ -99,7 +100,8 @@ fn summaries_say_what_they_are_about() {
 
 #[test]
 fn summaries_are_found_where_they_stand() {
-    let text = "/// Draws.\n/// More.\n#[inline]\npub fn draw() {}\n\npub trait Seam {\n    /// Who.\n    fn ask();\n}\n";
+    let text =
+        "/// Draws.\n/// More.\n#[inline]\npub fn draw() {}\n\npub trait Seam {\n    /// Who.\n    fn ask();\n}\n";
     let found = summaries(text);
     assert_eq!(found, [(1, "Draws.", "pub fn draw() {}"), (7, "Who.", "fn ask();")]);
     assert!(is_function(found[0].2, text, found[0].0) && is_function(found[1].2, text, found[1].0));
