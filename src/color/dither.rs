@@ -1,8 +1,10 @@
-//! Ordered dithering: grey of 8 bits to the few levels of a panel, by a matrix of thresholds that is fixed to the screen.
+//! Ordered dithering: 8-bit greys become the few levels of a panel, by a matrix of thresholds that is fixed to the
+//! screen.
 //!
 //! The eye takes the mean of neighbouring pixels as *light*, not as numbers. 8-bit greys are sRGB: 128 is a fifth of
-//! white's light, not half of it. So a grey first becomes the share of light between two levels, and is then compared with
-//! the threshold at its place. Nothing else counts, so pixels that do not change do not flicker, and strips do not show.
+//! white's light, not half of it. So each grey is first converted to light: to its share of the way from the light of
+//! one level to that of the next. This share is then compared with the threshold at the pixel's position. The result
+//! depends on the grey and the position only, so unchanged pixels do not flicker, and borders of strips do not show.
 
 use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, PixelColor};
 
@@ -28,12 +30,12 @@ pub(super) const LIGHT: [u16; 256] = {
     table
 };
 
-/// 4.60 by 4.60.
+/// Multiplies two numbers in 4.60.
 const fn product(a: u128, b: u128) -> u128 {
     (a * b) >> 60
 }
 
-/// The root of a number in 0.60, cut to 32 bits: by bisection, in constants only.
+/// Computes the fifth root of a number in 0.60, cut to 32 bits. It works by bisection, and is used in constants only.
 const fn fifth_root(x: u128) -> u128 {
     let mut root = 0;
     let mut bit = 1 << 60;
@@ -51,11 +53,11 @@ const fn fifth_root(x: u128) -> u128 {
 /// Thresholds at (x mod 8, y mod 8), row by row.
 pub(super) type Matrix = [[u8; 8]; 8];
 
-/// The place of (x, y) in the order in which a cell of 2^`bits` pixels to the side is filled.
+/// Returns the rank of pixel (x, y): its place in the order in which a cell of 2^`bits` by 2^`bits` pixels is filled.
 ///
 /// # Source
-/// Bayer 1973, "An optimum method for two-level rendition of continuous-tone pictures": bits of x ^ y and y, interleaved,
-/// the lowest first.
+/// Bayer 1973, "An optimum method for two-level rendition of continuous-tone pictures": the bits of x ^ y and of y are
+/// interleaved, the lowest bits first.
 pub(super) const fn bayer(x: usize, y: usize, bits: u32) -> u8 {
     let mut rank = 0;
     let mut bit = 0;
@@ -66,7 +68,7 @@ pub(super) const fn bayer(x: usize, y: usize, bits: u32) -> u8 {
     rank as u8
 }
 
-/// Thresholds in 1/128, those of all places evenly spaced and as far from 0 as from 1.
+/// Makes thresholds in 1/128. All thresholds of a cell are evenly spaced, and as far from 0 as from 1.
 const fn thresholds(bits: u32) -> Matrix {
     let mut matrix = [[0; 8]; 8];
     let mut k = 0;
@@ -79,8 +81,8 @@ const fn thresholds(bits: u32) -> Matrix {
     matrix
 }
 
-/// One less than the least greys whose light reaches the thresholds: those above become white.
-const fn greys(thresholds: &Matrix) -> Matrix {
+/// Makes the largest greys that stay black: those whose light is below the threshold. Greys above them become white.
+const fn light_limits(thresholds: &Matrix) -> Matrix {
     let mut matrix = [[0; 8]; 8];
     let mut k = 0;
     while k < 64 {
@@ -94,8 +96,8 @@ const fn greys(thresholds: &Matrix) -> Matrix {
     matrix
 }
 
-/// One less than the least greys that reach the thresholds as numbers.
-const fn numbers(thresholds: &Matrix) -> Matrix {
+/// Makes the largest greys that stay black if a grey is compared with the threshold as a number, not by its light.
+const fn value_limits(thresholds: &Matrix) -> Matrix {
     let mut matrix = [[0; 8]; 8];
     let mut k = 0;
     while k < 64 {
@@ -105,7 +107,8 @@ const fn numbers(thresholds: &Matrix) -> Matrix {
     matrix
 }
 
-/// What is to be added to a grey in 1/128 of a level so that cutting compares it with the thresholds.
+/// Makes the addends 1 - threshold, in 1/128 of a level. A grey plus the addend, cut to whole levels, is one level
+/// higher exactly if the grey's fraction reaches the threshold.
 const fn addends(thresholds: &Matrix) -> Matrix {
     let mut matrix = [[0; 8]; 8];
     let mut k = 0;
@@ -119,17 +122,17 @@ const fn addends(thresholds: &Matrix) -> Matrix {
 const THRESHOLDS_4: Matrix = thresholds(2);
 const THRESHOLDS_8: Matrix = thresholds(3);
 
-static GREYS_4: Matrix = greys(&THRESHOLDS_4);
-static GREYS_8: Matrix = greys(&THRESHOLDS_8);
-static NUMBERS_4: Matrix = numbers(&THRESHOLDS_4);
-static NUMBERS_8: Matrix = numbers(&THRESHOLDS_8);
+static LIGHT_LIMITS_4: Matrix = light_limits(&THRESHOLDS_4);
+static LIGHT_LIMITS_8: Matrix = light_limits(&THRESHOLDS_8);
+static VALUE_LIMITS_4: Matrix = value_limits(&THRESHOLDS_4);
+static VALUE_LIMITS_8: Matrix = value_limits(&THRESHOLDS_8);
 static ADDENDS_4: Matrix = addends(&THRESHOLDS_4);
 static ADDENDS_8: Matrix = addends(&THRESHOLDS_8);
 
-/// Greys in 1/128 of a level.
+/// Table of all 256 greys, in 1/128 of a level.
 pub type Tones = [u16; 256];
 
-/// For `max` + 1 levels that are sRGB greys themselves.
+/// Makes the tones for `max` + 1 levels that are sRGB greys themselves.
 const fn srgb_tones(max: usize) -> Tones {
     let mut tones = [0; 256];
     let mut v = 0;
@@ -146,7 +149,7 @@ const fn srgb_tones(max: usize) -> Tones {
     tones
 }
 
-/// For `max` + 1 levels whose light is evenly spaced.
+/// Makes the tones for `max` + 1 levels whose light is evenly spaced.
 const fn linear_tones(max: u32) -> Tones {
     let mut tones = [0; 256];
     let mut v = 0;
@@ -162,12 +165,12 @@ static GRAY2_LINEAR: Tones = linear_tones(3);
 static GRAY4_TONES: Tones = srgb_tones(15);
 static GRAY4_LINEAR: Tones = linear_tones(15);
 
-/// A colour of few levels of grey: `BinaryColor`, `Gray2` and `Gray4` of embedded-graphics.
+/// A colour that is one of a few levels of grey: `BinaryColor`, `Gray2` and `Gray4` of embedded-graphics.
 pub trait Levels: PixelColor {
-    /// Bits of a pixel: 1, 2 or 4.
+    /// Bits per pixel: 1, 2 or 4.
     const BITS: u32;
 
-    /// How a grey is found between the levels.
+    /// Table that places a grey between two levels; `()` if there are only two levels.
     type Tones: Copy + core::fmt::Debug;
 
     /// [`Dither::NEAREST`].
@@ -177,24 +180,24 @@ pub trait Levels: PixelColor {
     /// [`Dither::BAYER_8`].
     const BAYER_8: Dither<Self>;
 
-    /// The level, below 2^`BITS`, of a grey at a place with this entry in the matrix.
+    /// Returns the level, below 2^`BITS`, of a grey at a pixel for which the matrix holds `entry`.
     fn level(tones: Self::Tones, entry: u32, grey: u8) -> u8;
 
-    /// The colour of a level.
+    /// Returns the colour of a level.
     fn from_level(level: u8) -> Self;
 }
 
-/// White and black: greys above their entry become white.
+/// Black and white. An entry of the matrix is the largest grey that stays black at its pixel.
 impl Levels for BinaryColor {
     const BITS: u32 = 1;
     type Tones = ();
     const NEAREST: Dither<Self> = Dither { matrix: &[[127; 8]; 8], tones: () };
-    const BAYER_4: Dither<Self> = Dither { matrix: &GREYS_4, tones: () };
-    const BAYER_8: Dither<Self> = Dither { matrix: &GREYS_8, tones: () };
+    const BAYER_4: Dither<Self> = Dither { matrix: &LIGHT_LIMITS_4, tones: () };
+    const BAYER_8: Dither<Self> = Dither { matrix: &LIGHT_LIMITS_8, tones: () };
 
     #[inline(always)]
     fn level((): (), entry: u32, grey: u8) -> u8 {
-        // The sign of the difference: a comparison would have to be turned into a number.
+        // The sign of the difference is the level. A comparison would have to be turned into a number first.
         (entry.wrapping_sub(u32::from(grey)) >> 31) as u8
     }
 
@@ -205,7 +208,7 @@ impl Levels for BinaryColor {
 
 macro_rules! grey_levels {
     ($color:ident, $bits:literal, $tones:ident, $linear:ident) => {
-        /// Entries are added to a grey in 1/128 of a level.
+        /// Levels of grey. An entry of the matrix is added to a grey, both in 1/128 of a level, and the sum is cut.
         impl Levels for $color {
             const BITS: u32 = $bits;
             type Tones = &'static Tones;
@@ -224,8 +227,8 @@ macro_rules! grey_levels {
         }
 
         impl Dither<$color> {
-            /// For a panel whose light grows evenly with its levels, as some controllers do unless they are told a curve.
-            /// Otherwise levels count as greys in sRGB, evenly spaced to the eye.
+            /// Returns this dithering for a panel whose light grows evenly with its levels, as with some controllers
+            /// that have no gamma curve set. Otherwise levels count as sRGB greys, which are evenly spaced to the eye.
             pub const fn on_linear_panel(self) -> Self {
                 Self { tones: &$linear, ..self }
             }
@@ -236,17 +239,18 @@ macro_rules! grey_levels {
 grey_levels!(Gray2, 2, GRAY2_TONES, GRAY2_LINEAR);
 grey_levels!(Gray4, 4, GRAY4_TONES, GRAY4_LINEAR);
 
-/// How greys become the levels of `C`: `BinaryColor`, `Gray2` or `Gray4`.
+/// Conversion of greys to the levels of `C`: `BinaryColor`, `Gray2` or `Gray4`.
 ///
-/// The mean light of a cell is that of the grey, up to a part of the step between the two levels that the grey lies between:
+/// A grey lies between two levels. The mean light of a cell is that of the grey, up to an error, which is at most this
+/// part of the light between the two levels:
 ///
 /// | levels | cells of 8×8 pixels | cells of 4×4 pixels |
 /// |---|---|---|
 /// | 2 | 1/128 | 1/32 |
 /// | 4 or 16 | 1/76 | 1/28 |
 ///
-/// The first row is half of the step from one threshold to the next. Greys between more than two levels are also rounded to
-/// 1/128 of a step. Black and white stay what they are.
+/// The first row is half of the distance from one threshold to the next. For more than two levels, greys between two
+/// levels are also rounded to 1/128 of the distance between them. Black and white stay exact.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::BinaryColor;
@@ -265,36 +269,38 @@ pub struct Dither<C: Levels> {
 }
 
 impl Dither<BinaryColor> {
-    /// [`BAYER_4`](Self::BAYER_4) that mixes numbers instead of light: mid-tones become brighter than they should be, which
-    /// suits dark scenes, and panels whose black dots run into each other.
-    pub const BRIGHT_4: Self = Self { matrix: &NUMBERS_4, tones: () };
-    /// [`BAYER_8`](Self::BAYER_8) that mixes numbers instead of light.
-    pub const BRIGHT_8: Self = Self { matrix: &NUMBERS_8, tones: () };
+    /// [`BAYER_4`](Self::BAYER_4), but mixing numbers instead of light. Mid-tones become brighter than they should be.
+    /// This suits dark scenes, and panels whose black dots run into each other.
+    pub const BRIGHT_4: Self = Self { matrix: &VALUE_LIMITS_4, tones: () };
+    /// [`BAYER_8`](Self::BAYER_8), but mixing numbers instead of light; see [`BRIGHT_4`](Self::BRIGHT_4).
+    pub const BRIGHT_8: Self = Self { matrix: &VALUE_LIMITS_8, tones: () };
 }
 
 impl<C: Levels> Dither<C> {
-    /// No dithering: white from 128 on, or the level that is nearest in light.
+    /// No dithering: greys from 128 on become white; of more than two levels, the nearest in light is taken.
     pub const NEAREST: Self = C::NEAREST;
     /// Cells of 4×4 pixels: 16 steps between two levels, in a fine pattern.
     pub const BAYER_4: Self = C::BAYER_4;
     /// Cells of 8×8 pixels: 64 steps between two levels.
     pub const BAYER_8: Self = C::BAYER_8;
 
-    /// The level of a grey at a pixel of the screen.
+    /// Returns the level of a grey at a pixel of the screen.
     #[inline]
     pub fn level(&self, grey: u8, (x, y): (i32, i32)) -> u8 {
         C::level(self.tones, self.row(y)[(x & 7) as usize], grey)
     }
 
-    /// The entries of row `y` of the screen, hidden from the compiler: knowing that they are bytes it would see comparisons,
-    /// which small cores pay for with branches.
+    /// Returns the matrix entries of row `y` of the screen.
+    ///
+    /// They are hidden from the compiler: if it knew that they are bytes, it would use comparisons, which cost branches
+    /// on small cores.
     #[inline(always)]
     pub(crate) fn row(&self, y: i32) -> [u32; 8] {
         let [a, b, c, d, e, f, g, h] = self.matrix[(y & 7) as usize];
         core::hint::black_box([a.into(), b.into(), c.into(), d.into(), e.into(), f.into(), g.into(), h.into()])
     }
 
-    /// The colour of a grey at a pixel of the screen.
+    /// Returns the colour of a grey at a pixel of the screen.
     #[inline]
     pub fn color(&self, grey: u8, position: (i32, i32)) -> C {
         C::from_level(self.level(grey, position))
@@ -306,7 +312,7 @@ mod tests {
     use super::*;
     use std::string::String;
 
-    /// Light of a grey, 1 for white.
+    /// Returns the light of a grey; white has 1.
     fn light(grey: f64) -> f64 {
         let c = grey / 255.0;
         if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
@@ -320,8 +326,8 @@ mod tests {
         }
     }
 
-    /// Returns the largest difference between the mean light of the 64 places of a cell and that of the grey, over all greys, in
-    /// parts of the step between the two levels that the grey lies between. `levels` has the light of each level.
+    /// Returns the largest error, over all greys, of the mean light of a cell of 64 pixels. The unit is the light
+    /// between the two levels around the grey; `levels` holds the light of each level.
     fn worst<C: Levels, const N: usize>(dither: Dither<C>, levels: [f64; N]) -> f64 {
         let error = |grey: u8| {
             let asked = light(f64::from(grey));
@@ -356,7 +362,7 @@ mod tests {
         let (eight, four) = (largest(&cells_of_8), largest(&cells_of_4));
         assert!(black_and_white[0] <= 1.0 / 128.0 && black_and_white[1] <= 1.0 / 32.0, "{black_and_white:?}");
         assert!(eight <= 1.0 / 76.0 && four <= 1.0 / 28.0, "{cells_of_8:?} {cells_of_4:?}");
-        // The bounds say no more than is needed.
+        // The bounds are tight.
         assert!(black_and_white[0] > 1.0 / 130.0 && black_and_white[1] > 1.0 / 33.0, "{black_and_white:?}");
         assert!(eight > 1.0 / 77.0 && four > 1.0 / 29.0, "{cells_of_8:?} {cells_of_4:?}");
     }

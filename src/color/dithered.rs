@@ -1,11 +1,11 @@
-//! Pixel formats that are dithered while they are packed.
+//! Pixel formats that dither a colour while they pack it.
 
 use super::dither::bayer;
 use super::format::PixelFormat;
 use super::packed::dither_word;
 use core::marker::PhantomData;
 
-/// Addends of eight rows and twice eight columns, so that eight of them are together from any column on.
+/// Addends of an 8×8 matrix. Each row is repeated once, so that the eight addends from any column on are contiguous.
 pub type DitherWords = [[u32; 16]; 8];
 
 const fn words(bits: [u32; 3]) -> DitherWords {
@@ -21,17 +21,20 @@ const fn words(bits: [u32; 3]) -> DitherWords {
 pub(super) static WORDS_565: DitherWords = words([5, 6, 5]);
 pub(super) static WORDS_332: DitherWords = words([3, 3, 2]);
 
-/// A format that [`Dithered`] can be put around.
+/// A pixel format that [`Dithered`] can wrap.
 pub trait Ditherable: PixelFormat {
-    /// Bits of red, green and blue, up to 6.
+    /// Bits of red, green and blue that the format keeps, at most 6 each.
     const BITS: [u32; 3];
 
-    /// Addends for these bits.
+    /// Addends for [`BITS`](Self::BITS).
     const WORDS: &'static DitherWords;
 }
 
-/// A format whose pixels are dithered, by a matrix of 8×8 places of the screen, when a shader packs a colour: 16-bit pixels
-/// without the bands that their 32 levels leave on a smooth surface, or 8-bit ones that look like more.
+/// Wraps a pixel format so that a colour is dithered when a shader packs it, by a matrix of 8×8 pixels that is fixed to
+/// the screen.
+///
+/// 16-bit pixels lose the bands that 32 levels per channel leave on a smooth surface. 8-bit pixels look as if they had
+/// more levels.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb565;

@@ -1,4 +1,4 @@
-//! Fills with one value.
+//! Fills of pixels with one value.
 //!
 //! The plain loop:
 //!
@@ -6,23 +6,26 @@
 //! for each pixel:
 //!     pixel = value
 //! ```
-//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. W1 is a quad that fills the
-//! screen, in instructions per pixel.
+//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. Gains are
+//! instructions per pixel of W1, a quad that fills the screen.
 //!
-//! 1. **Whole words**, of two or four pixels, four words at a time and out of line: W1 2.5 → 2.0 and 2.8 → 1.3.
-//! 2. **Four words by one instruction**, from registers whose numbers ascend: W1 1.85 → 1.78 and 1.24 → 1.17, clearing 1.39 → 0.89 and
-//!    0.88 → 0.63 per pixel.
-//! 3. **Values handed over as arguments**, which are in such registers from the start; eight words at a time on larger cores, with
-//!    an overlapping first store in place of a tail: W1 1.53 → 1.34 and 0.96 → 0.82.
-//! 4. **Five words at a time** on small cores for whole buffers, which have no rows to divide by four.
+//! 1. **Whole words** of two or four pixels are stored, four words at a time and out of line: W1 2.5 → 2.0 and 2.8 →
+//!    1.3.
+//! 2. **One instruction stores four words**, from registers with ascending numbers: W1 1.85 → 1.78 and 1.24 → 1.17,
+//!    clearing 1.39 → 0.89 and 0.88 → 0.63 per pixel.
+//! 3. **Values are handed over as arguments**, which are in such registers from the start. On larger cores eight words
+//!    are stored at a time, and an overlapping first store takes the place of a tail: W1 1.53 → 1.34 and 0.96 → 0.82.
+//! 4. **Small cores store five words at a time** in whole buffers. Four words suit rows, whose widths are often multiples
+//!    of four words; a whole buffer is one long stretch.
 
 use crate::math::SMALL_CORE;
 use bytemuck::Pod;
 
-/// Halves of words below which words do not pay: so many hold 8 whole words, wherever they begin.
+/// Least number of half words for which stores of whole words pay: 17 half words hold 8 whole words, wherever they
+/// begin.
 const SHORT: usize = 17;
 
-/// Sets all pixels to `value`: like `slice::fill`, which the compiler leaves a loop of single pixels.
+/// Sets all pixels to `value`. Does as `slice::fill`, which the compiler would leave a loop over single pixels.
 #[inline]
 pub fn fill<R: Pod>(pixels: &mut [R], value: R) {
     match size_of::<R>() {
@@ -40,7 +43,7 @@ pub fn fill<R: Pod>(pixels: &mut [R], value: R) {
     }
 }
 
-/// [`fill`], out of line: for whole buffers.
+/// Sets all pixels of a whole buffer to `value`, out of line.
 #[inline(never)]
 pub fn clear<R: Pod>(pixels: &mut [R], value: R) {
     if SMALL_CORE && size_of::<R>() == 2 {
@@ -50,13 +53,14 @@ pub fn clear<R: Pod>(pixels: &mut [R], value: R) {
     }
 }
 
-/// [`clear`], five words at once.
+/// Does as [`clear`] on small cores, five words at a time.
 #[inline(always)]
 fn clear_by_fives<R: Pod>(pixels: &mut [R], value: R) {
     let [first, ..] = &mut *pixels else { return };
     *first = value;
     let (_, words, _) = bytemuck::pod_align_to_mut::<R, u32>(pixels);
-    // A fifth, rounded down, of what such a core may have; of more, less.
+    // A fifth of the number of words, rounded down. That is exact for 65,535 words, more than the RAM of such a core
+    // holds. In a longer buffer fewer words are stored by fives, and the loop over pixels at the end does the rest.
     let fives = ((words.len() & 0xFFFF) * 0xCCCD) >> 18;
     let Some(words) = words.get_mut(..5 * fives) else { return };
     let Ok(blocks) = bytemuck::try_cast_slice_mut(words) else { return };
@@ -67,7 +71,7 @@ fn clear_by_fives<R: Pod>(pixels: &mut [R], value: R) {
     }
 }
 
-/// Sets all halves of words.
+/// Sets both half words of all words to `half`.
 pub fn clear_words(words: &mut [u32], half: u16) {
     clear(bytemuck::cast_slice_mut::<u32, u16>(words), half);
 }
@@ -83,17 +87,17 @@ fn half_word<R: Pod>(value: R) -> u16 {
     }
 }
 
-/// Sets all of at least [`SHORT`] halves by a word of two.
+/// Sets at least [`SHORT`] half words; `word` holds the value twice.
 #[inline(always)]
 fn fill_halves(halves: &mut [u16], word: u32) {
     if SMALL_CORE { by_fours(word, word, word, halves) } else { by_eights(word, word, word, word, halves) }
 }
 
-/// Stores a word, given three times, four times at once.
+/// Stores the value of `a`, `b` and `c`, which are equal, four words at a time.
 ///
-/// Out of line: a compiler that sees how the word was made stores its halves one by one. It does not see either that all are the
-/// same, and keeps each in a register of its own, of which one instruction stores four if their numbers ascend: arguments come
-/// first, and in order.
+/// Out of line, because a compiler that sees how the word was made stores its halves one by one. And because it cannot
+/// see that the arguments are equal, it keeps each in a register of its own. One instruction stores four registers if
+/// their numbers ascend: arguments come first, and in order.
 #[inline(never)]
 fn by_fours(a: u32, b: u32, c: u32, halves: &mut [u16]) {
     let [first, .., last] = &mut *halves else { return };
@@ -110,7 +114,7 @@ fn by_fours(a: u32, b: u32, c: u32, halves: &mut [u16]) {
     }
 }
 
-/// Does as [`by_fours`] with one more word, for long stretches.
+/// Does as [`by_fours`] with five words at a time, for long stretches.
 #[inline(never)]
 fn by_fives(a: u32, b: u32, c: u32, d: u32, blocks: &mut [[u32; 5]]) {
     let block = [a, b, c, d, a | b];
@@ -119,7 +123,8 @@ fn by_fives(a: u32, b: u32, c: u32, d: u32, blocks: &mut [[u32; 5]]) {
     }
 }
 
-/// Does as [`by_fours`] for larger cores, with eight words. The first eight overlap others, so that no rest is left.
+/// Does as [`by_fours`] with eight words at a time, for larger cores. The first store overlaps the second one, so that
+/// no words are left over at the end.
 #[inline(never)]
 fn by_eights(a: u32, b: u32, c: u32, d: u32, halves: &mut [u16]) {
     let [first, .., last] = &mut *halves else { return };
@@ -150,7 +155,7 @@ mod tests {
                 fill(&mut halves[start..end], 0xABCD);
                 assert!(is_filled(&halves), "{start}..{end}");
                 if end - start >= SHORT {
-                    // The other core's.
+                    // The routine of the other kind of core is tested as well.
                     let mut halves = [1_u16; 100];
                     let word = 0xABCD_ABCD;
                     by_fours(word, word, word, &mut halves[start..end]);

@@ -1,4 +1,4 @@
-//! The pixel formats.
+//! The pixel formats of the crate.
 
 use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
 use super::format::PixelFormat;
@@ -11,18 +11,19 @@ use embedded_graphics_core::pixelcolor::{
     Bgr565, Bgr888, Gray8, GrayColor, IntoStorage, Rgb565, Rgb666, Rgb888, RgbColor,
 };
 
-/// Bits of green.
+/// Bits of green in RGB565.
 const GREEN: u32 = 0x7E0;
 
-/// The mask that [`rgb565_from_packed`] wants at hand. It is hidden from the compiler, which would make it anew for each
-/// pixel, or rather have two of them.
+/// Returns the mask that [`rgb565_from_packed`] expects. It is hidden from the compiler, which would otherwise make the
+/// constant anew for each pixel, or keep two constants.
 #[inline(always)]
 fn packed_mask() -> u32 {
     core::hint::black_box(if SMALL_CORE { GREEN } else { !GREEN & 0xFFFF })
 }
 
-/// Packs RGB565 from channels in one word: red and blue lie as far apart there as here; green is exchanged for what lies
-/// between them. Where registers are few, that takes one mask and no other constant.
+/// Packs RGB565 from channels in one word. Red and blue are as far apart in the word as in the pixel, so both are moved
+/// by one shift. The bits between them are then replaced by green. On cores with few registers, that takes one mask and
+/// no other constant.
 #[inline(always)]
 const fn rgb565_from_packed(word: u32, mask: u32) -> u16 {
     let red_blue = word >> 16;
@@ -33,32 +34,33 @@ const fn rgb565_from_packed(word: u32, mask: u32) -> u16 {
     }
 }
 
-/// RGB565 with red and blue exchanged.
+/// Packs red, green, blue as BGR565.
 #[inline(always)]
 const fn bgr565(rgb: [u8; 3]) -> u16 {
     pack_rgb565(reversed(rgb))
 }
 
-/// Red, green and blue of a pixel of BGR565.
+/// Unpacks red, green and blue of BGR565 to 8 bits each.
 #[inline(always)]
 const fn from_bgr565(raw: u16) -> [u8; 3] {
     reversed(unpack_rgb565(raw))
 }
 
-/// [`rgb565_from_packed`] with red and blue exchanged.
+/// Packs BGR565 from channels in one word.
 #[inline(always)]
 const fn bgr565_from_packed(word: u32, _: u32) -> u16 {
     (word >> 27 | word >> 16 << 11 | word << 1 & GREEN) as u16
 }
 
-/// BGR565 from RGB565.
+/// Converts RGB565 to BGR565, or back, by exchanging red and blue.
 #[inline(always)]
 const fn exchanged(raw: u16) -> u16 {
     raw >> 11 | raw & 0x7E0 | raw << 11
 }
 
-/// A format of 16 bits: its colour, its functions from and to 8 bits a channel, from packed channels and from RGB565, and how the 16 bits
-/// come into memory, and back.
+/// Implements a format of 16 bits. Arguments: its type; its embedded-graphics colour; its functions to pack 8 bits per
+/// channel, to unpack them, to pack from channels in one word, and to convert from RGB565; and the functions that put
+/// the 16 bits into memory order and take them back.
 macro_rules! sixteen_bits {
     ($(#[$doc:meta])* $format:ty, $color:ty, ($pack:path, $unpack:path, $packed:path, $rgb:path), $store:path, $load:path) => {
         $(#[$doc])*
@@ -128,7 +130,7 @@ sixteen_bits!(
     identity
 );
 sixteen_bits!(
-    /// 16-bit pixels with blue on top, in the processor's byte order.
+    /// 16-bit pixels with blue in the upper bits, in the processor's byte order.
     Bgr565,
     Bgr565,
     (bgr565, from_bgr565, bgr565_from_packed, exchanged),
@@ -136,8 +138,8 @@ sixteen_bits!(
     identity
 );
 
-/// RGB565 with the high byte first in memory: what displays expect on their SPI bus, so that
-/// [`StripPixels::bytes`](crate::target::StripPixels::bytes) goes out as it is.
+/// RGB565 with the high byte first in memory. That is what displays expect on their SPI bus, so that
+/// [`StripPixels::bytes`](crate::target::StripPixels::bytes) can be sent as it is.
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb565Be;
 
@@ -149,8 +151,8 @@ pub struct Bgr565Be;
 
 sixteen_bits!(Bgr565Be, Bgr565, (bgr565, from_bgr565, bgr565_from_packed, exchanged), u16::to_be, u16::from_be);
 
-/// 8-bit pixels: 3 bits of red, 3 of green, 2 of blue, as displays with 256 colours take them. embedded-graphics has no such
-/// colour: [`Rgb888`] stands in.
+/// 8-bit pixels: 3 bits of red, 3 of green, 2 of blue, as displays with 256 colours take them. embedded-graphics has no
+/// such colour, so [`Rgb888`] stands in for it.
 #[derive(Clone, Copy, Debug)]
 pub struct Rgb332;
 
@@ -185,14 +187,14 @@ impl Ditherable for Rgb332 {
     const BITS: [u32; 3] = [3, 3, 2];
 }
 
-/// Blue, green, red, or back.
+/// Exchanges the first and the last channel.
 #[inline(always)]
 const fn reversed([r, g, b]: [u8; 3]) -> [u8; 3] {
     [b, g, r]
 }
 
-/// A format of three bytes: its colour, which has so many bits a channel, and what brings red, green and blue into its order,
-/// and back.
+/// Implements a format of three bytes. Arguments: its embedded-graphics colour; the bits per channel of that colour;
+/// and the function that brings red, green and blue into the order of the bytes, which is its own inverse.
 macro_rules! three_bytes {
     ($(#[$doc:meta])* $color:ident, $bits:literal, $order:path) => {
         $(#[$doc])*
@@ -237,13 +239,13 @@ three_bytes!(
     reversed
 );
 three_bytes!(
-    /// 18-bit pixels in three bytes, red, green, blue, each in the upper six bits: as displays take them on an SPI bus.
+    /// 18-bit pixels in three bytes: red, green, blue, each in the upper six bits, as displays take them on an SPI bus.
     Rgb666,
     6,
     identity
 );
 
-/// 8-bit grey: the luma of the colour by the weights of BT.601.
+/// 8-bit grey: the luma of the colour with the weights of BT.601.
 impl PixelFormat for Gray8 {
     type Raw = u8;
     type Color = Gray8;
@@ -283,7 +285,8 @@ impl PixelFormat for Gray8 {
 mod tests {
     use super::*;
 
-    /// Packing what was unpacked leads back, black is 0 and white 255, and embedded-graphics' colours convert alike.
+    /// Checks that packing leads back to what was unpacked, that black is 0 and white 255, and that embedded-graphics'
+    /// colours convert to the same channels.
     fn check<P: PixelFormat<Raw: PartialEq + core::fmt::Debug>>(
         raws: impl Iterator<Item = P::Raw>,
         rgb888: impl Fn(P::Color) -> Rgb888,

@@ -1,4 +1,5 @@
-//! Pixels: formats of colours, packed channels, ordered dither, fills.
+//! Pixels: formats of colours, packed channels, ordered dither, fills. A program meets a [`PixelFormat`] first, as the
+//! type parameter of its renderer.
 
 mod channels;
 mod dither;

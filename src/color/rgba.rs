@@ -1,10 +1,13 @@
-//! Colours with an opacity: what a shader hands to blending.
+//! Colours with an opacity, which a shader hands to blending.
 
 use super::format::{PixelFormat, mix};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 
-/// Red, green, blue and alpha (255 = opaque), 8 bits each: the format in which a shader is asked for colours that are then
-/// blended. Every shader for all formats is one for this one, and opaque; implement `Shader<Rgba8888>` to give alpha.
+/// Red, green, blue and alpha (255 is opaque), 8 bits each. A shader is asked for colours in this format when they are
+/// to be blended with the pixels that are there.
+///
+/// A shader that is written for all formats serves this format too, and is opaque. To give alpha, implement
+/// `Shader<Rgba8888>`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Rgba8888;
 
@@ -29,7 +32,7 @@ impl PixelFormat for Rgba8888 {
         rgba
     }
 
-    /// Alpha is that of `a`.
+    /// Mixes red, green and blue; alpha is that of `a`.
     #[inline(always)]
     fn mix(a: [u8; 4], b: [u8; 4], weight: u32) -> [u8; 4] {
         let [r, g, b] = mix(Self::unpack(a), Self::unpack(b), weight);

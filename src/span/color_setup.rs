@@ -1,26 +1,28 @@
-//! Set-up of triangles whose varyings are colours, for each kind of pixel format.
+//! Set-up of triangles whose varyings are colours, once per triangle, for each kind of pixel format.
 
 use super::span::TriangleSetup;
 use crate::color::{PixelFormat, pack, spread_step};
 use core::sync::atomic::{Ordering, compiler_fence};
 
-/// Pixels that a word of channels is stepped over until its rounding is made up for.
+/// Number of pixels over which a word of channels is stepped before its rounding is corrected.
 pub(super) const GROUP: usize = 4;
 
 /// Data of a triangle whose varyings are colours: three channels in 8.16, squeezed to 0.5..=254.5.
 ///
-/// Made by the shaders of this crate for their own spans; each format uses a part of it.
+/// The shaders of this crate compute it for their own spans. Each kind of pixel format uses a part of it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct ColorSetup {
-    /// [`PixelFormat::packed_mask`], at hand.
+    /// The mask of [`PixelFormat::packed_mask`], computed once.
     pub(super) mask: u32,
-    /// Step of a word of channels from pixel to pixel; for greys, that of their luma.
+    /// Change of a word of channels from pixel to pixel; in formats of greys, the change of luma.
     pub(super) step: u32,
-    /// Leads from the end of a group to the first pixel of the next one: within eight pixels, and in the middle of a run.
+    /// Word that is added after a group of four pixels, within eight pixels of a run: it corrects the rounding of their
+    /// steps.
     pub(super) correction: u32,
+    /// Word that is added in the middle of a run, after eight pixels, in place of `correction`.
     pub(super) middle: u32,
-    /// The channels at the screen's origin, moved so that cutting them rounds, and so that the errors of stepping cancel in the
-    /// middle of a run.
+    /// The channels at the screen's origin. They are moved so that cutting them rounds, and so that the errors of the
+    /// steps cancel in the middle of a run.
     pub(super) at_origin: [i32; 3],
 }
 
@@ -37,7 +39,7 @@ impl ColorSetup {
         }
     }
 
-    /// Sets up spans of one colour.
+    /// Creates the data of spans of one colour.
     #[inline]
     pub(super) fn constant<P: PixelFormat>(rgb: [i32; 3]) -> Self {
         Self { at_origin: rgb, step: 0, correction: 0, middle: 0, mask: P::packed_mask() }
@@ -45,7 +47,7 @@ impl ColorSetup {
 
     #[inline(always)]
     fn packed<P: PixelFormat>(rgb: &[i32; 3], d_dx: &[i32; 3]) -> Self {
-        // Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+        // Without a loop: at `opt-level = "s"` it would stay a loop, and go through memory.
         let ([mut r, mut g, mut b], [dr, dg, db]) = (*rgb, *d_dx);
         let [r_one, r_four, r_eight] = round_steps::<P>(0, &mut r, dr);
         let [b_one, b_four, b_eight] = round_steps::<P>(2, &mut b, db);
@@ -58,7 +60,8 @@ impl ColorSetup {
     }
 }
 
-/// Moves a channel, and returns its changes over one pixel, four and eight, rounded to units of the word.
+/// Returns the changes of a channel over one, four and eight pixels, rounded to units of the word. Moves `value` as
+/// [`ColorSetup::at_origin`] describes.
 #[inline(always)]
 fn round_steps<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i32; 3] {
     let step = spread_step(P::DITHER, channel, step);
@@ -70,16 +73,16 @@ fn round_steps<P: PixelFormat>(channel: usize, value: &mut i32, step: i32) -> [i
     let kept = (one + one + one + four + eight) << bits;
     let lost = step.wrapping_mul(15).wrapping_sub(kept);
     *value = value.wrapping_add(half + (lost >> 1));
-    // Channel by channel: all at once would need more registers than there are.
+    // Channel by channel: all three at once would need more registers than there are.
     compiler_fence(Ordering::SeqCst);
     [one, four, eight]
 }
 
-/// Luma of three channels as Gouraud shading squeezes them, or of their changes, modulo 2³².
+/// Computes the luma of three channels that Gouraud shading has squeezed, or of their changes, modulo 2³².
 ///
 /// # Format
-/// 8.16 to 8.24, with a half that rounds: channels are (c + 1/2) 255 / 256, and the weights add up to 257, which makes
-/// (c + 1/2) (1 - 2⁻¹⁶) of a grey: c when it is cut.
+/// From 8.16 to 8.24, including the half that rounds. Channels are (c + 1/2) 255 / 256, and the weights add up to 257 /
+/// 256. For a grey the sum is (c + 1/2) (1 - 2⁻¹⁶), which is c when it is cut.
 #[inline(always)]
 pub(super) const fn weighted([r, g, b]: [i32; 3]) -> u32 {
     let sum = r.wrapping_mul(77).wrapping_add(g.wrapping_mul(151)).wrapping_add(b.wrapping_mul(29));

@@ -1,4 +1,4 @@
-//! The depth test, and the loops that test the depths of a run in front of its colours.
+//! The depth test, and the loops that test the depths of a run before its pixels are coloured.
 //!
 //! The plain loop:
 //!
@@ -10,33 +10,34 @@
 //! ```
 //! The departures from it:
 //!
-//! 1. **Unrolled by hand**, 16 times or by 8, 4, 2 and 1: at `opt-level = "s"` a loop stays a loop, and its counter takes a register
-//!    and three instructions per pixel.
-//! 2. **Out of line on small cores**, where the registers are its own. What tests and colours in one loop keeps a part of its values
-//!    on the stack there: two passes took W2, a Gouraud quad, from 25.4 to 19.3 instructions per pixel.
+//! 1. **Unrolled by hand**, 16 times or by 8, 4, 2 and 1: at `opt-level = "s"` a loop stays a loop, and its counter
+//!    takes a register and three instructions per pixel.
+//! 2. **Out of line on small cores**, so that the loop has all registers for itself. A loop that tests and colours at
+//!    once keeps some of its values on the stack there. Two passes took W2, a Gouraud quad, from 25.4 to 19.3
+//!    instructions per pixel.
 
 use crate::math::SMALL_CORE;
 
-/// Comparison of a fragment's depth with the stored one that lets it be drawn.
+/// Comparison of a fragment's depth with the stored depth. A fragment that passes is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Compare {
     /// Nothing passes.
     Never,
-    /// Nearer passes.
+    /// Nearer fragments pass.
     #[default]
     Less,
-    /// The same depth passes.
+    /// Fragments of equal depth pass.
     Equal,
-    /// Nearer or the same passes.
+    /// Nearer fragments and those of equal depth pass.
     LessEqual,
-    /// Farther passes.
+    /// Farther fragments pass.
     Greater,
-    /// Any other depth passes.
+    /// Fragments of any other depth pass.
     NotEqual,
-    /// Farther or the same passes.
+    /// Farther fragments and those of equal depth pass.
     GreaterEqual,
-    /// Everything passes.
+    /// Every fragment passes.
     Always,
 }
 
@@ -44,18 +45,18 @@ pub enum Compare {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct DepthState {
-    /// The test.
+    /// Comparison that a fragment has to pass.
     pub compare: Compare,
-    /// A fragment that passes leaves its depth.
+    /// Set if a fragment that passes stores its depth.
     pub write: bool,
 }
 
 impl DepthState {
-    /// Nearer fragments pass and leave their depth.
+    /// Nearer fragments pass and store their depth.
     pub const LESS: Self = Self { compare: Compare::Less, write: true };
-    /// Nearer fragments pass and leave depth as it is: for transparent things.
+    /// Nearer fragments pass and leave the stored depth as it is: for transparent things.
     pub const TEST: Self = Self { compare: Compare::Less, write: false };
-    /// Depth is neither tested nor written: the painter's way.
+    /// Depth is neither tested nor stored: later draws cover earlier ones.
     pub const OFF: Self = Self { compare: Compare::Always, write: false };
 }
 
@@ -65,33 +66,33 @@ impl Default for DepthState {
     }
 }
 
-/// Stored depths as the pixel loops see them. Depth tests implement it, and nothing else can.
+/// Stored depths as the pixel loops see them. The depth tests implement this trait, and nothing else can.
 pub trait DepthStorage<Z>: Copy {
-    /// Returns the stored depths; or as many of `nothing`, where depth plays no part, so that the same loops do without a depth
-    /// buffer.
+    /// Returns the stored depths. Where depth plays no part, returns `nothing` instead, so that one loop serves
+    /// programs with and without a depth buffer.
     fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [Z];
 
-    /// Returns the test as a value, and depths as numbers, where depth plays a part: for long loops, of which three copies cost
-    /// more than the test does.
+    /// Returns the test as a value, and the stored depths as numbers; `None` where depth plays no part. Long loops are
+    /// compiled for this form only: a copy for each of three tests would cost more than the test by value does.
     fn as_dyn(self, stored: &mut [Z]) -> Option<(DepthDyn, &mut [u16])>;
 }
 
-/// A depth test as the pixel loops see it: a type, so that each loop is compiled for its own.
+/// A depth test as the pixel loops see it. Each test is a type, so that each loop is compiled for it.
 pub trait DepthTest: DepthStorage<<Self as DepthTest>::Depth> {
-    /// Depth plays a part; where it does not, neither `passes` nor `write` has to be called.
+    /// Set if depth plays a part. If it does not, callers may leave out `passes` and `write`.
     const ENABLED: bool;
 
     /// Stored depth of a pixel: `u16`, or `()` where depth plays no part.
     type Depth: Copy;
 
-    /// Compares `z` with the stored depth.
+    /// Returns whether `z` passes against the stored depth.
     fn passes(self, z: u16, stored: Self::Depth) -> bool;
 
-    /// Leaves the depth of a fragment that passed, and was not discarded, if depths are written.
+    /// Stores the depth of a fragment that passed and was not discarded, if the test stores depths.
     fn write(self, z: u16, stored: &mut Self::Depth);
 }
 
-/// [`DepthState::LESS`].
+/// The test of [`DepthState::LESS`].
 #[derive(Clone, Copy, Debug)]
 pub struct DepthLess;
 
@@ -123,7 +124,7 @@ impl DepthStorage<u16> for DepthLess {
     }
 }
 
-/// [`DepthState::OFF`].
+/// The test of [`DepthState::OFF`].
 #[derive(Clone, Copy, Debug)]
 pub struct DepthOff;
 
@@ -153,10 +154,10 @@ impl DepthStorage<()> for DepthOff {
     }
 }
 
-/// Any test: that the difference of a depth and the stored one is in a range.
+/// Any test, as a range: a fragment passes if its depth minus the stored depth lies in the range.
 ///
 /// # Format
-/// Differences are in -65,535..=65,535. Modulo 2³² even all numbers but 0 are a range.
+/// Differences are in -65,535..=65,535. The range is modulo 2³², so that all numbers but 0 are a range too.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthDyn {
     lowest: i32,
@@ -165,7 +166,7 @@ pub struct DepthDyn {
 }
 
 impl DepthDyn {
-    /// From its description.
+    /// Creates the test that a state describes.
     #[must_use]
     pub const fn new(state: DepthState) -> Self {
         let (lowest, count) = match state.compare {
@@ -213,13 +214,14 @@ impl DepthStorage<u16> for DepthDyn {
     }
 }
 
-/// Pixels that [`count_passing_prefix`] tests.
+/// Number of pixels in a run, whose depths [`count_passing_prefix`] tests.
 pub(crate) const RUN: usize = 16;
 
-/// Tests the depths of a run from `z` on, up to the first that does not pass, and writes those that do. Returns how many pass.
+/// Tests the depths of a run, from `z` on, up to the first one that does not pass. Stores the depths that pass, and
+/// returns their number.
 ///
-/// Most runs pass, or fail, as a whole. Where all pass, two loops, this one and another for colours, are shorter than one for
-/// both, as each has all of its values in registers.
+/// Most runs pass, or fail, as a whole. Where all pixels pass, two loops, this one and one for colours, take fewer
+/// instructions than a single loop, because each has all of its values in registers.
 #[inline(always)]
 pub(crate) fn count_passing_prefix<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
     if !D::ENABLED {
@@ -231,7 +233,7 @@ pub(crate) fn count_passing_prefix<D: DepthTest>(test: D, depths: &mut [D::Depth
     }
 }
 
-/// Out of line, where its registers are its own.
+/// Does as [`count_passing_prefix`], out of line, so that its loop has all registers for itself.
 #[inline(never)]
 fn count_passing_prefix_outlined<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], z: u32, dz_dx: i32) -> usize {
     count_passing_prefix_inlined(test, depths, z, dz_dx)
@@ -239,7 +241,7 @@ fn count_passing_prefix_outlined<D: DepthTest>(test: D, depths: &mut [D::Depth; 
 
 #[inline(always)]
 fn count_passing_prefix_inlined<D: DepthTest>(test: D, depths: &mut [D::Depth; RUN], mut z: u32, dz_dx: i32) -> usize {
-    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! test {
         ($($count:literal $depth:ident)*) => {
             let [$($depth),*] = depths;
@@ -258,7 +260,7 @@ fn count_passing_prefix_inlined<D: DepthTest>(test: D, depths: &mut [D::Depth; R
     RUN
 }
 
-/// Does as [`count_passing_prefix`] for up to a run, and returns how many depths are not tested yet.
+/// Does as [`count_passing_prefix`] for at most a run, but returns the number of depths that are not tested yet.
 #[inline(always)]
 pub(crate) fn untested_tail<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
     match <&mut [D::Depth; RUN]>::try_from(&mut *depths) {
@@ -273,10 +275,10 @@ pub(super) fn untested_short_tail<D: DepthTest>(test: D, depths: &mut [D::Depth]
     if D::ENABLED { untested_short_tail_outlined(test, depths, z, dz_dx) } else { 0 }
 }
 
-/// Out of line, where its registers are its own.
+/// Does as [`untested_short_tail`], out of line, so that its loop has all registers for itself.
 #[inline(never)]
 fn untested_short_tail_outlined<D: DepthTest>(test: D, mut depths: &mut [D::Depth], mut z: u32, dz_dx: i32) -> usize {
-    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! test {
         ($($left:literal $depth:ident)*) => {
             let Some(([$($depth),*], rest)) = core::mem::take(&mut depths).split_first_chunk_mut() else { return 0 };
@@ -301,7 +303,7 @@ fn untested_short_tail_outlined<D: DepthTest>(test: D, mut depths: &mut [D::Dept
         test!(2 a 1 b);
     }
     if depths.is_empty() {
-        // 0, where it is at hand.
+        // The length is 0 here, and already in a register.
         return depths.len();
     }
     test!(1 a);

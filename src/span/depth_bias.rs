@@ -1,20 +1,24 @@
-//! Depth bias: triangles drawn a little nearer or farther than they are, so that what lies on a surface does not fight it.
+//! Depth bias: draws triangles a little nearer or farther than they are, so that a decal does not fight with the
+//! surface that it lies on.
 
 use crate::math::Scalar;
 use core::ops::Range;
 
-/// Steps of depth that are added to the depths of a draw's triangles: below zero is nearer.
+/// Number of steps that is added to the depths of a draw's triangles. Negative numbers draw nearer.
 ///
-/// Decals and outlines on a surface want about `DepthBias { constant: -1, slope: -Scalar::ONE }`: interpolated depths of two
-/// coplanar triangles differ by a step, and by what depth changes within a pixel, if they have not the same vertices.
+/// Decals and outlines on a surface want about `DepthBias { constant: -1, slope: -Scalar::ONE }`. The reason: two
+/// coplanar triangles with different vertices differ in their interpolated depths, by one step and by the change of
+/// depth within a pixel.
 ///
-/// Depth cannot leave 0..=65,535: where a triangle's bias would make it do so, the bias is as large as just does not.
+/// Biased depths stay in 0..=65,535. Where a bias would move a triangle out of that range, the triangle gets the
+/// largest bias that does not.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DepthBias {
-    /// Steps.
+    /// Steps that are added to every triangle.
     pub constant: i16,
-    /// Times the steps that the triangle's depth changes by from a pixel to its neighbour, in the direction, x or y, where that
-    /// is more: few for faces towards the viewer, many for those seen edge-on.
+    /// Factor by which the triangle's slope is multiplied; the product is added too. The slope is the number of steps
+    /// by which depth changes from a pixel to its neighbour in x or in y, whichever is more: small for faces towards
+    /// the viewer, large for faces seen edge-on.
     pub slope: Scalar,
 }
 
@@ -29,17 +33,18 @@ impl DepthBias {
     /// No bias.
     pub const NONE: Self = Self { constant: 0, slope: Scalar::ZERO };
 
-    /// Returns whether there is nothing to add.
+    /// Returns whether the bias adds nothing.
     pub(crate) fn is_none(self) -> bool {
         self == Self::NONE
     }
 
-    /// Steps to add to a triangle with depths in `depths` (both included) and these changes of depth a pixel, 16.16.
+    /// Computes the steps to add to a triangle whose depths are in `depths`, both ends included, and change by `dz_dx`
+    /// and `dz_dy` per pixel, 16.16.
     ///
     /// # Format
-    /// Changes are modulo 2³², and those of a sliver need not fit: but between two pixels of the triangle depth changes by no
-    /// more than between its vertices, so that is a bound. 32 by 32 bits, rounded to nearest; the result plus any of the depths
-    /// is in 0..=65,535.
+    /// The changes are modulo 2³², and those of a sliver may not fit. But between two pixels of a triangle depth
+    /// changes by no more than between its vertices, so the extent of `depths` bounds the change. Products are 32 by 32
+    /// bits, rounded to nearest. The result plus any depth in `depths` is in 0..=65,535.
     #[inline(never)]
     pub(crate) fn steps(self, depths: Range<u16>, dz_dx: i32, dz_dy: i32) -> i32 {
         let range = u32::from(depths.end - depths.start) << 16;
@@ -55,7 +60,7 @@ mod tests {
     use super::*;
     use crate::math::random::Rng;
 
-    /// The definition, in floating point, before it is kept in range.
+    /// Computes the bias by its definition, in floating point, before it is kept in range.
     fn exact(bias: DepthBias, depths: Range<u16>, dx: i32, dy: i32) -> f64 {
         let change = f64::from(dx).abs().max(f64::from(dy).abs()) / 65_536.0;
         let change = change.min(f64::from(depths.end - depths.start));
@@ -92,7 +97,7 @@ mod tests {
         assert_eq!(bias(i16::MAX).steps(0..65_535, i32::MIN, i32::MAX), 0);
         let steep = DepthBias { constant: -1, slope: -Scalar::ONE };
         assert_eq!(steep.steps(1000..1040, 8 << 16, -(12 << 16)), -13);
-        // A sliver's gradient may be anything; its depths tell more.
+        // A sliver's gradient may be anything, so the extent of its depths limits it.
         assert_eq!(steep.steps(1000..1040, i32::MIN, 5), -41);
     }
 }

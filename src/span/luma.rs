@@ -1,4 +1,4 @@
-//! Spans of greys whose varyings are colours.
+//! Spans of grey pixels whose varyings are colours.
 //!
 //! The plain loop, over channels in 8.16:
 //!
@@ -9,25 +9,27 @@
 //!         color = luma(r >> 16, g >> 16, b >> 16)
 //!     z += dz_dx;  r += dr;  g += dg;  b += db
 //! ```
-//! The one departure: luma is a weighted sum, so it is itself linear on the screen. It is computed at the first pixel and stepped
-//! from there, which takes the place of three products and two additions per pixel.
+//! The one departure: luma is a weighted sum of the channels, so it is itself linear on the screen. It is computed at
+//! the first pixel and stepped from there, which replaces three products and two additions per pixel.
 
 use super::color_setup::{ColorSetup, weighted};
 use super::depth::DepthTest;
 use super::span::Span;
 use crate::color::PixelFormat;
 
-/// Draws a span of greys, with one addition per pixel. The step in its setup is the luma of the channels' changes.
+/// Draws a span of grey pixels, with one addition per pixel. The step in the primitive's setup is the luma of the
+/// channels' changes.
 ///
 /// # Format
-/// The planes of the channels are exact modulo 2³² but for what rounding their gradients takes, and so is their sum: the
-/// luma is as near to the exact one as the channels are, below 2⁻³ of 255, and rounded to nearest.
+/// The planes of the channels are exact modulo 2³², except for the rounding of their gradients, and so is their
+/// weighted sum. The luma is therefore as close to the exact one as the channels are to theirs, within 2⁻³ of 255
+/// levels, and is then rounded to nearest.
 #[inline(never)]
 pub(crate) fn luma_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
     let mut luma = weighted(span.varyings());
     let Span { color, depth, mut z, primitive, .. } = span;
     let (dz_dx, step) = (primitive.dz_dx, primitive.setup.step);
-    // Not unrolled: the compiler would keep multiples of both steps, for which small cores have no registers.
+    // Not unrolled: the compiler would keep multiples of both steps, and small cores have no registers for them.
     for (color, stored) in color.iter_mut().zip(depth) {
         let depth = (z >> 16) as u16;
         if !D::ENABLED || test.passes(depth, *stored) {

@@ -1,11 +1,11 @@
-//! The plain loop, and the one comparison of all faster loops with it.
+//! The plain loop over the pixels of a span, and the one comparison of all faster loops with it. For tests only.
 
 use super::depth::DepthTest;
 use crate::math::random::Rng;
 use core::fmt::Debug;
 use std::vec::Vec;
 
-/// Draws a span pixel by pixel; `pixel` is the colour of the k-th one, or none if it is discarded.
+/// Draws a span pixel by pixel. `pixel` returns the colour of the k-th pixel, or `None` if its fragment is discarded.
 fn draw<R, D: DepthTest>(
     test: D,
     color: &mut [R],
@@ -26,10 +26,10 @@ fn draw<R, D: DepthTest>(
     }
 }
 
-/// A loop that is compared: its name, and the loop itself, over colours and stored depths.
+/// A loop that is compared with the plain one: its name, and a function that draws over colours and stored depths.
 pub(super) type Variant<'v, R, Z> = (&'v str, &'v mut dyn FnMut(&mut [R], &mut [Z]));
 
-/// A span whose depth, at its first pixel and per pixel, is `z` and `dz_dx`, over `background`.
+/// Span that is drawn over `background`. Its depth at the first pixel is `z`, and changes by `dz_dx` per pixel.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Case<R> {
     pub length: usize,
@@ -38,8 +38,8 @@ pub(super) struct Case<R> {
     pub background: R,
 }
 
-/// Panics unless all variants leave the colours and depths that the plain loop leaves. All, most or few of the pixels are in
-/// front of what is stored.
+/// Panics unless all variants leave the colours and depths that the plain loop leaves. The stored depths are random:
+/// all, most or few of the pixels are in front of them.
 pub(super) fn compare<R: Copy + PartialEq + Debug, D: DepthTest<Depth: PartialEq + Debug>>(
     test: D,
     case: Case<R>,

@@ -1,36 +1,37 @@
-//! Perspective-correct varyings, along a span: one reciprocal for each pixel, or for each few of them.
+//! Perspective-correct varyings along a span, with one reciprocal per pixel or per several pixels.
 //!
 //! ```text
 //! span    ├───────────────┼───────────────┼───────────────┼─────┤
 //! divided ●               ●               ●               ●     ●      linear in between
 //!         first pixel     + STEP          + 2 STEP        ..    last pixel
 //! ```
-//! Both ends of a span are pixels of the triangle, so nothing is ever divided by what q = 1 / w is outside of it. At the ends
-//! varyings are exact, and so they are on both sides of an edge that two triangles share: no seam, whatever the step.
+//! Both ends of a span are pixels of the triangle, so no value is ever divided by a q = 1 / w from outside of it. At
+//! the ends varyings are exact, and so they are on both sides of an edge that two triangles share. No step makes a
+//! seam.
 
 use super::span::Primitive;
 use crate::math::{Divisor, mul_high_signed};
 use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Varyings};
 
-/// Perspective-correct varyings at a pixel, and a way to the next ones.
+/// Perspective-correct varyings at a pixel, with what is needed to go on to other pixels of the row.
 #[derive(Clone, Copy, Debug)]
 pub struct Corrected<'a, V: Varyings> {
     perspective: &'a V::PerspectiveSetup,
     d_dx: &'a V,
-    /// d q, linear ones, q.
+    /// Values at the pixel: d q of each perspective-correct varying, then the linear varyings, then q.
     at: V,
-    /// The pixel: where the planes are taken for triangles that take 64 bits.
+    /// The pixel. Triangles that take 64 bits evaluate their planes there.
     position: (i32, i32),
 }
 
 impl<'a, V: Varyings> Corrected<'a, V> {
-    /// Starts at a pixel of a primitive.
+    /// Creates the varyings at a pixel of a primitive.
     #[inline]
     pub fn new<T>(primitive: &'a Primitive<V, T>, position: (i32, i32)) -> Self {
         Self { perspective: &primitive.perspective, d_dx: &primitive.d_dx, at: primitive.at(position), position }
     }
 
-    /// Goes on by `pixels`.
+    /// Moves on by `pixels` to the right.
     #[inline]
     pub fn advance(&mut self, pixels: i32) {
         self.at.advance(self.d_dx, pixels);
@@ -46,7 +47,7 @@ impl<'a, V: Varyings> Corrected<'a, V> {
     }
 }
 
-/// Puts the varyings at a pixel in the place of what is linear.
+/// Replaces the values that are linear on the screen by the varyings at a pixel.
 #[inline(never)]
 pub(super) fn correct_at<V: Varyings>(perspective: &V::PerspectiveSetup, position: (i32, i32), varyings: &mut V) {
     let (planes, values) = (perspective.planes(), varyings.as_mut());
@@ -66,17 +67,18 @@ pub(super) fn correct_at<V: Varyings>(perspective: &V::PerspectiveSetup, positio
     }
 }
 
-/// Replaces each value by what it says of the varying: h, from `quotient`, scaled back.
+/// Replaces the value of each perspective-correct varying by the varying. `quotient` computes h, which is scaled back
+/// and added to the plane's base.
 #[inline]
 fn correct(values: &mut [i32], planes: &[PerspectivePlane], quotient: impl Fn(i32, &PerspectivePlane) -> i32) {
     for (value, plane) in values.iter_mut().zip(planes) {
         let h = quotient(*value, plane);
-        // To nearest; the shift is at most 30.
+        // The shift rounds to nearest; it is at most 30.
         *value = plane.base.wrapping_add(h.wrapping_add((1 << plane.shift) >> 1) >> plane.shift);
     }
 }
 
-/// 2³² / n, for steps of n pixels.
+/// Table of 2³² / n, for steps of n pixels.
 static PARTS: [u32; 33] = {
     let mut parts = [u32::MAX; 33];
     let mut n = 2;
@@ -87,7 +89,7 @@ static PARTS: [u32; 33] = {
     parts
 };
 
-/// `difference` / `n`, within a unit, for n in 1..=32.
+/// Computes `difference` / `n`, within one unit, for n in 1..=32.
 #[inline]
 pub(super) fn nth(difference: i32, n: usize) -> i32 {
     let part = PARTS.get(n).copied().unwrap_or(0);

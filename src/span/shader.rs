@@ -1,4 +1,4 @@
-//! The fragment stage's seam, and the loops over the pixels of a span.
+//! The seam of the fragment stage, and the loops that call a shader for the pixels of a span.
 
 use super::depth::{DepthDyn, DepthState, DepthTest};
 use super::perspective::{correct_at, nth};
@@ -12,17 +12,18 @@ use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
 ///
 /// # A shader from scratch
 ///
-/// A toon shader: a texture in three tones of light, whose transparent texels are left out. In the order in which the
-/// pipeline calls it:
+/// A toon shader: a texture in three tones of light, whose transparent texels are left out. The pipeline calls its
+/// functions in this order:
 ///
-/// 1. [`VertexShader::vertex`], once per vertex while records are used, otherwise up to once per corner of a triangle. It
-///    returns the varyings: here, texture coordinates that are [perspective-correct](crate::vertex::Perspective), and one
-///    varying that is linear on the screen.
-/// 2. [`VertexShader::face`], once per visible triangle, for a word that is constant on it. Not used here.
-/// 3. [`setup`](Self::setup), once per triangle and strip: all that its fragments share. Here, how bright the triangle is.
-/// 4. [`span`](Self::span), once per row of a triangle; as it is not overridden, it draws fragment by fragment.
-/// 5. [`fragment`](Self::fragment), once per pixel that passes the depth test. `None` leaves the pixel, and its depth, as it
-///    was.
+/// 1. [`VertexShader::vertex`], once per vertex while records are used, otherwise at most once per corner of a
+///    triangle. It returns the varyings: here, texture coordinates that are
+///    [perspective-correct](crate::vertex::Perspective), and one varying that is linear on the screen.
+/// 2. [`VertexShader::face`], once per visible triangle, for a word that is constant on it. It is not used here.
+/// 3. [`setup`](Self::setup), once per triangle and strip, for data that all fragments of the triangle share. Here,
+///    that is the brightness of the triangle.
+/// 4. [`span`](Self::span), once per row of a triangle. It is not overridden here, so it draws fragment by fragment.
+/// 5. [`fragment`](Self::fragment), once per pixel that passes the depth test. `None` leaves the pixel and its depth as
+///    they were.
 ///
 /// ```
 /// use zstrip::color::PixelFormat;
@@ -102,27 +103,27 @@ use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub trait Shader<P: PixelFormat>: VertexShader {
-    /// Pixels over which perspective-correct varyings are taken as linear. 1 divides at each pixel; 4, 8, 16 or 32 divide at
-    /// every fourth, eighth, ... pixel and at both ends of a span, which is faster, and off by little: see
-    /// [`Perspective`](crate::vertex::Perspective).
+    /// Number of pixels over which perspective-correct varyings are taken as linear. 1 divides at each pixel. 4, 8, 16
+    /// or 32 divide at every fourth, eighth, ... pixel and at both ends of a span; that is faster, and off by little,
+    /// see [`Perspective`](crate::vertex::Perspective).
     const STEP: usize = 1;
 
-    /// Data that [`setup`](Self::setup) makes once per triangle for its fragments and spans; `()` for most shaders.
+    /// Data that [`setup`](Self::setup) computes once per triangle for its fragments and spans; `()` for most shaders.
     type Setup: Copy + Default;
 
-    /// Makes the shader's data of a triangle, before its spans are drawn. A line or a point is set up once as well.
+    /// Computes the shader's data of a triangle, before its spans are drawn. Lines and points are set up once as well.
     #[inline(always)]
     fn setup(&self, triangle: &TriangleSetup<'_, Self::Varyings>) -> Self::Setup {
         let _ = triangle;
         Self::Setup::default()
     }
 
-    /// Computes the colour of a fragment that passed the depth test; `None` discards it, and leaves colour and depth as they
-    /// were.
+    /// Computes the colour of a fragment that passed the depth test. `None` discards the fragment, and leaves the pixel
+    /// and its depth as they were.
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings, Self::Setup>) -> Option<P::Raw>;
 
-    /// Colours a pixel, or discards the fragment and returns `false`. Only a shader that blends with the pixel that is there
-    /// has to override it.
+    /// Colours a pixel and returns `true`, or discards the fragment and returns `false`. Only shaders that blend with
+    /// the pixel that is there have to override it.
     #[inline(always)]
     fn paint(&self, fragment: &Fragment<'_, Self::Varyings, Self::Setup>, pixel: &mut P::Raw) -> bool {
         match self.fragment(fragment) {
@@ -141,11 +142,11 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     }
 }
 
-/// The [`Span`] of a shader `S` under a depth test `D`.
+/// The [`Span`] that a shader `S` draws under a depth test `D`.
 pub type SpanOf<'a, P, S, D> =
     Span<'a, P, <S as VertexShader>::Varyings, <S as Shader<P>>::Setup, <D as DepthTest>::Depth>;
 
-/// Pixels of a span that are drawn at a time where there are no depths.
+/// Number of pixels that are drawn at a time where there is no depth buffer.
 const CHUNK: usize = 16;
 
 /// Draws a span fragment by fragment.
@@ -180,7 +181,7 @@ fn uncorrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     }
 }
 
-/// Draws a span in the loop of [`linear_fragments`], over depths that belong to nobody.
+/// Draws a span in the loop of [`linear_fragments`]. That loop needs depths, so it gets an array that nobody reads.
 #[inline(never)]
 fn fragments_without_depth<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
@@ -193,7 +194,7 @@ fn fragments_without_depth<P: PixelFormat, S: Shader<P> + ?Sized>(
     }
 }
 
-/// Place of [`linear_fragments`] in a span, and all that it steps.
+/// State of [`linear_fragments`]: its place in a span, and all that changes from pixel to pixel.
 struct Pixels<'a, V: Varyings, T> {
     z: u32,
     varyings: &'a mut V,
@@ -213,7 +214,8 @@ fn linear_fragments<P: PixelFormat, S: Shader<P> + ?Sized>(
     if <S::Varyings as Varyings>::LEN > MAX_IN_REGISTERS {
         return paint_pixels(shader, color, depth, pixels);
     }
-    // Few varyings are stepped in a copy, which the compiler keeps in registers; many are stepped where they are.
+    // Up to three varyings are stepped in a copy, which the compiler keeps in registers. More are stepped where they
+    // are.
     let mut varyings = *pixels.varyings;
     let Pixels { z, primitive, position, test, .. } = *pixels;
     let mut own = Pixels { z, varyings: &mut varyings, primitive, position, test };
@@ -245,7 +247,8 @@ fn paint_pixels<P: PixelFormat, S: Shader<P> + ?Sized>(
     }
 }
 
-/// Draws a span fragment by fragment. Out of line, for its stack is not needed where a shader has a faster loop.
+/// Draws a span of perspective-correct varyings fragment by fragment. Out of line, so that its frame is not on the
+/// stack of shaders that have a faster loop.
 #[inline(never)]
 fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     shader: &S,
@@ -263,21 +266,22 @@ fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     }
 }
 
-/// The pixels from one that is divided to the next.
+/// A part of a span, from a pixel at which varyings are divided to the next such pixel.
 struct Stretch<'a, 's, P: PixelFormat, V: Varyings, T, D: DepthTest> {
-    /// The part of the span that is not drawn yet.
+    /// Pixels of the span that are not drawn yet.
     span: &'a mut Span<'s, P, V, T, D::Depth>,
-    /// The quantities that are linear on the screen, at the end of the stretch.
+    /// Values that are linear on the screen, at the end of the stretch.
     linear: V,
     varyings: V,
     change: V,
-    /// The varyings at the end of the stretch.
+    /// Varyings at the end of the stretch.
     next: V,
     test: D,
 }
 
 impl<P: PixelFormat, V: Varyings, T, D: DepthTest> Stretch<'_, '_, P, V, T, D> {
-    /// Aims at the end of the next stretch: the next pixel that is divided, or the last one. Returns how many pixels it has.
+    /// Moves on to the next stretch, whose end is the next pixel that is divided, or the last pixel of the span.
+    /// Returns the number of its pixels.
     #[inline(never)]
     fn aim(&mut self, step: usize) -> usize {
         let Self { span, linear, varyings, change, next, .. } = self;
@@ -295,7 +299,7 @@ impl<P: PixelFormat, V: Varyings, T, D: DepthTest> Stretch<'_, '_, P, V, T, D> {
         pixels
     }
 
-    /// Draws that many pixels. Out of line, for what divides needs no stack meanwhile.
+    /// Draws that many pixels. Out of line, so that the frame of the division is not on the stack meanwhile.
     #[inline(never)]
     fn draw<S: Shader<P, Varyings = V, Setup = T> + ?Sized>(&mut self, shader: &S, pixels: usize) {
         let Self { span, varyings, change, test, .. } = self;

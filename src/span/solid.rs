@@ -9,14 +9,15 @@
 //!         color = value
 //!     z += dz_dx
 //! ```
-//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made, in instructions per pixel of
-//! a quad that fills the screen:
+//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. Gains are
+//! instructions per pixel of a quad that fills the screen:
 //!
 //! 1. **Without a depth test, a span is filled** with whole words: see `color/fill.rs`.
-//! 2. **Spans of nine pixels and more have a function of their own**, where the loop gets the registers that it needs: 14.14 → 9.72
-//!    and 12.77 → 10.08. On small cores it goes by runs of 16, depths first and colours then; on others by four pixels.
-//! 3. **Short spans stay in the caller**, as a line draws each of its pixels as a span: a pixel of a thin line 40.4 → 36.4 and
-//!    35.1 → 26.1.
+//! 2. **Spans of nine pixels and more have a function of their own**, where the loop gets the registers that it needs:
+//!    14.14 → 9.72 and 12.77 → 10.08. On small cores it draws runs of 16 pixels, first depths and then colours; on
+//!    others four pixels at a time.
+//! 3. **Short spans stay in the caller**, because a line draws each of its pixels as a span. A pixel of a thin line:
+//!    40.4 → 36.4 and 35.1 → 26.1.
 
 use super::color_setup::ColorSetup;
 use super::depth::{DepthTest, RUN, count_passing_prefix};
@@ -26,10 +27,10 @@ use crate::color::{PixelFormat, fill, squeeze, unpacked};
 use crate::math::SMALL_CORE;
 use core::hint::black_box;
 
-/// Pixels from which on a call is worth it.
+/// Least number of pixels for which a call is worth its cost.
 const LONG: usize = 9;
 
-/// Draws a span in the colour of its primitive's word.
+/// Draws a span in the colour that its primitive's word holds.
 #[inline]
 pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 0], (), D::Depth>, test: D) {
     let flat = span.primitive.flat;
@@ -55,7 +56,7 @@ pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 0]
     }
 }
 
-/// A span of one colour, in a dithered format.
+/// Draws a span of one colour, in a dithered format.
 pub(crate) fn dithered_span<P: PixelFormat, D: DepthTest>(
     rgb: [u8; 3],
     span: Span<'_, P, [i32; 0], (), D::Depth>,
@@ -69,8 +70,8 @@ pub(crate) fn dithered_span<P: PixelFormat, D: DepthTest>(
     packed_span::<P, D>(Span { color, depth, z, primitive, position }, test);
 }
 
-/// One value where the depth test passes, in a long span. Out of line: amid others, the loops would not get the registers that
-/// they need.
+/// Stores one value wherever the depth test passes, in a long span. Out of line: next to other code, the loops would
+/// not get the registers that they need.
 #[inline(never)]
 fn tested_span<R: Copy, D: DepthTest>(
     mut color: &mut [R],
@@ -89,13 +90,14 @@ fn tested_span<R: Copy, D: DepthTest>(
         run16(test, &mut z, dz_dx, value, colors, depths);
     }
     while !SMALL_CORE && color.len() >= 4 {
-        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
         let Some(([a, b, c, d], rest)) = core::mem::take(&mut color).split_first_chunk_mut::<4>() else { return };
         color = rest;
         let Some(([az, bz, cz, dz], rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<4>() else { return };
         depth = rest;
         if !draw(test, &mut z, dz_dx, value, a, az) {
-            // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
+            // Hides that the step stays the same: the compiler would otherwise prepare all multiples of it, and spill
+            // them.
             dz_dx = black_box(dz_dx);
         }
         draw(test, &mut z, dz_dx, value, b, bz);
@@ -107,7 +109,7 @@ fn tested_span<R: Copy, D: DepthTest>(
     }
 }
 
-/// Draws a run, depths first and colours then.
+/// Draws a run, first its depths and then its colours.
 #[inline(always)]
 fn run16<R: Copy, D: DepthTest>(
     test: D,
@@ -135,7 +137,7 @@ fn run16<R: Copy, D: DepthTest>(
     }
 }
 
-/// Draws a pixel, if it passes, and steps to the next one.
+/// Draws a pixel if it passes the depth test, and steps to the next one. Returns whether it passed.
 #[inline(always)]
 fn draw<R: Copy, D: DepthTest>(
     test: D,

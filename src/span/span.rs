@@ -1,4 +1,4 @@
-//! Spans of pixels, and what the fragment stage is handed.
+//! Spans of pixels, primitives that spans are a part of, and the fragments that a shader is asked about.
 
 use crate::color::PixelFormat;
 use crate::vertex::{PerspectiveSetup, Side, Varyings};
@@ -6,57 +6,59 @@ use crate::vertex::{PerspectiveSetup, Side, Varyings};
 /// A fragment that passed the depth test, as [`Shader::fragment`](crate::span::Shader::fragment) sees it.
 #[derive(Clone, Copy, Debug)]
 pub struct Fragment<'a, V, T = ()> {
-    /// The triangle's word, from [`VertexShader::face`](crate::vertex::VertexShader::face).
+    /// Word of the triangle, from [`VertexShader::face`](crate::vertex::VertexShader::face).
     pub flat: u32,
-    /// Varyings at the pixel's centre.
+    /// Varyings at the centre of the pixel.
     pub varyings: &'a V,
-    /// The pixel, from the screen's top left corner.
+    /// Position of the pixel, from the screen's top left corner.
     pub position: (i32, i32),
-    /// Depth, 0 near, 65,535 far.
+    /// Depth: 0 is near, 65,535 far.
     pub depth: u16,
-    /// Side of the triangle that is seen.
+    /// Side of the triangle that the viewer sees.
     pub side: Side,
     /// Data of the triangle, from [`Shader::setup`](crate::span::Shader::setup).
     pub setup: &'a T,
 }
 
-/// A triangle as [`Shader::setup`](crate::span::Shader::setup) sees it. Lines and points are set up as well.
+/// A triangle as [`Shader::setup`](crate::span::Shader::setup) sees it. Lines and points are handed over in this form
+/// too.
 #[derive(Clone, Copy, Debug)]
 pub struct TriangleSetup<'a, V> {
-    /// Varyings at the vertices, as the vertex stage made them. A line hands over its two ends, the second one twice; a point
-    /// its only vertex three times.
+    /// Varyings at the vertices, as the vertex stage returned them. A line has its second end twice; a point has its
+    /// only vertex three times.
     pub corners: [&'a V; 3],
     /// Twice the area on the screen, in 2⁻¹⁶ px²; 0 for lines and points.
     pub area: u64,
-    /// The triangle's word, from [`VertexShader::face`](crate::vertex::VertexShader::face).
+    /// Word of the triangle, from [`VertexShader::face`](crate::vertex::VertexShader::face).
     pub flat: u32,
-    /// Side of the triangle that is seen.
+    /// Side of the triangle that the viewer sees.
     pub side: Side,
-    /// Varyings at the pixel in the screen's top left corner, modulo 2³². Perspective-correct ones are kept in a form of the
-    /// pipeline's own.
+    /// Varyings at the pixel in the screen's top left corner, modulo 2³². Perspective-correct varyings are in an
+    /// internal form here.
     pub at_origin: &'a V,
-    /// Change of the varyings from a pixel to the next one on the right, modulo 2³²; of a line, to its next pixel.
+    /// Change of the varyings from a pixel to its right neighbour, modulo 2³². For a line, it is the change from a
+    /// pixel of the line to the next one.
     pub d_dx: &'a V,
 }
 
-/// All that the spans of a triangle, a line or a point have in common: plane equations, and data of the shader.
+/// Data that all spans of a triangle, a line or a point share: plane equations, and data of the shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Primitive<V: Varyings, T = ()> {
-    /// Change of depth from a pixel to the next one on the right, 16.16, modulo 2³².
+    /// Change of depth from a pixel to its right neighbour, 16.16, modulo 2³².
     pub dz_dx: i32,
     /// Data of the shader, from [`Shader::setup`](crate::span::Shader::setup).
     pub setup: T,
-    /// Change of the varyings from a row to the next one, modulo 2³².
+    /// Change of the varyings from a pixel to its lower neighbour, modulo 2³².
     pub d_dy: V,
-    /// Change of the varyings from a pixel to the next one on the right, modulo 2³².
+    /// Change of the varyings from a pixel to its right neighbour, modulo 2³².
     pub d_dx: V,
     /// Varyings at the pixel in the screen's top left corner, modulo 2³².
     pub at_origin: V,
-    /// Turns what is linear on the screen into perspective-correct varyings.
+    /// Data that turns values that are linear on the screen into perspective-correct varyings.
     pub(crate) perspective: V::PerspectiveSetup,
-    /// Side of the triangle that is seen.
+    /// Side of the triangle that the viewer sees.
     pub side: Side,
-    /// The triangle's word, from [`VertexShader::face`](crate::vertex::VertexShader::face).
+    /// Word of the triangle, from [`VertexShader::face`](crate::vertex::VertexShader::face).
     pub flat: u32,
 }
 
@@ -68,8 +70,8 @@ impl<V: Varyings, T> Primitive<V, T> {
         Self { dz_dx: 0, at_origin: varyings, d_dy: V::ZERO, d_dx: V::ZERO, perspective, setup, side, flat }
     }
 
-    /// Computes the varyings at a pixel. Perspective-correct ones come as what is linear on the screen, for
-    /// [`Corrected`](crate::span::Corrected).
+    /// Computes the varyings at a pixel. Perspective-correct varyings are returned in an internal form that is linear
+    /// on the screen; [`Corrected`](crate::span::Corrected) computes the varyings themselves.
     #[inline(always)]
     pub fn at(&self, (x, y): (i32, i32)) -> V {
         let mut values = self.at_origin;
@@ -79,17 +81,17 @@ impl<V: Varyings, T> Primitive<V, T> {
     }
 }
 
-/// Pixels side by side in a row, all of one primitive.
+/// Pixels of one primitive that are side by side in a row.
 ///
-/// Varyings are not among its fields: a loop over many short spans has no registers for them, so
-/// [`varyings`](Self::varyings) computes them where they are wanted.
+/// Varyings are no field: a loop over many short spans has no registers for them, so [`varyings`](Self::varyings)
+/// computes them on demand.
 #[derive(Debug)]
 pub struct Span<'a, P: PixelFormat, V: Varyings, T, Z> {
-    /// Colours, to be written where the depth test passes.
+    /// Colours. They are written where the depth test passes.
     pub color: &'a mut [P::Raw],
     /// Stored depths, one per colour ([`DepthTest::Depth`](crate::span::DepthTest::Depth)).
     pub depth: &'a mut [Z],
-    /// Depth at the first pixel, 16.16, with the half that rounds it already added.
+    /// Depth at the first pixel, 16.16. The half that rounds it is already added.
     pub z: u32,
     /// Position of the first pixel on the screen.
     pub position: (i32, i32),
@@ -98,8 +100,8 @@ pub struct Span<'a, P: PixelFormat, V: Varyings, T, Z> {
 }
 
 impl<P: PixelFormat, V: Varyings, T, Z> Span<'_, P, V, T, Z> {
-    /// Computes the varyings at the first pixel. Perspective-correct ones come as what is linear on the screen, for
-    /// [`Corrected`](crate::span::Corrected).
+    /// Computes the varyings at the first pixel. Perspective-correct varyings are returned in an internal form that is
+    /// linear on the screen; [`Corrected`](crate::span::Corrected) computes the varyings themselves.
     #[inline(always)]
     #[must_use]
     pub fn varyings(&self) -> V {

@@ -1,35 +1,37 @@
-//! Textures: images in flash, in the formats of [`TexelFormat`], and small tiles for the fastest loop.
+//! Textures: images in flash, in the formats of [`TexelFormat`], and small tiles for the fastest loop. The constructors
+//! check sizes, so reading a texel cannot fail.
 
 use super::texel::{OPAQUE, TexelFormat, expand};
 use crate::color::{PixelFormat, pack_rgb565};
 
 /// A rectangle of texels.
 ///
-/// Coordinates that a shader asks for are always in range; what an implementation returns for others does not matter.
+/// Shaders ask only for columns and rows that are inside of it. An implementation may return anything for others.
 pub trait Texture {
-    /// Columns and rows, at least one each.
+    /// Returns the number of columns and of rows, at least one each.
     fn size(&self) -> (u16, u16);
 
-    /// The texel at a column and a row.
+    /// Returns red, green, blue and alpha of the texel at a column and a row.
     fn rgba(&self, x: u32, y: u32) -> [u8; 4];
 
-    /// A pixel from it, unless it is transparent.
+    /// Returns the texel as a pixel of format `P`; `None` if it is transparent.
     fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw>;
 
-    /// All texels are exactly what [`rgb565`](Self::rgb565) returns.
+    /// Set if [`rgb565`](Self::rgb565) returns all texels exactly.
     const IS_RGB565: bool = false;
 
-    /// No texel is transparent.
+    /// Set if no texel is transparent.
     const IS_OPAQUE: bool = Self::IS_RGB565;
 
-    /// The texel as RGB565.
+    /// Returns the texel as RGB565.
     #[inline]
     fn rgb565(&self, x: u32, y: u32) -> u16 {
         let [r, g, b, _] = self.rgba(x, y);
         pack_rgb565([r, g, b])
     }
 
-    /// The pixel at fractions of the texture, 0.16 each: u in the lower half of a word, v in the upper.
+    /// Returns the pixel at a position in the texture. Both coordinates are fractions of its sides in 0.16: u in the
+    /// lower half of the word, v in the upper half.
     #[inline(always)]
     fn fetch<P: PixelFormat>(&self, vu: u32) -> Option<P::Raw> {
         let (width, height) = self.size();
@@ -37,26 +39,26 @@ pub trait Texture {
     }
 }
 
-/// An error in the bytes or the sizes of images.
+/// Error in the bytes or the sizes of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum TextureError {
-    /// No columns or no rows.
+    /// An image without columns or without rows.
     Empty {
         /// Columns and rows.
         size: (u16, u16),
     },
     /// A mip chain without levels.
     NoLevels,
-    /// More or fewer bytes than the size takes.
+    /// The number of bytes does not fit the size.
     Length {
         /// Number of bytes.
         found: usize,
-        /// Number of bytes that the size takes.
+        /// Number of bytes that an image of this size has.
         expected: usize,
     },
-    /// A size of another image does not fit this one: alpha beside colours, or a level of a mip chain.
+    /// An image's size does not fit another image: alpha beside colours, or a level of a mip chain.
     Size {
         /// Columns and rows of that image.
         found: (u16, u16),
@@ -82,7 +84,7 @@ impl core::fmt::Display for TextureError {
 
 impl core::error::Error for TextureError {}
 
-/// An image of any size: the bytes of an embedded-graphics `ImageRaw`.
+/// An image of any size. Its bytes are those of an embedded-graphics `ImageRaw`.
 ///
 /// ```
 /// use zstrip::texture::{Image, Rgb565Texel, TextureError};
@@ -97,16 +99,16 @@ pub struct Image<'a, F> {
     data: &'a [u8],
     width: u16,
     height: u16,
-    /// Bytes a row.
+    /// Bytes per row.
     stride: usize,
     format: F,
 }
 
 impl<'a, F: TexelFormat> Image<'a, F> {
-    /// From bytes, columns and rows.
+    /// Creates an image from its bytes, its columns and rows, and the format of its texels.
     ///
     /// # Errors
-    /// If it is empty, or the bytes are not as many as the size takes.
+    /// If there are no columns or no rows, or if the number of bytes does not fit the size.
     pub const fn new(data: &'a [u8], (width, height): (u16, u16), format: F) -> Result<Self, TextureError> {
         if width == 0 || height == 0 {
             return Err(TextureError::Empty { size: (width, height) });
@@ -119,7 +121,7 @@ impl<'a, F: TexelFormat> Image<'a, F> {
         Ok(Self { data, width, height, stride, format })
     }
 
-    /// The bits of a texel; 0 outside of the image.
+    /// Returns the bits of a texel; 0 outside of the image.
     #[inline(always)]
     fn texel(&self, x: u32, y: u32) -> u32 {
         let (x, row) = (x as usize, y as usize * self.stride);
@@ -167,7 +169,7 @@ impl<F: TexelFormat> Texture for Image<'_, F> {
     }
 }
 
-/// A texture of RGB565 whose sides are powers of two, known to the compiler: what the fastest loop wants.
+/// A texture of RGB565 for the fastest loop: its sides are powers of two, and known to the compiler.
 ///
 /// ```
 /// use zstrip::texture::Tile;
@@ -182,7 +184,7 @@ impl<F: TexelFormat> Texture for Image<'_, F> {
 pub struct Tile<'a, const W: usize, const H: usize>(&'a [[u16; W]; H]);
 
 impl<'a, const W: usize, const H: usize> Tile<'a, W, H> {
-    /// From rows of texels, in the processor's byte order.
+    /// Creates a tile from rows of texels, in the processor's byte order.
     #[must_use]
     pub const fn new(texels: &'a [[u16; W]; H]) -> Self {
         const { assert!(W.is_power_of_two() && H.is_power_of_two(), "the sides of a tile are powers of two") };
@@ -209,10 +211,10 @@ impl<const W: usize, const H: usize> Texture for Tile<'_, W, H> {
 
     const IS_RGB565: bool = true;
 
-    /// Outside of the tile, that of the same place in another tile.
+    /// Returns the texel as RGB565. The tile repeats outside of its sides.
     #[inline(always)]
     fn rgb565(&self, x: u32, y: u32) -> u16 {
-        // Nothing is out of bounds, which the compiler sees.
+        // The indices are always in range, and the compiler sees that.
         self.0.get(y as usize % H).and_then(|row| row.get(x as usize % W)).copied().unwrap_or(0)
     }
 
@@ -222,16 +224,17 @@ impl<const W: usize, const H: usize> Texture for Tile<'_, W, H> {
         if columns + rows > 16 || rows > 8 || rows == 0 {
             return self.pixel::<P>(vu >> (16 - columns), vu >> 16 >> (16 - rows));
         }
-        // The upper bits of both halves, those of the lower one moved up to the others: the number of the texel.
+        // The upper bits of u and of v are kept, and those of u are moved up next to those of v: that is the texel's
+        // number.
         let bits = vu & (!(u32::MAX >> rows) | (0xFFFF ^ 0xFFFF >> columns));
         let number = (bits | bits << (16 - rows)) >> (32 - rows - columns);
-        // Nothing is out of bounds, which the compiler sees.
+        // The number is always in range, and the compiler sees that.
         Some(P::from_rgb565(self.0.as_flattened().get(number as usize).copied().unwrap_or(0)))
     }
 }
 
-/// A texture whose alpha is in 4 bits a texel beside it, two texels a byte, the first in the upper bits: 0 transparent,
-/// 15 opaque.
+/// A texture with alpha beside its colours. Alpha has 4 bits per texel, from 0, transparent, to 15, opaque. Two texels
+/// share a byte, with the first one in the upper bits.
 #[derive(Clone, Copy, Debug)]
 pub struct WithAlpha<'a, T> {
     texture: T,
@@ -239,10 +242,10 @@ pub struct WithAlpha<'a, T> {
 }
 
 impl<'a, T: Texture> WithAlpha<'a, T> {
-    /// From colours and the bytes of alpha, rows starting at whole bytes.
+    /// Combines a texture with the bytes of its alpha. Each row of alpha starts at a whole byte.
     ///
     /// # Errors
-    /// If there are not as many bytes as the texture's size takes.
+    /// If the number of bytes does not fit the texture's size.
     pub fn new(texture: T, alpha: &'a [u8]) -> Result<Self, TextureError> {
         let alpha = Image::new(alpha, texture.size(), crate::texture::PaletteTexel(&[]))?;
         Ok(Self { texture, alpha })

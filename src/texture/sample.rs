@@ -1,6 +1,6 @@
 //! Sampling: from texture coordinates to a colour, by the nearest texel or bilinearly.
 //!
-//! Coordinates are 16.16, the texture being 0..1 in both directions; what is beyond is up to a [`Wrap`].
+//! Coordinates are 16.16. The texture covers 0..1 in both directions; a [`Wrap`] says what lies beyond.
 
 use super::image::Texture;
 use super::texel::OPAQUE;
@@ -8,17 +8,17 @@ use crate::color::{PixelFormat, fold_rgb565, mix_spread_rgb565, spread_rgb565};
 
 /// Rule for coordinates outside of the texture.
 pub trait Wrap: Copy {
-    /// A coordinate's fraction is all that counts.
+    /// Set if only the fraction of a coordinate counts.
     const REPEATS: bool = false;
 
-    /// The place in the texture, 0.16, for a coordinate of 16.16.
+    /// Converts a coordinate in 16.16 to a position in the texture, in 0.16.
     fn fraction(coordinate: i32) -> u32;
 
-    /// The texel for a number from -1 to `size`, both included.
+    /// Converts a column or row from -1 to `size`, both included, to one in the texture.
     fn texel(number: i32, size: u16) -> u32;
 }
 
-/// The texture again, and again.
+/// Repeats the texture.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Repeat;
 
@@ -40,14 +40,14 @@ impl Wrap for Repeat {
     }
 }
 
-/// The texture's mirror image, and the texture again.
+/// Repeats the texture, every other time as its mirror image.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Mirror;
 
 impl Wrap for Mirror {
     #[inline(always)]
     fn fraction(coordinate: i32) -> u32 {
-        // All bits of the odd ones are turned round: 1 - 2⁻¹⁶ - fraction.
+        // In odd repetitions all bits are inverted: the fraction becomes 1 - 2⁻¹⁶ - fraction.
         let odd = coordinate << 15 >> 31;
         (coordinate ^ odd) as u32 & 0xFFFF
     }
@@ -58,7 +58,7 @@ impl Wrap for Mirror {
     }
 }
 
-/// The texels at its border.
+/// Continues the texels at the border.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Clamp;
 
@@ -74,19 +74,19 @@ impl Wrap for Clamp {
     }
 }
 
-/// Way from texels to a colour.
+/// Rule by which texels become a colour.
 pub trait Filter: Copy {
-    /// The colour is that of the nearest texel.
+    /// Set if the colour is that of the nearest texel.
     const NEAREST: bool = false;
 
-    /// The colour at coordinates of 16.16.
+    /// Returns red, green, blue and alpha at coordinates in 16.16.
     fn rgba<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> [u8; 4];
 
-    /// A pixel of it, unless it is transparent.
+    /// Returns the pixel at coordinates in 16.16; `None` if it is transparent.
     fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Option<P::Raw>;
 }
 
-/// The texel that the coordinates are in.
+/// Takes the texel that the coordinates lie in.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Nearest;
 
@@ -114,29 +114,32 @@ impl Filter for Nearest {
     }
 }
 
-/// The four texels whose centres are around the coordinates, by their distance: in 1/256 for 8 bits a channel, in 1/32 for
-/// RGB565, whose three channels are mixed in one word.
+/// Mixes the four texels whose centres surround the coordinates, with weights by their distances. Weights are 1/256 for
+/// 8 bits per channel, and 1/32 for RGB565, whose three channels are mixed in one word.
 ///
-/// Where some are transparent, the colour is that of the others, and alpha says how much of it there is.
+/// Where some of the four are transparent, the colour is that of the others, and alpha says how much they weigh
+/// together.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bilinear;
 
-/// Two columns or rows, and how far between their centres, 0.8.
+/// Finds the two columns or rows around a coordinate, and how far the coordinate is from the centre of the first one to
+/// that of the second one, in 0.8.
 #[inline(always)]
 fn pair<W: Wrap>(coordinate: i32, size: u16) -> (u32, u32, u32) {
-    // In texels 16.16 from the centre of the first one: -1/2 at least, and below `size`, 2³² in all.
+    // The distance from the centre of the first texel, in texels, 16.16: at least -1/2 and below `size`, which takes 64
+    // bits.
     let place = i64::from(W::fraction(coordinate) * u32::from(size)) - (1 << 15);
     let first = (place >> 16) as i32;
     (W::texel(first, size), W::texel(first + 1, size), (place as u32 >> 8) & 0xFF)
 }
 
-/// `a` + (`b` - `a`) t, t in 1/256, rounded to nearest, for two channels at once.
+/// Computes `a` + (`b` - `a`) t, with t in 1/256, rounded to nearest, for two channels at once.
 #[inline(always)]
 const fn mix(a: u32, b: u32, t: u32) -> u32 {
     ((a * (256 - t) + b * t + 0x0080_0080) >> 8) & 0x00FF_00FF
 }
 
-/// 2¹⁶ / alpha · 255 / 2⁸, for alpha from 128 on.
+/// Factors 255 / alpha in 8.8, for alpha from 128 on.
 static UNMIX: [u16; 128] = {
     let mut table = [0; 128];
     let mut k = 0;
@@ -148,7 +151,8 @@ static UNMIX: [u16; 128] = {
 };
 
 impl Bilinear {
-    /// Mixed colours of transparent texels are black, so what is left is brought up to what it is where all are opaque.
+    /// Undoes premultiplication: divides the mixed channels by the mixed alpha. Transparent texels entered the mixture
+    /// as black, so this restores the brightness of the others.
     #[inline(never)]
     fn unmix([r, g, b, a]: [u8; 4]) -> [u8; 4] {
         let Some(factor) = UNMIX.get(usize::from(a).wrapping_sub(128)) else {
@@ -165,7 +169,7 @@ impl Filter for Bilinear {
         let (width, height) = texture.size();
         let (x0, x1, tx) = pair::<W>(u, width);
         let (y0, y1, ty) = pair::<W>(v, height);
-        // Red and blue in one word, green and alpha in the other; transparent ones black.
+        // Red and blue go into one word, green and alpha into the other. Transparent texels become black.
         let at = |x: u32, y: u32| {
             let [r, g, b, a] = texture.rgba(x, y);
             let word = u32::from_le_bytes([r, g, b, a]);
@@ -199,7 +203,7 @@ impl Filter for Bilinear {
     }
 }
 
-/// Channels times alpha.
+/// Multiplies the channels by alpha.
 #[inline(never)]
 fn premultiplied([r, g, b, a]: [u8; 4]) -> u32 {
     let scaled = |c: u8| ((u32::from(c) * u32::from(a) * 257 + (1 << 15)) >> 16) as u8;
@@ -223,7 +227,7 @@ mod tests {
         Clamp,
     }
 
-    /// The texel for any number.
+    /// Computes the texel for any column or row.
     fn wrapped(mode: Mode, n: i64, size: i64) -> u32 {
         let place = match mode {
             Mode::Repeat => n.rem_euclid(size),
@@ -252,7 +256,7 @@ mod tests {
                     let size = i64::from([size.0, size.1][k]);
                     wrapped(mode, (f64::from(uv[k]) / 65_536.0 * size as f64).floor() as i64, size)
                 });
-                // An odd mirror image is turned round bit by bit, which moves borders of texels by 2⁻¹⁶.
+                // An odd mirror image is inverted bit by bit, which moves borders of texels by 2⁻¹⁶.
                 let fraction = |k: usize, size: u16| (f64::from(uv[k]) / 65_536.0 * f64::from(size)).fract() == 0.0;
                 if fraction(0, size.0) || fraction(1, size.1) {
                     continue;
@@ -271,11 +275,11 @@ mod tests {
         nearest_agrees::<Clamp>(Mode::Clamp);
     }
 
-    /// Bilinear filtering in f64 of a channel.
+    /// Filters one channel bilinearly, in f64.
     fn filtered(mode: Mode, uv: [i32; 2], size: (u16, u16), at: impl Fn(u32, u32) -> f64) -> f64 {
         let place = |c: i32, size: u16| {
             let c = f64::from(c) / 65_536.0 * f64::from(size);
-            // Beyond its borders, what is clamped stays half a texel away.
+            // A clamped coordinate stays half a texel away from the first centre beyond the border.
             let c = if let Mode::Clamp = mode { c.clamp(0.0, f64::from(size)) } else { c };
             (c - 0.5).floor() as i64
         };
@@ -291,7 +295,7 @@ mod tests {
         row(y) * (1.0 - ty) + row(y + 1) * ty
     }
 
-    /// Worst and mean error a channel, in 1/255, of 8 bits a channel and of RGB565.
+    /// Returns the worst and the mean error per channel, in 1/255, for 8 bits per channel and for RGB565.
     fn bilinear_errors<W: Wrap>(mode: Mode) -> [[f64; 2]; 2] {
         let mut random = random(3);
         let (mut errors, mut count) = ([[0.0_f64; 2]; 2], 0.0);
@@ -335,9 +339,9 @@ mod tests {
             println!(
                 "{mode:?}: 8 bits: worst {worst:.2}, mean {mean:.2}; RGB565: worst {worst565:.1}, mean {mean565:.2}"
             );
-            // Weights are off by 1/256 at most, in both directions, and two roundings of half a step come on top.
+            // Weights are off by 1/256 at most in both directions, and two roundings add half a step each.
             assert!(worst <= 3.0 && mean <= 0.7, "{mode:?}");
-            // In 565: by 1/64, and two roundings of half of 255/31.
+            // In RGB565 weights are off by 1/64, and two roundings add half of 255/31 each.
             assert!(worst565 <= 16.5 && mean565 <= 4.0, "{mode:?}");
         }
     }

@@ -1,31 +1,33 @@
-//! Texel formats: what the bits of an image mean.
+//! Texel formats: the meaning of the bits of an image.
 
-use crate::color::{PixelFormat, unpack_rgb565};
+use crate::color::{PixelFormat, pack_rgb565, unpack_rgb565};
 
-/// Alpha from which on a texel is drawn at all.
+/// Least alpha of a texel that is drawn at all.
 pub(crate) const OPAQUE: u8 = 128;
 
-/// Format of the texels of an [`Image`](crate::texture::Image): `BITS` bits each, in the order of embedded-graphics' `ImageRaw`. Rows
-/// start at whole bytes; of texels that share a byte the first is in the upper bits, of those with more bytes the first byte
-/// is the upper one.
+/// Format of the texels of an [`Image`](crate::texture::Image): `BITS` bits each, in the order of embedded-graphics'
+/// `ImageRaw`.
+///
+/// Each row starts at a whole byte. If texels share a byte, the first texel is in the upper bits. If a texel has
+/// several bytes, its upper byte comes first.
 pub trait TexelFormat: Copy {
-    /// Bits a texel: 1, 2, 4, 8, 16 or 24.
+    /// Bits per texel: 1, 2, 4, 8, 16 or 24.
     const BITS: usize;
 
-    /// [`rgb565`](Self::rgb565) is exact: texels of 16 bits, none of them transparent.
+    /// Set if [`rgb565`](Self::rgb565) is exact: for texels of 16 bits, none of them transparent.
     const IS_RGB565: bool = false;
 
-    /// Decodes a texel, 8 bits per channel.
+    /// Decodes a texel to red, green, blue and alpha, 8 bits each.
     fn rgba(&self, texel: u32) -> [u8; 4];
 
     /// Decodes a texel to RGB565.
     #[inline(always)]
     fn rgb565(&self, texel: u32) -> u16 {
         let [r, g, b, _] = self.rgba(texel);
-        (r as u16 & 0xF8) << 8 | (g as u16 & 0xFC) << 3 | b as u16 >> 3
+        pack_rgb565([r, g, b])
     }
 
-    /// A pixel, unless the texel is transparent.
+    /// Decodes a texel to a pixel; `None` if it is transparent.
     #[inline(always)]
     fn pixel<P: PixelFormat>(&self, texel: u32) -> Option<P::Raw> {
         if Self::IS_RGB565 {
@@ -36,7 +38,7 @@ pub trait TexelFormat: Copy {
     }
 }
 
-/// 16 bits, the upper byte first: what `ImageRaw<Rgb565>` takes.
+/// 16 bits, the upper byte first, as in `ImageRaw<Rgb565>`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rgb565Texel;
 
@@ -55,7 +57,7 @@ impl TexelFormat for Rgb565Texel {
     }
 }
 
-/// 16 bits, the lower byte first: what `ImageRaw<Rgb565, LittleEndian>` takes.
+/// 16 bits, the lower byte first, as in `ImageRaw<Rgb565, LittleEndian>`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rgb565LeTexel;
 
@@ -74,14 +76,14 @@ impl TexelFormat for Rgb565LeTexel {
     }
 }
 
-/// RGB565 to 8 bits a channel, the upper bits repeated below.
+/// Unpacks RGB565 to 8 bits per channel, the upper bits repeated below; alpha is 255.
 #[inline(always)]
 pub(super) const fn expand(raw: u16) -> [u8; 4] {
     let [r, g, b] = unpack_rgb565(raw);
     [r, g, b, 255]
 }
 
-/// Red, green and blue, a byte each: what `ImageRaw<Rgb888>` takes.
+/// Red, green and blue, a byte each, as in `ImageRaw<Rgb888>`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rgb888Texel;
 
@@ -95,7 +97,7 @@ impl TexelFormat for Rgb888Texel {
     }
 }
 
-/// 8 bits of grey: what `ImageRaw<Gray8>` takes.
+/// 8 bits of grey, as in `ImageRaw<Gray8>`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Gray8Texel;
 
@@ -109,7 +111,7 @@ impl TexelFormat for Gray8Texel {
     }
 }
 
-/// Numbers of colours in a palette, `BITS` bits each: 8, 4, 2 or 1. Numbers past its end are transparent.
+/// Indices into a palette, `BITS` bits each: 8, 4, 2 or 1. An index past the end of the palette is transparent.
 #[derive(Clone, Copy, Debug)]
 pub struct PaletteTexel<'p, const BITS: usize>(pub &'p [[u8; 3]]);
 
@@ -125,7 +127,7 @@ impl<const BITS: usize> TexelFormat for PaletteTexel<'_, BITS> {
     }
 }
 
-/// A mask of one bit: 1 has the colour, 0 is transparent.
+/// A mask of one bit per texel: 1 has the colour, 0 is transparent.
 #[derive(Clone, Copy, Debug)]
 pub struct MaskTexel(pub [u8; 3]);
 
@@ -139,10 +141,11 @@ impl TexelFormat for MaskTexel {
     }
 }
 
-/// Another format, of whose values one, `key`, is transparent: the texel's bits as they are in the image.
+/// Makes one value of another format, the `key`, transparent. The key is compared with the texel's bits as they are in
+/// the image.
 #[derive(Clone, Copy, Debug)]
 pub struct Keyed<F> {
-    /// What the other values mean.
+    /// Format of all other values.
     pub format: F,
     /// The transparent value.
     pub key: u32,
