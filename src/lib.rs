@@ -1,49 +1,60 @@
-//! 3-D for microcontroller displays: meshes go in, finished strips of pixels come out, each with 16-bit depth tested while
-//! it was drawn. No allocator, no floats, no `unsafe`; a frame of 320×240 takes some KB of RAM instead of 300.
+//! Draws 3-D on microcontroller displays, without a framebuffer.
+//!
+//! Meshes go in; finished strips of pixels come out, each depth-tested with 16 bits while it was drawn. There is no
+//! allocator, no float and no `unsafe`. A frame of 320×240 pixels takes 20 KB of RAM, or less, instead of 300.
+//!
+//! # A first picture
 //!
 //! ```
-//! use zstrip::embedded_graphics_core::geometry::Size;
-//! use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
-//! use zstrip::shader::Flat;
-//! use zstrip::mesh::{Mesh, MeshData, Positions};
-//! use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-//! use zstrip::color::Rgb565Be;
-//! use zstrip::Renderer;
+//! use zstrip::prelude::*;
 //!
-//! // A mesh borrows its slices, which may lie in flash. Counter-clockwise is the front.
+//! // A mesh borrows its slices, which may lie in flash. The front is where corners go counter-clockwise.
 //! static CORNERS: [Vec3; 3] = [Vec3::from_ints(-1, -1, 0), Vec3::from_ints(1, -1, 0), Vec3::from_ints(0, 1, 0)];
 //! static TRIANGLE: Mesh<'static> = Mesh::constant(MeshData::new(Positions::Exact(&CORNERS)));
+//! const SCREEN: Size = Size::new(320, 240);
 //!
-//! // The caller owns the memory; its size makes the strip's height: 16 rows. Records may be few, or none.
+//! // The caller owns the memory. These buffers hold strips of 16 rows. Records may be few, or none.
 //! let (mut color, mut depth, mut records) = ([0; 320 * 16], [0; 320 * 16], [0; 64]);
-//! let mut renderer =
-//!     Renderer::<Rgb565Be>::new(Size::new(320, 240))?.with_depth(&mut depth)?.with_records(&mut records);
+//! let mut renderer = Renderer::<Rgb565Be>::new(SCREEN)?.with_depth(&mut depth)?.with_records(&mut records);
 //!
-//! let camera = Projective::perspective(Angle16::from_degrees(60), Size::new(320, 240), Scalar::ONE, Scalar::from_num(100))?;
+//! let lens = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::from_num(100))?;
 //! let model = Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_z(Angle16::from_degrees(15));
-//! let (mvp, shader) = (camera * model, Flat::unlit(Rgb888::CSS_ORANGE));
+//! // Matrices and shaders are made outside of the closure, because it runs at least once per strip.
+//! let (mvp, shader) = (lens * model, Flat::unlit(Rgb888::CSS_ORANGE));
 //!
 //! # let mut sent = 0;
 //! # let mut spi_write = |bytes: &[u8]| sent += bytes.len();
 //! let mut frame = renderer.begin(Rgb888::BLACK);
-//! // The closure draws the whole scene; it is called for each strip and must draw the same each time.
-//! while let Some(strip) = frame.next_strip(&mut color, |scene| {
-//!     scene.draw(&TRIANGLE, &mvp, &shader);
-//! })? {
+//! while let Some(strip) = frame.next_strip(&mut color, |scene| scene.draw(&TRIANGLE, &mvp, &shader))? {
 //!     spi_write(strip.bytes());
 //! }
 //! assert_eq!(frame.stats().drawn, 1);
 //! # assert_eq!(sent, 320 * 240 * 2);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//! Text, images and shapes of embedded-graphics are drawn in the same closure: [`Scene::overlay`], [`Scene::at_depth`].
-//! [`Renderer::frame`] does the loop, for an embedded-graphics display; [`Renderer::frame_to`] for a
-//! [sink](target::StripSink) or a closure; [`FramebufferRenderer`](frame::FramebufferRenderer) draws without strips.
+//!
+//! # Where to go from here
+//!
+//! | to | see |
+//! |---|---|
+//! | send strips while others are drawn, by DMA or async code | [`frame::Frame`] |
+//! | draw on an embedded-graphics display, or into a sink | [`Renderer::frame`], [`Renderer::frame_to`] |
+//! | draw into a framebuffer, without strips | [`frame::FramebufferRenderer`] |
+//! | know how much RAM that takes, at compile time | [`frame::RamBudget`] |
+//! | bring in a mesh, lines, points | [`mesh`] |
+//! | place a camera, move things | [`math`] |
+//! | light them, and choose a shader | [`light`], [`shader`] |
+//! | put textures on them | [`texture`] |
+//! | write a shader of one's own | [`span::Shader`] |
+//! | draw text, images and shapes among meshes | [`Scene::overlay`], [`Scene::at_depth`], [`Scene::canvas`] |
+//! | find a point of the world on the screen, and back | [`Scene::project`], [`Scene::unproject`] |
+//! | choose the format of pixels, or dither | [`color`], [`target::Packer`] |
 //!
 //! # The pipeline
 //!
 //! A frame's closure is called several times. A call works in one of three phases: it *records* a band of strips, it
-//! *replays* the records of one strip, or, where the records have no room even for one strip, it draws the strip *directly*.
+//! *replays* the records of one strip, or, where the records have no room even for one strip, it draws that strip
+//! *directly*.
 //!
 //! | | stage | in | out | file | phase |
 //! |---|---|---|---|---|---|
@@ -60,9 +71,9 @@
 //! | 11 | fragments | varyings at a pixel, the face's word | a pixel | `span/`, `shader/` | replay, direct |
 //! | 12 | output | a strip of pixels | bytes for a display | `frame/renderer.rs`, `target/` | after each strip |
 //!
-//! `scene/draw.rs` calls stages 1 to 7 in one function, and 8 to 11 in another. The clipper's triangles go through stages 5 to
-//! 7 after stage 4; all others skip stage 4. Lines and points share stages 1 and 2 and the pixels' stages; in between,
-//! `scene/lines.rs` takes all of them in each strip, and records only their vertices. Shapes of a
+//! In `scene/draw.rs`, one function calls stages 1 to 7, and another one stages 8 to 11. A triangle that is clipped
+//! goes through stages 5 to 7 after stage 4; all others skip stage 4. Lines and points share stages 1 and 2, and 9 to
+//! 11. In between, `scene/lines.rs` goes over all of them in each strip, and records only their vertices. Shapes of a
 //! [`Canvas`] enter at stage 8.
 //!
 //! # The floors
@@ -82,31 +93,37 @@
 //! | [`scene`] | the one place that calls every stage, in order: [`Scene`] |
 //! | [`frame`] | bands and strips, renderers, views, RAM budgets |
 //!
-//! A folder imports only from those above it in this table, and no two files import each other: `tests/floors.rs` checks both.
+//! A folder imports only from those above it in this table, and no two files import each other: `tests/floors.rs`
+//! checks both.
 //!
 //! # Conventions
 //!
-//! - **Spaces.** The world is right-handed, y up; a camera looks along -z. Matrices apply to column vectors: `a * b` does
-//!   `b` first. Clip space is -w ≤ x, y ≤ w, 0 ≤ z ≤ w, as in Direct3D, Vulkan and wgpu. On the screen x points right and y
-//!   down, in pixels from the top left corner; the centre of a pixel is at .5.
-//! - **Numbers.** [`Scalar`](math::Scalar) is 16.16, an entry of a [`Projective`](math::Projective) matrix 32.32, a
-//!   position on the screen 24.8. Vectors and transforms saturate; a `Scalar`'s own operators overflow as integers do: they
-//!   panic in debug builds and wrap in release builds. [`SaturatingScalar`](math::SaturatingScalar) does neither. Normals are 2.14, colours 8 bits a channel.
-//! - **Angles** are binary: 65,536 make a turn.
+//! - **Spaces.** The world is right-handed, y up; a camera looks along -z. Matrices apply to column vectors: `a * b`
+//!   does `b` first. Clip space is -w ≤ x, y ≤ w, 0 ≤ z ≤ w, as in Direct3D, Vulkan and wgpu. On the screen, x points
+//!   right and y down, in pixels from the top left corner. The centre of a pixel is at .5.
+//! - **Numbers.** [`Scalar`](math::Scalar) is 16.16, an entry of a [`Projective`](math::Projective) matrix is 32.32,
+//!   and a position on the screen, [`Pixels`](math::Pixels), is 24.8. Normals are 2.14. Vectors and transforms
+//!   saturate. A `Scalar`'s own operators overflow as integers do: they panic in debug builds and wrap in release
+//!   builds. [`SaturatingScalar`](math::SaturatingScalar) does neither.
+//! - **Colours** have 8 bits per channel, in every scene and for every format. Functions take whatever turns into
+//!   `Rgb888`. Meshes and textures in flash hold bytes.
+//! - **Angles** are binary: 65,536 make one turn.
 //! - **Depth** is 16-bit, 0 at the near plane, 65,535 at the far plane, and linear on the screen. Strips are cleared to
-//!   65,535. A fragment is drawn where it is nearer than what is there; [`DepthState`](span::DepthState) knows the other
-//!   seven comparisons and the write mask.
-//! - **Faces.** Counter-clockwise, with y up, is the front. The back is culled unless [`State`] says otherwise.
-//! - **Fill rule.** A pixel is covered if its centre is inside, or on a left or top edge: triangles that share an edge
-//!   leave no gap and draw no pixel twice. The same goes for the pixels of a clipped triangle.
-//! - **Textures.** u points right, v down; centres of texels at .5.
-//! - **Errors** come from constructors and say what was wrong. Drawing fails only with the display's own error, or
-//!   because a frame's closure drew two different things; what was culled or clipped is counted in
-//!   [`Stats`](target::Stats).
+//!   65,535. A fragment is drawn where it is nearer than the stored depth. [`DepthState`](span::DepthState) has the
+//!   other seven comparisons and the write mask.
+//! - **Faces.** A face shows its front where its corners go counter-clockwise, with y up. Back faces are culled unless
+//!   [`State`] says otherwise.
+//! - **Fill rule.** A pixel is covered if its centre is inside of the triangle, or on a left or top edge. So triangles
+//!   that share an edge leave no gap and draw no pixel twice. That also holds for the parts of a clipped triangle.
+//! - **Textures.** u points right, v down. Centres of texels are at .5.
+//! - **Errors** come from constructors and carry the number that was wrong and the one that was needed. A frame fails
+//!   only with the display's own error, or because its closure drew two different things, or because a buffer was too
+//!   short. What was culled or clipped is counted in [`Stats`](target::Stats).
 //!
 //! # Features
 //!
-//! `micromath`: vectors, quaternions and `f32` matrices become fixed-point ones. `defmt`: `Format` for errors and statistics.
+//! - `micromath`: converts its vectors, its quaternions and `f32` matrices to fixed-point ones.
+//! - `defmt`: implements `Format` for errors and statistics.
 #![no_std]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]

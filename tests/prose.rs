@@ -72,7 +72,9 @@ fn comments_keep_to_the_width_of_code() {
     for path in sources(&["src", "tests", "examples", "boards/rp2040/src"]) {
         let text = fs::read_to_string(&path).expect("a source");
         for (k, line) in text.lines().enumerate() {
-            if line.contains("//") && line.chars().count() > MAX_WIDTH {
+            // A row of a table cannot be broken.
+            let is_row = line.trim_start().trim_start_matches(['/', '!']).trim_start().starts_with('|');
+            if line.contains("//") && line.chars().count() > MAX_WIDTH && !is_row {
                 wide.push(format!("{}:{}: {} columns", path.display(), k + 1, line.chars().count()));
             }
         }
