@@ -1,16 +1,22 @@
-//! Clipping in homogeneous space: outcodes, and polygons cut by one plane after the other.
+//! Clipping in homogeneous space: triangles and outcodes come in, polygons cut by one plane after the other go out.
 //!
-//! Four rules hold: visible vertices pass unchanged, bit by bit; edge AB is cut like BA, since a cut always goes from
-//! the vertex inside to the one outside; planes come in one order; there is one set of planes. Sides of the view are
-//! no planes here: the rasterizer is exact to ±32,767 px, and only at that guard band anything is cut.
+//! Four rules hold:
+//! - A visible vertex passes unchanged, bit by bit.
+//! - Edge AB is cut exactly like edge BA, because a cut always goes from the vertex inside to the vertex outside.
+//! - The planes are taken in one fixed order.
+//! - There is only one set of planes.
+//!
+//! The sides of the view are not among the planes: the rasterizer is exact up to ±32,767 px, and sides are cut only at
+//! that guard band.
 
 use super::varyings::Varyings;
 use heapless::deque::{Deque, DequeView};
 
-/// A vertex in clip space, in any common scale: x / w, y / w in units of 512 px from the screen's corner, z / w depth.
+/// A vertex in clip space, in any common scale: x / w and y / w are in units of 512 px from the screen's corner, and z
+/// / w is depth.
 ///
-/// Magnitudes stay below 2⁵⁵ + 2, so that plane distances fit 63 bits. The scale must be so large that w below
-/// [`ClipVertex::MIN_W`] does not matter; it counts as behind the eye.
+/// Magnitudes stay below 2⁵⁵ + 2, so that plane distances fit 63 bits. The scale must be so large that a w below
+/// [`ClipVertex::MIN_W`] does not matter: such a vertex counts as behind the eye.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClipVertex {
     /// To the right.
@@ -24,27 +30,28 @@ pub struct ClipVertex {
 }
 
 impl ClipVertex {
-    /// Smallest w in front of the eye. A cut there is off by one unit, 1/8 of 1/256 px in x and y; the short path of the vertex transform
-    /// has no smaller w, and the long one only nearer to the eye than positions resolve.
+    /// Smallest w in front of the eye. A cut at this w is off by one unit, which is 1/8 of 1/256 px in x and y. The
+    /// short path of the vertex transform never gives a smaller w. The long path gives one only nearer to the eye than
+    /// positions resolve.
     pub const MIN_W: i64 = 1 << 20;
 }
 
-/// What becomes of what lies before the near plane or beyond the far plane.
+/// Treatment of geometry in front of the near plane and beyond the far plane.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DepthRange {
-    /// Both are cut away.
+    /// Cuts away the parts in front of the near plane and beyond the far plane.
     #[default]
     Clip,
-    /// What is beyond the far plane is drawn at depth 65,535: a sky, a distant landscape.
+    /// Draws the part beyond the far plane at depth 65,535: a sky, a distant landscape.
     ///
-    /// Against a cleared depth buffer that takes [`Compare::LessEqual`](crate::span::Compare::LessEqual), as 65,535 is
-    /// what it is cleared to.
+    /// To be visible against a cleared depth buffer, such a draw needs
+    /// [`Compare::LessEqual`](crate::span::Compare::LessEqual), because the buffer is cleared to 65,535.
     ClampFar,
-    /// Both are drawn, at depth 0 and 65,535.
+    /// Draws the part in front of the near plane at depth 0, and the part beyond the far plane at depth 65,535.
     Clamp,
 }
 
-/// Which planes a vertex lies outside of, a bit each, after Cohen and Sutherland.
+/// Set of planes that a vertex lies outside of, one bit per plane, after Cohen and Sutherland.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Outcode(pub u8);
 
@@ -58,28 +65,29 @@ impl Outcode {
     /// Bits of the guard band: left, right, top, bottom.
     pub const SIDES: u8 = 0x78;
 
-    /// The planes `vertex` lies outside of.
+    /// Returns the planes that `vertex` lies outside of.
     #[inline]
     pub fn of(vertex: &ClipVertex) -> Self {
         Self((0..PLANES).fold(0, |code, plane| code | u8::from(distance(plane, vertex) < 0) << plane))
     }
 }
 
-/// w, near, far, then the guard band: left, right, top, bottom.
+/// Number of planes: w, near, far, and the four of the guard band (left, right, top, bottom).
 pub(super) const PLANES: usize = 7;
 pub(super) const NEAR: usize = 1;
 pub(super) const FAR: usize = 2;
 
-/// The guard band: (64 - 2⁻¹⁶) · 512 px, or 2²³ - 2 in 24.8.
+/// Returns the guard band's half width at `w`: (64 - 2⁻¹⁶) · 512 px, or 2²³ - 2 in 24.8.
 #[inline]
 const fn band(w: i64) -> i64 {
     64 * w - (w >> 16)
 }
 
-/// Signed distance of x, y, z, w from a plane, not negative inside, in a scale of its own.
+/// Returns the signed distance of a vertex from a plane: not negative inside, in a scale that differs from plane to
+/// plane.
 ///
 /// # Format
-/// Below 2⁵⁶ · 65 < 2⁶³.
+/// The result is below 2⁵⁶ · 65 < 2⁶³.
 #[inline(never)]
 pub(super) fn distance(plane: usize, vertex: &ClipVertex) -> i64 {
     let ClipVertex { x, y, z, w } = *vertex;
@@ -93,15 +101,17 @@ pub(super) fn distance(plane: usize, vertex: &ClipVertex) -> i64 {
     if plane & 1 == 0 { border - value } else { border + value }
 }
 
-/// A corner of what is clipped: where it is, and how much of the triangle's corners is in it.
+/// A corner of a polygon that is being clipped: its position, and its weights with respect to the triangle's three
+/// corners.
 ///
-/// Whatever a shader interpolates is made of the weights when clipping is done, so that clipping does not depend on shaders.
+/// The values that a shader interpolates are computed from the weights after clipping, so that clipping does not depend
+/// on shaders.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ClipCorner {
-    /// In clip space.
+    /// Position in clip space.
     pub vertex: ClipVertex,
-    /// Parts of the three corners, 2.30. A corner itself has [`WHOLE`](Self::WHOLE) of itself and nothing of the others; a
-    /// point on an edge has nothing of the third.
+    /// Weights of the triangle's three corners, 2.30. A corner of the triangle has the weight [`WHOLE`](Self::WHOLE)
+    /// for itself and 0 for the others; a point on an edge has the weight 0 for the third corner.
     pub weights: [i32; 3],
 }
 
@@ -109,7 +119,7 @@ impl ClipCorner {
     /// The weight 1.
     pub const WHOLE: i32 = 1 << 30;
 
-    /// VertexRef `k` of a triangle.
+    /// Makes corner `k` of a triangle.
     pub const fn new(vertex: ClipVertex, k: usize) -> Self {
         Self {
             vertex,
@@ -122,10 +132,12 @@ impl ClipCorner {
     }
 }
 
-/// The varyings at a corner with these weights, from those of the triangle's corners: unchanged at a corner itself.
+/// Mixes the varyings of a triangle's corners by weights. At a corner of the triangle itself, the varyings come out
+/// unchanged.
 ///
 /// # Format
-/// Products below 2⁶¹, rounded to nearest: values below 2²⁸ that are the same at all corners stay the same.
+/// Products are below 2⁶¹, and sums are rounded to nearest. A value below 2²⁸ that is equal at all corners comes out
+/// unchanged.
 #[inline(never)]
 pub fn weighted<V: Varyings>(weights: &[i32; 3], corners: &[V; 3]) -> V {
     let mut mixed = V::ZERO;
@@ -139,10 +151,11 @@ pub fn weighted<V: Varyings>(weights: &[i32; 3], corners: &[V; 3]) -> V {
     mixed
 }
 
-/// Most corners of a triangle that is cut by seven planes.
+/// Largest number of corners after a triangle has been cut by all seven planes.
 pub const CLIPPED_CORNERS: usize = 3 + PLANES;
 
-/// A triangle that is being clipped: the corners of its polygon, in order. There is room for as many as may come to be.
+/// A triangle that is being clipped: the corners of its polygon, in order, in a queue that holds the largest polygon
+/// possible.
 #[derive(Debug)]
 pub(crate) struct Clipping<'p> {
     polygon: &'p mut DequeView<ClipCorner>,
@@ -151,16 +164,16 @@ pub(crate) struct Clipping<'p> {
 /// A part of a triangle, by depth.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthSlab {
-    /// Before the near plane.
+    /// The part in front of the near plane.
     InFrontOfNear,
-    /// Between near and far plane.
+    /// The part between the near and the far plane.
     Inside,
-    /// Beyond the far plane.
+    /// The part beyond the far plane.
     BeyondFar,
 }
 
 impl DepthRange {
-    /// The depth planes that are not clipped at: what lies outside of them is drawn with its depth clamped.
+    /// Returns the depth planes that do not cut. The parts outside of them are drawn with their depth clamped.
     pub(crate) const fn clamped(self) -> Outcode {
         match self {
             Self::Clip => Outcode(0),
@@ -169,38 +182,39 @@ impl DepthRange {
         }
     }
 
-    /// The parts to draw beside that between the planes, of a triangle whose vertices' outcodes are `codes`, united.
+    /// Returns the slabs to draw beside the one between the planes, for a triangle with `codes`, the union of its
+    /// vertices' outcodes.
     #[doc(hidden)]
     pub fn clamped_slabs(self, codes: Outcode) -> impl Iterator<Item = DepthSlab> {
         let outside = codes.0 & self.clamped().0;
-        let parts = [(DepthSlab::InFrontOfNear, Outcode::NEAR), (DepthSlab::BeyondFar, Outcode::FAR)];
-        parts.into_iter().filter(move |(_, plane)| outside & plane != 0).map(|(part, _)| part)
+        let slabs = [(DepthSlab::InFrontOfNear, Outcode::NEAR), (DepthSlab::BeyondFar, Outcode::FAR)];
+        slabs.into_iter().filter(move |(_, plane)| outside & plane != 0).map(|(slab, _)| slab)
     }
 }
 
-/// Cuts a triangle by the planes in `codes` (the outcodes of its vertices, united) and hands on the corners of what is
-/// left in one part of it: a convex polygon, or nothing.
-pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, part: DepthSlab, emit: impl FnMut(&ClipCorner)) {
+/// Cuts a triangle by the planes in `codes`, the union of its vertices' outcodes, and hands on the corners of the part
+/// that lies in `slab`: a convex polygon, or nothing.
+pub fn clip_triangle(triangle: [ClipVertex; 3], codes: Outcode, slab: DepthSlab, emit: impl FnMut(&ClipCorner)) {
     let mut polygon = Deque::<_, CLIPPED_CORNERS>::new();
     for (k, vertex) in triangle.into_iter().enumerate() {
         let _ = polygon.push_back(ClipCorner::new(vertex, k));
     }
     let mut clipping = Clipping::new(&mut polygon);
-    clipping.clip(codes, part);
+    clipping.clip(codes, slab);
     clipping.corners().for_each(emit);
 }
 
 impl<'p> Clipping<'p> {
-    /// Begins with a triangle, in a queue with room for one corner more per plane.
+    /// Begins with a triangle, in a queue that has room for one more corner per plane.
     pub(crate) fn new(polygon: &'p mut DequeView<ClipCorner>) -> Self {
         Self { polygon }
     }
 
-    /// Clips the triangle by the planes in `codes` (the outcodes of its vertices, united): leaves what is inside of them, in one
-    /// slab of depth, or nothing.
+    /// Clips the triangle by the planes in `codes`, the union of its vertices' outcodes. Leaves the part inside of
+    /// these planes and in one slab of depth, or nothing.
     #[inline(never)]
     pub(crate) fn clip(&mut self, codes: Outcode, slab: DepthSlab) {
-        // A vertex at the eye itself leaves nothing to see: the triangle is edge-on, and has no direction to be cut in.
+        // A triangle with a vertex at the eye itself is invisible: it is edge-on, and has no direction to be cut in.
         if self.polygon.iter().any(|corner| corner.vertex == ClipVertex::default()) {
             self.polygon.clear();
         }
@@ -214,10 +228,11 @@ impl<'p> Clipping<'p> {
         }
     }
 
-    /// Leaves the part of the polygon that is on one side of a plane: inside, where distances are not negative, or outside.
+    /// Leaves the part of the polygon on one side of a plane: inside, where distances are not negative, or outside.
     ///
-    /// Takes each corner from the front of the queue and puts what is left of it, and of the edge to it, at the back. Entering the
-    /// side that is kept adds one corner, and leaving it takes one: so one corner more than before is all that is ever there.
+    /// Takes each corner from the front of the queue. Puts the crossing of the edge to this corner at the back, if
+    /// there is one, and then the corner, if it is kept. An edge that enters the kept side adds one corner; an edge
+    /// that leaves it replaces the corner by the crossing. So the queue never holds more than one additional corner.
     ///
     /// # Source
     /// Sutherland and Hodgman 1974, "Reentrant polygon clipping".
@@ -241,19 +256,19 @@ impl<'p> Clipping<'p> {
         }
     }
 
-    /// Returns the corners of what is left, in order.
+    /// Returns the corners of the clipped polygon, in order.
     pub(crate) fn corners(&self) -> impl Iterator<Item = &ClipCorner> {
         self.polygon.iter()
     }
 }
 
 impl DepthSlab {
-    /// Whether it is inside of a plane.
+    /// Returns whether the slab lies inside of a plane.
     pub(super) fn is_inside(self, plane: usize) -> bool {
         !((plane == NEAR && self == Self::InFrontOfNear) || (plane == FAR && self == Self::BeyondFar))
     }
 
-    /// Brings what is before or beyond to its plane.
+    /// Moves a vertex in front of the near plane or beyond the far plane to that plane.
     pub(super) fn clamp(self, vertex: &mut ClipVertex) {
         match self {
             Self::InFrontOfNear => vertex.z = 0,
@@ -263,19 +278,23 @@ impl DepthSlab {
     }
 }
 
-/// Returns the point where the edge between two corners on different sides of a plane meets the plane, from their distances
-/// `df` and `dt`. On the near and the far plane, its depth is exact.
+/// Returns the point where the edge between two corners on different sides of a plane meets the plane, from the
+/// corners' distances `df` and `dt`. On the near and the far plane, its depth is exact.
 ///
 /// # Format
-/// t = da / (da - db) as 0.64, rounded down, with a inside and b outside, so that AB is cut like BA; coordinates are off by
-/// less than 1 + 2⁻⁷ of their unit.
+/// t = da / (da - db) as 0.64, rounded down. a is the corner inside and b the one outside, so that AB is cut like BA.
+/// Coordinates are off by less than 1 + 2⁻⁷ of their unit.
 #[inline(never)]
 pub(super) fn crossing(plane: usize, from: &ClipCorner, to: &ClipCorner, df: i64, dt: i64) -> ClipCorner {
     let (a, b, da) = if df >= 0 { (from, to, df) } else { (to, from, dt) };
     let t = fraction(da as u64, df.abs_diff(dt));
     let (p, q) = (&a.vertex, &b.vertex);
-    let mut vertex =
-        ClipVertex { x: along(p.x, q.x, t), y: along(p.y, q.y, t), z: along(p.z, q.z, t), w: along(p.w, q.w, t) };
+    let mut vertex = ClipVertex {
+        x: interpolate(p.x, q.x, t),
+        y: interpolate(p.y, q.y, t),
+        z: interpolate(p.z, q.z, t),
+        w: interpolate(p.w, q.w, t),
+    };
     match plane {
         NEAR => vertex.z = 0,
         FAR => vertex.z = vertex.w,
@@ -283,17 +302,17 @@ pub(super) fn crossing(plane: usize, from: &ClipCorner, to: &ClipCorner, df: i64
     }
     let mut weights = a.weights;
     for (weight, b) in weights.iter_mut().zip(&b.weights) {
-        *weight = along((*weight).into(), (*b).into(), t) as i32;
+        *weight = interpolate((*weight).into(), (*b).into(), t) as i32;
     }
     ClipCorner { vertex, weights }
 }
 
-/// `a + (b - a) t` with t as 0.64, rounded towards `a`.
+/// Returns `a + (b - a) t` with t as 0.64, rounded towards `a`.
 ///
 /// # Format
-/// |b - a| < 2⁵⁷. Four products of halves, each below 2⁶⁴, their carries kept.
+/// |b - a| < 2⁵⁷. The product is made of four products of halves, each below 2⁶⁴, with their carries.
 #[inline(never)]
-fn along(a: i64, b: i64, t: u64) -> i64 {
+fn interpolate(a: i64, b: i64, t: u64) -> i64 {
     let d = b.abs_diff(a);
     let (d1, d0) = (d >> 32, d & 0xFFFF_FFFF);
     let (t1, t0) = (t >> 32, t & 0xFFFF_FFFF);
@@ -303,7 +322,7 @@ fn along(a: i64, b: i64, t: u64) -> i64 {
     if b < a { a - part } else { a + part }
 }
 
-/// `num / den` as 0.64, rounded down; `num < den < 2⁶³`.
+/// Returns `num / den` as 0.64, rounded down; `num < den < 2⁶³`.
 fn fraction(num: u64, den: u64) -> u64 {
     let mut rest = num;
     let mut quotient = 0;
@@ -349,7 +368,7 @@ mod tests {
         assert_eq!(corners([a, b, [0; 4]]), 0);
     }
 
-    /// The edge from a to -a meets w = 0 in the eye: what is left in front of it projects to a, and not to anywhere.
+    /// The edge from a to -a meets w = 0 in the eye: its part in front of the eye projects to a, and to no other point.
     #[test]
     fn edge_through_the_eye_is_cut_where_it_can_be_projected() {
         let a = [(1 << 50) + 12_345, -(1 << 49), 1 << 48, 1 << 51];
@@ -363,7 +382,7 @@ mod tests {
             let v = project(&corner.vertex);
             near += u32::from((v[0] - x).hypot(v[1] - y) < 0.5);
         });
-        // Both ends of what is left of the edge.
+        // Both ends of the remaining part of the edge.
         assert!(near >= 2);
     }
 }

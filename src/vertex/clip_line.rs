@@ -1,12 +1,13 @@
-//! Clipping of lines: by the planes of [`clip_triangle`](crate::vertex::clip_triangle), in the same order, with the same cuts.
+//! Clipping of lines: by the planes of [`clip_triangle`](crate::vertex::clip_triangle), in the order of its planes and
+//! with its cuts.
 
 use super::clip::{ClipCorner, ClipVertex, DepthSlab, Outcode, PLANES, crossing, distance};
 
-/// Cuts a line by the planes in `codes` (the outcodes of its ends, united): the ends of what is left in one part of it, if
-/// anything is. Their third weight is 0.
+/// Cuts a line by the planes in `codes`, the union of its ends' outcodes. Returns the ends of the part that lies in
+/// `slab`, or `None` if no part does. The third weight of both ends is 0.
 ///
-/// An end that is visible passes unchanged, bit by bit; AB is cut like BA.
-pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: DepthSlab) -> Option<[ClipCorner; 2]> {
+/// A visible end passes unchanged, bit by bit; AB is cut like BA.
+pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, slab: DepthSlab) -> Option<[ClipCorner; 2]> {
     let [a, b] = ends;
     let (mut a, mut b) = (ClipCorner::new(a, 0), ClipCorner::new(b, 1));
     for plane in 0..PLANES {
@@ -14,7 +15,7 @@ pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: DepthSlab) -> Opti
             continue;
         }
         let (da, db) = (distance(plane, &a.vertex), distance(plane, &b.vertex));
-        let [keeps_a, keeps_b] = [da, db].map(|d| (d >= 0) == part.is_inside(plane));
+        let [keeps_a, keeps_b] = [da, db].map(|d| (d >= 0) == slab.is_inside(plane));
         match (keeps_a, keeps_b) {
             (true, true) => {}
             (true, false) => b = crossing(plane, &a, &b, da, db),
@@ -22,8 +23,8 @@ pub fn clip_line(ends: [ClipVertex; 2], codes: Outcode, part: DepthSlab) -> Opti
             (false, false) => return None,
         }
     }
-    part.clamp(&mut a.vertex);
-    part.clamp(&mut b.vertex);
+    slab.clamp(&mut a.vertex);
+    slab.clamp(&mut b.vertex);
     Some([a, b])
 }
 
@@ -40,7 +41,7 @@ mod tests {
         Outcode(vertices.iter().fold(0, |all, v| all | Outcode::of(v).0))
     }
 
-    /// Random ends in all directions, with w of either sign.
+    /// Makes lines with random ends in all directions, with w of either sign.
     fn ends(count: usize) -> Vec<[ClipVertex; 2]> {
         let mut rng = Rng::new(17);
         let mut next = |limit: i64| rng.below(2 * limit as u64) as i64 - limit;
@@ -58,7 +59,7 @@ mod tests {
             let Some(cut) = clip_line(line, codes(&line), DepthSlab::Inside) else { continue };
             left += 1;
             for (end, original) in cut.iter().zip(&line) {
-                // The cuts' rounding: a few units of 2⁵⁰, and 65 times that at the guard band.
+                // Rounding of the cuts: a few units of 2⁵⁰, and 65 times as much at the guard band.
                 for plane in 0..PLANES {
                     assert!(distance(plane, &end.vertex) >= -400, "plane {plane}: {end:?}");
                 }
@@ -83,7 +84,7 @@ mod tests {
                 ClipCorner { weights: [b, a, c], ..corner }
             };
             assert_eq!(cut, back.map(|[a, b]| [turned(b), turned(a)]), "{line:?}");
-            // As an edge of a triangle whose third vertex is inside.
+            // The line is also cut as an edge of a triangle whose third vertex is inside.
             let third = ClipVertex { x: 0, y: 0, z: ONE / 4, w: ONE / 2 };
             let mut corners = Vec::new();
             clip_triangle([a, b, third], all, DepthSlab::Inside, |corner| corners.push(*corner));
@@ -101,7 +102,7 @@ mod tests {
         let line = [v(-ONE / 4, ONE / 2), v(ONE, ONE / 2)];
         let all = codes(&line);
         let parts =
-            [DepthSlab::InFrontOfNear, DepthSlab::Inside, DepthSlab::BeyondFar].map(|part| clip_line(line, all, part));
+            [DepthSlab::InFrontOfNear, DepthSlab::Inside, DepthSlab::BeyondFar].map(|slab| clip_line(line, all, slab));
         let [Some(before), Some(between), Some(beyond)] = parts else { panic!("{parts:?}") };
         assert_eq!((before[0].vertex.z, before[1], between[0]), (0, between[0], before[1]));
         assert_eq!((between[1], beyond[1].vertex.z), (beyond[0], beyond[1].vertex.w));

@@ -1,6 +1,10 @@
-//! The vertex stage: what a vertex shader sees and returns, and where the picture lies. A program meets [`Viewport`]
-//! first, if any: a part of the screen to draw in. [`VertexShader`] is for shaders of one's own, [`painters_order`]
-//! for scenes without a depth buffer.
+//! The vertex stage: what a vertex shader reads and returns, and where vertices lie on the screen.
+//!
+//! Meshes, matrices and a [`Viewport`] come in. Screen positions, clipped polygons and varyings go out. From here on,
+//! every vertex lies within ±32,767 px of the screen's corner.
+//!
+//! A program needs [`Viewport`] to draw in a part of the screen, [`VertexShader`] for a shader of its own, and
+//! [`painters_order`] for a scene without a depth buffer.
 
 pub(crate) mod clip;
 mod clip_distance;

@@ -1,8 +1,10 @@
-//! The painter's algorithm: what is farther is drawn first, for parts without RAM for depth, and for what is transparent.
+//! The painter's algorithm: far triangles are drawn before near ones, for targets without RAM for depth and for
+//! transparent surfaces.
 //!
-//! Triangles are sorted by their farthest vertices, and then, pair by pair, by the tests of Newell, Newell and Sancha (1972), "A
-//! solution to the hidden surface problem". All of them are made on the screen: projection leaves planes what they are, and
-//! puts the eye at depth minus infinity.
+//! A mesh and a matrix come in, and the mesh's indices in drawing order go out. Triangles are sorted by their farthest
+//! vertices, and then compared pair by pair with the tests of Newell, Newell and Sancha (1972), "A solution to the
+//! hidden surface problem". All tests are made on the screen: projection maps planes to planes, and puts the eye at
+//! depth minus infinity.
 
 use super::project::ScreenVertex;
 use super::transform::{Projected, Transform};
@@ -11,7 +13,8 @@ use crate::math::Projective;
 use crate::mesh::Mesh;
 use core::fmt;
 
-/// Sorts triangles by their farthest vertices, the farthest first. Equal ones come in any order, but always in that.
+/// Sorts triangles by their farthest vertices, the farthest first. Triangles with equal depth come in an arbitrary, but
+/// always equal, order.
 ///
 /// # Source
 /// Williams 1964, "Algorithm 232: heapsort".
@@ -25,7 +28,7 @@ fn far_to_near(triangles: &mut [SortScratch]) {
     }
 }
 
-/// Lets a triangle sink until none below it in the heap, which ends at `end`, is nearer.
+/// Lets a triangle sink until no triangle below it in the heap, which ends at `end`, is nearer.
 fn sift(triangles: &mut [SortScratch], mut root: usize, end: usize) {
     let at = |triangles: &[SortScratch], k: usize| triangles.get(k).map_or(u16::MAX, |triangle| triangle.depths().1);
     loop {
@@ -49,23 +52,24 @@ fn swap(triangles: &mut [SortScratch], a: usize, b: usize) {
     }
 }
 
-/// Memory for one triangle that [`painters_order`] sorts: the caller lends it, `SortScratch::default()` each.
+/// Memory for one triangle that [`painters_order`] sorts. The caller lends a slice of them, filled with
+/// `SortScratch::default()`.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SortScratch {
     corners: [u16; 3],
-    /// Whether it was moved before another one already.
+    /// Set once the triangle has been moved in front of another one, which happens at most once.
     moved: bool,
     v: [ScreenVertex; 3],
 }
 
 impl SortScratch {
-    /// Depth of the nearest and of the farthest vertex.
+    /// Returns the depths of the nearest and of the farthest vertex.
     fn depths(&self) -> (u16, u16) {
         let [a, b, c] = &self.v;
         (a.z.min(b.z).min(c.z), a.z.max(b.z).max(c.z))
     }
 
-    /// Tests 2 and 3: whether they are apart from left to right, or from top to bottom.
+    /// Tests 2 and 3: returns whether the two triangles are apart from left to right, or from top to bottom.
     fn is_beside(&self, other: &Self) -> bool {
         let apart = |coordinate: fn(&ScreenVertex) -> i32| {
             let range = |[a, b, c]: &[ScreenVertex; 3]| {
@@ -78,11 +82,13 @@ impl SortScratch {
         apart(|v| v.x) || apart(|v| v.y)
     }
 
-    /// Tests 4 and 5: whether all of it is on one side of the other's plane, the far side or the near one, or on the plane.
+    /// Tests 4 and 5: returns whether all of this triangle lies on the far side (or on the near side) of the plane of
+    /// another triangle, or on the plane.
     ///
     /// # Format
-    /// 24.8 is cut to 20.4, differences to 21 bits, those of depth 17: components of the normal below 2³⁹, 2³⁹ and 2⁴³, sums of
-    /// products below 2⁶³. What may come from cutting and from the rounding of depth counts as on the plane.
+    /// Coordinates of 24.8 are cut to 20.4, differences to 21 bits, and differences of depth to 17. So the components
+    /// of the normal are below 2³⁹, 2³⁹ and 2⁴³, and sums of products are below 2⁶³. Distances that cutting and the
+    /// rounding of depth may cause count as on the plane.
     fn is_beyond(&self, plane: &Self, far: bool) -> bool {
         let [a, b, c] = &plane.v;
         let to = |v: &ScreenVertex| ((v.x >> 4) - (a.x >> 4), (v.y >> 4) - (a.y >> 4), i32::from(v.z) - i32::from(a.z));
@@ -100,7 +106,7 @@ impl SortScratch {
         })
     }
 
-    /// Whether it may be drawn before the other one, by any of the tests.
+    /// Returns whether this triangle may be drawn earlier than `other`, by any of the tests.
     fn is_behind(&self, other: &Self) -> bool {
         self.is_beside(other) || self.is_beyond(other, true) || other.is_beyond(self, false)
     }
@@ -113,19 +119,19 @@ impl SortScratch {
 pub enum SortError {
     /// There are more triangles than lent places.
     TooShort {
-        /// Number of places.
+        /// Number of places in the memory.
         found: usize,
         /// Number of triangles.
         expected: usize,
     },
-    /// The indices do not hold three for each triangle.
+    /// There is no room for three indices per triangle.
     IndicesTooShort {
-        /// Number of indices there is room for.
+        /// Number of indices that fit.
         found: usize,
         /// Three times the number of triangles.
         expected: usize,
     },
-    /// The mesh has normals of faces, which would stay in their old order.
+    /// The mesh has normals of faces, which would stay in the old order of the triangles.
     FaceNormals,
 }
 
@@ -145,20 +151,22 @@ impl core::error::Error for SortError {}
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct SortReport {
-    /// Indices written, three a triangle, back to front.
+    /// Number of indices written: three per triangle, back to front.
     pub indices: usize,
-    /// Pairs of triangles that no order is right for: they go through one another, or each covers the next one in a ring.
+    /// Number of pairs of triangles for which no order is right: they go through one another, or belong to a ring of
+    /// triangles in which each covers the next.
     pub unresolved: u32,
 }
 
-/// Sorts a mesh's triangles from back to front, and leaves their corners in `indices`: for a mesh with
-/// [`Topology::Triangles`](crate::mesh::Topology::Triangles) and otherwise the same data, to be drawn without depth
-/// ([`DepthState::OFF`](crate::span::DepthState::OFF)).
+/// Sorts a mesh's triangles from back to front and writes their vertices' indices to `indices`.
 ///
-/// Triangles with a vertex that is not on the screen or near it are left where their other vertices put them; those with none
-/// come first.
+/// The result is the index list of a mesh with [`Topology::Triangles`](crate::mesh::Topology::Triangles) and otherwise
+/// the data of this mesh, which is drawn without depth ([`DepthState::OFF`](crate::span::DepthState::OFF)).
 ///
-/// Worst of all, every pair is compared: some 100 triangles are what it is for.
+/// A vertex outside of the screen's guard band or depth range does not count: its triangle is placed by its other
+/// vertices. Triangles without any other vertex come first.
+///
+/// In the worst case, every triangle is compared with every other one. It is meant for some 100 triangles.
 ///
 /// # Errors
 /// When a slice is too short, or the mesh has normals of faces.
@@ -198,7 +206,7 @@ pub fn painters_order(
     far_to_near(triangles);
     let mut order = SortReport { indices: 3 * count, unresolved: 0 };
     for next in 0..count {
-        order.unresolved = order.unresolved.wrapping_add(settle(triangles, next));
+        order.unresolved = order.unresolved.wrapping_add(place_next(triangles, next));
     }
     for (triangle, indices) in triangles.iter().zip(indices.chunks_exact_mut(3)) {
         if let [a, b, c] = indices {
@@ -208,14 +216,14 @@ pub fn painters_order(
     Ok(order)
 }
 
-/// Finds the triangle that is to be drawn next, and puts it in its place; pairs that stay wrong are counted.
-fn settle(triangles: &mut [SortScratch], next: usize) -> u32 {
-    // Each triangle is moved once at most, so this ends.
+/// Moves the triangle that is to be drawn next to place `next`. Returns the number of pairs that stay wrong.
+fn place_next(triangles: &mut [SortScratch], next: usize) -> u32 {
+    // The loop ends, because each triangle is moved at most once.
     'again: loop {
         let Some(first) = triangles.get(next).copied() else { return 0 };
         let mut unresolved = 0;
         for (k, other) in triangles.iter().enumerate().skip(next + 1) {
-            // Test 1: the rest is all nearer than this one.
+            // Test 1: all triangles from here on are nearer than `first`.
             if other.depths().1 <= first.depths().0 && !other.moved {
                 break;
             }

@@ -1,12 +1,12 @@
-//! The vertex stage's seam: what a shader sees of a vertex or a face, and what it hands on.
+//! The vertex stage's seam: what a shader reads of a vertex or a face, and what it hands on to the fragment stage.
 
 use super::clip_distance::MAX_DISTANCES;
 use super::varyings::Varyings;
 use crate::math::{Vec3, isqrt, leading_zeros_long, mul_high_signed, reciprocal};
 use crate::mesh::{Mesh, Positions};
 
-/// A vertex as the vertex shader sees it. Attributes the mesh does not have read as zero (normals and coordinates) or
-/// white (colours).
+/// A vertex as the vertex shader sees it. Attributes that the mesh does not have read as zero (normals and texture
+/// coordinates) or white (colours).
 #[derive(Clone, Copy, Debug)]
 pub struct VertexRef<'a> {
     mesh: &'a Mesh<'a>,
@@ -18,37 +18,37 @@ impl<'a> VertexRef<'a> {
         Self { mesh, index }
     }
 
-    /// Number of the vertex in its mesh.
+    /// Returns the number of the vertex in its mesh.
     #[must_use]
     pub const fn index(&self) -> usize {
         self.index
     }
 
-    /// Position in object space.
+    /// Returns the position in object space.
     #[must_use]
     pub fn position(&self) -> Vec3 {
         self.mesh.position(self.index)
     }
 
-    /// Normal in object space, 2.14.
+    /// Returns the normal in object space, 2.14.
     #[inline]
     #[must_use]
     pub fn normal(&self) -> [i16; 3] {
         self.mesh.data().normals.and_then(|n| n.get(self.index)).copied().unwrap_or_default()
     }
 
-    /// Colour: red, green, blue.
+    /// Returns the colour: red, green, blue.
     #[inline]
     #[must_use]
     pub fn color(&self) -> [u8; 3] {
-        // Channel by channel: three bytes at once are put together and taken apart.
+        // Channel by channel: copied at once, three bytes would be packed into a word and unpacked again.
         match self.mesh.data().colors.and_then(|colors| colors.get(self.index)) {
             Some([r, g, b]) => [*r, *g, *b],
             None => [255; 3],
         }
     }
 
-    /// Texture coordinates.
+    /// Returns the texture coordinates.
     #[inline]
     #[must_use]
     pub fn uv(&self) -> [crate::math::Scalar; 2] {
@@ -56,11 +56,11 @@ impl<'a> VertexRef<'a> {
     }
 }
 
-/// Which side of a triangle is seen.
+/// A side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Side {
-    /// The front: its corners go round as [`State::front`](crate::scene::State::front) says.
+    /// The front: seen from here, the corners go round as [`State::front`](crate::scene::State::front) says.
     Front,
     /// The back.
     Back,
@@ -78,31 +78,31 @@ pub struct Face<'a> {
 impl<'a> Face<'a> {
     #[inline]
     pub(crate) const fn new(mesh: &'a Mesh<'a>, triangle: usize, corners: [u16; 3], side: Side) -> Self {
-        // One by one: three halfwords at once are copied by a call, for want of alignment.
+        // One by one: three halfwords at once would be copied by a call, because they are not aligned to words.
         let [a, b, c] = corners;
         Self { mesh, triangle, corners: [a, b, c], side }
     }
 
-    /// Which side is seen: faces that show their back are drawn if [`State::cull`](crate::scene::State::cull) lets them, and may
-    /// be lit the other way round.
+    /// Returns the side that is seen. Triangles that show their back are drawn if
+    /// [`State::cull`](crate::scene::State::cull) lets them, and a shader may light them the other way round.
     #[must_use]
     pub const fn side(&self) -> Side {
         self.side
     }
 
-    /// Number of the triangle in its mesh.
+    /// Returns the number of the triangle in its mesh.
     #[must_use]
     pub const fn index(&self) -> usize {
         self.triangle
     }
 
-    /// The provoking vertex: the first of the triangle, which flat attributes come from.
+    /// Returns the provoking vertex: the first one of the triangle, which flat attributes come from.
     #[must_use]
     pub fn provoking(&self) -> VertexRef<'a> {
         VertexRef::new(self.mesh, usize::from(self.corners[0]))
     }
 
-    /// The three vertices, the provoking one first.
+    /// Returns the three vertices, the provoking one first.
     #[must_use]
     pub fn corners(&self) -> [VertexRef<'a>; 3] {
         let [a, b, c] = self.corners;
@@ -110,8 +110,8 @@ impl<'a> Face<'a> {
         [corner(a), corner(b), corner(c)]
     }
 
-    /// Normal of the face in object space, 2.14: the mesh's own where it has face normals, computed otherwise. Zero for
-    /// a triangle without area.
+    /// Returns the face's normal in object space, 2.14. It is the mesh's own if the mesh has face normals, and computed
+    /// otherwise. It is zero for a triangle without area.
     #[inline]
     #[must_use]
     pub fn normal(&self) -> [i16; 3] {
@@ -121,15 +121,16 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// The normal of the corners' positions.
+    /// Computes the normal from the corners' positions.
     ///
     /// # Format
-    /// Edges are scaled to 15 bits, which a normal of 2.14 does not tell; its components, at most 2³¹ - 2¹⁵, to 15 bits again,
-    /// so that the sum of their squares fits 32: within 2⁻¹² of the exact normal unless the edges are nearly parallel.
+    /// Edges are scaled to 15 bits, which makes no difference in a normal of 2.14. The components of their cross
+    /// product, at most 2³¹ - 2¹⁵, are scaled to 15 bits again, so that the sum of their squares fits 32 bits. The
+    /// result is within 2⁻¹² of the exact normal unless the edges are nearly parallel.
     fn computed_normal(&self) -> [i16; 3] {
         let positions = &self.mesh.data().positions;
         if let Positions::Homogeneous(_) = positions {
-            // There is none.
+            // Homogeneous positions do not give a normal.
             return [0; 3];
         }
         let [a, b, c] = self.corners;
@@ -152,10 +153,10 @@ impl<'a> Face<'a> {
     }
 }
 
-/// The direction from a corner to another, scaled to 15 bits.
+/// Returns the direction from a corner to another one, scaled to 15 bits.
 ///
 /// # Format
-/// Differences of 33 bits are halved, all three: that far they are to be shifted in any case.
+/// If a difference takes 33 bits, all three are halved: they would be shifted down at least that far anyway.
 #[inline(never)]
 fn edge(from: &[i32; 4], to: &[i32; 4]) -> [i32; 3] {
     let mut difference = [0; 3];
@@ -173,7 +174,7 @@ fn edge(from: &[i32; 4], to: &[i32; 4]) -> [i32; 3] {
     fifteen_bits(difference)
 }
 
-/// A vector scaled so that its largest component has 15 bits; rounded down, to -2¹⁵ at least.
+/// Scales a vector so that its largest component has 15 bits. Components are rounded down, to -2¹⁵ at least.
 #[inline(never)]
 fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
     let widest = v.iter().fold(0, |all, c| all | c.unsigned_abs());
@@ -182,51 +183,57 @@ fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
     v.map(|c| if zeros >= 0 { c << zeros } else { c >> -zeros })
 }
 
-/// The programmable vertex stage: computes what is interpolated over triangles, and what is constant on them.
+/// The programmable vertex stage: computes the values that are interpolated over triangles, and the word that is
+/// constant on each.
 ///
-/// Each vertex is shaded at most once a draw while records are used; without records, as often as it is needed.
+/// While records are used, each vertex is shaded at most once per draw. Without records, it is shaded as often as it is
+/// needed.
 pub trait VertexShader {
-    /// What is interpolated.
+    /// Type of the values that are interpolated.
     type Varyings: Varyings;
 
-    /// 32-bit words that a vertex's varyings take in the records.
+    /// Number of 32-bit words that a vertex's varyings take in the records.
     const WORDS: usize = <Self::Varyings as Varyings>::LEN;
 
-    /// How many low bits of all varyings are zero at the vertices, up to 16. Knowing it makes set-up cheaper: values of
-    /// at most 14 other bits take 32-bit arithmetic. What the clipper makes of them is cut to that too.
+    /// Number of low bits, up to 16, that are zero in all varyings at the vertices. Knowing it makes set-up cheaper:
+    /// values of at most 14 other bits take 32-bit arithmetic. The values that the clipper computes are cut to these
+    /// bits, too.
     const ZERO_BITS: u32 = 0;
 
-    /// Whether [`displace`](Self::displace) moves vertices. Such draws are not culled by the mesh's bounds.
+    /// Set if [`displace`](Self::displace) moves vertices. Such draws are not culled by the mesh's bounds.
     const DISPLACES: bool = false;
 
-    /// How many clip distances a vertex has: up to 4, cull distances included. Triangles are cut where one is negative.
+    /// Number of clip distances per vertex: up to 4, cull distances included. Triangles are cut where one is negative.
     const CLIP_DISTANCES: usize = 0;
 
-    /// How many cull distances it has. A triangle is left out if one of them is negative at all of its corners.
+    /// Number of cull distances per vertex. A triangle is left out if one of them is negative at all of its corners.
     const CULL_DISTANCES: usize = 0;
 
-    /// The varyings at a vertex.
+    /// Returns the varyings at a vertex.
     fn vertex(&self, vertex: &VertexRef<'_>) -> Self::Varyings;
 
-    /// Where the vertex is to be drawn, in object space; called only if [`DISPLACES`](Self::DISPLACES).
+    /// Returns the position in object space at which the vertex is drawn. It is called only if
+    /// [`DISPLACES`](Self::DISPLACES) is set.
     fn displace(&self, vertex: &VertexRef<'_>) -> Vec3 {
         vertex.position()
     }
 
-    /// Clip distances, then cull distances, on any scale: linear in space, not negative inside. Called only if there are any,
-    /// maybe more than once; they concern triangles, not lines and points.
+    /// Returns the clip distances, and then the cull distances, on any scale: linear in space, and not negative inside.
+    /// It is called only if the shader has distances, and possibly more than once per vertex. Distances concern
+    /// triangles, not lines and points.
     fn distances(&self, vertex: &VertexRef<'_>) -> [i32; MAX_DISTANCES] {
         let _ = vertex;
         [0; MAX_DISTANCES]
     }
 
-    /// One word that is constant on the triangle, handed to the fragment stage: a packed colour, an index, anything.
+    /// Returns one word that is constant on the triangle and handed to the fragment stage: a packed colour, an index,
+    /// anything.
     fn face(&self, face: &Face<'_>) -> u32 {
         let _ = face;
         0
     }
 
-    /// Packs varyings into `WORDS` words of a record. Override both together to save memory.
+    /// Packs varyings into `WORDS` words of a record. To save memory, override it together with [`load`](Self::load).
     #[inline]
     fn store(varyings: &Self::Varyings, words: &mut [u32]) {
         for (word, value) in words.iter_mut().zip(varyings.as_ref()) {
@@ -234,7 +241,7 @@ pub trait VertexShader {
         }
     }
 
-    /// Unpacks what [`store`](Self::store) packed.
+    /// Unpacks the words that [`store`](Self::store) packed.
     #[inline]
     #[must_use]
     fn load(words: &[u32]) -> Self::Varyings {

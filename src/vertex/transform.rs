@@ -1,8 +1,9 @@
-//! Object space → clip space: model, camera, viewport and the mesh's quantization folded into one integer matrix.
+//! Object space → clip space: model, camera, viewport and the mesh's quantization come in, and are folded into one
+//! integer matrix. Vertices of the mesh then come out in clip space or on the screen.
 //!
-//! Clip coordinates are homogeneous, so one common scale for all four rows is free. The rows are scaled so that the
-//! largest value any vertex can reach just fits the format, and the viewport is folded in: x / w and y / w are screen
-//! positions in units of 512 px from the screen's corner, z / w is depth.
+//! Clip coordinates are homogeneous, so one common scale for all four rows may be chosen freely. The rows are scaled so
+//! that the largest value that any vertex can reach just fits the format. The viewport is folded in: x / w and y / w
+//! are screen positions in units of 512 px from the screen's corner, and z / w is depth.
 
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
@@ -11,35 +12,37 @@ use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long, product};
 use crate::mesh::{Bounds, Mesh, Positions};
 use core::ops::Range;
 
-/// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space described above, in any scale.
+/// Model, camera and viewport in one matrix, from object space in 16.16 to the clip space of the module's
+/// documentation, in any scale.
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenMatrix {
     /// Rows x, y, z, w; the largest entry has 45 bits.
     rows: [[i64; 4]; 4],
-    /// Power of two that they are too large by, compared with the raw 32.32 of the matrix.
+    /// Exponent of the power of two by which the rows exceed the raw 32.32 values of the matrix.
     scale: i32,
 }
 
-/// A vertex transform, made once a draw.
+/// A vertex transform, made once per draw.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Transform {
     /// Rows x, y, z, w.
     rows: [Row; 4],
-    /// Whether they are those of the 32-bit path.
+    /// Set if the rows are those of the 32-bit path.
     short: bool,
-    /// Power of two that clip coordinates are too large by, compared with raw 32.32.
+    /// Exponent of the power of two by which clip coordinates exceed raw 32.32 values.
     scale: i32,
     uniform: Option<UniformDepth>,
 }
 
-/// A row of the matrix, its entries in two parts.
+/// A row of the matrix, with its entries in two parts.
 ///
 /// # Format
-/// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵. The short path, for
-/// quantized positions q, computes Σ m q / 2¹⁵ + t, rounded to nearest, with |m| < 2³⁰ and |t| < 2³⁰. On small cores, m is
-/// 2¹⁵ high + low with low in -2¹⁴..2¹⁴, and t is the last entry, for q = 1: its low part has 15 fractional bits and the half that
-/// rounds. Cores that multiply to 64 bits have 2 m in `low` and 2³² t in `translation`: the upper word of the sum with
-/// Σ 2 m 2¹⁶ q is what is asked for.
+/// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵.
+///
+/// The short path, for quantized positions q, computes Σ m q / 2¹⁵ + t, rounded to nearest, with |m| < 2³⁰ and |t| <
+/// 2³⁰. On small cores, m is 2¹⁵ high + low with low in -2¹⁴..2¹⁴, and t is the last entry, for q = 1. The low part of
+/// t has 15 fractional bits and includes the half that rounds. Cores that multiply to 64 bits have 2 m in `low` and 2³²
+/// t in `translation`: the result is the upper word of the sum with Σ 2 m 2¹⁶ q.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
     high: [i32; 4],
@@ -47,23 +50,23 @@ struct Row {
     translation: i64,
 }
 
-/// Where a vertex is.
+/// Result of projecting a vertex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projected {
-    /// On the screen, or at least within the guard band.
+    /// The vertex is on the screen, or at least within the guard band.
     OnScreen(ScreenVertex),
-    /// Outside of the planes in its code.
+    /// The vertex is outside of the planes in this outcode.
     NeedsClip(Outcode),
 }
 
-/// Outcodes, projection and snapping of a vertex in clip space.
+/// Returns the outcode of a vertex in clip space, or projects and snaps it, if the outcode is empty.
 pub fn projected(vertex: &ClipVertex) -> Projected {
     let code = Outcode::of(vertex);
     let placed = if code.0 == 0 { project(vertex) } else { None };
     placed.map_or(Projected::NeedsClip(code), Projected::OnScreen)
 }
 
-/// `value / 2^shift`, rounded to nearest; a negative shift multiplies. 0 for shifts above 62.
+/// Returns `value / 2^shift`, rounded to nearest; a negative shift multiplies. The result is 0 for shifts above 62.
 #[inline(never)]
 fn scale(value: i64, shift: i32) -> i64 {
     match shift {
@@ -76,17 +79,17 @@ fn scale(value: i64, shift: i32) -> i64 {
     }
 }
 
-/// `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶: at most 2⁶¹.
+/// Returns `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶. The result is at most 2⁶¹.
 #[cfg_attr(target_has_atomic = "32", inline)]
 #[cfg_attr(not(target_has_atomic = "32"), inline(never))]
 fn times(a: i64, b: i32) -> i64 {
-    // The lower half of `a` in two products of 16 bits, below 2³¹ and 2³².
+    // The lower half of `a` takes part in two products of 16 bits, below 2³¹ and 2³².
     let (high, low) = ((a >> 16) as i32, a as u32 & 0xFFFF);
     let fraction = low as i32 * (b >> 16) + ((low * (b as u32 & 0xFFFF)) >> 16) as i32;
     product(high, b) + i64::from(fraction)
 }
 
-/// Shifts that bring the largest of `values` below 2^`bits`; negative ones if they are smaller.
+/// Returns by how many bits the largest of `values` exceeds 2^`bits`; negative if it is smaller.
 #[inline(never)]
 fn excess(values: &[i64], bits: i32) -> i32 {
     let all = values.iter().fold(0, |all, v| all | v.unsigned_abs());
@@ -95,11 +98,11 @@ fn excess(values: &[i64], bits: i32) -> i32 {
 
 /// A bounding box cut to 14 bits, in units of 2^`shift`.
 struct ShortBox {
-    /// Centre and half size.
+    /// Centre and half size of the box.
     sides: [[i32; 3]; 2],
     shift: u32,
-    /// What a sum of products may be too small by.
-    off: i32,
+    /// Bound of what a sum of products may be too small by.
+    slack: i32,
 }
 
 impl ShortBox {
@@ -107,22 +110,22 @@ impl ShortBox {
         let mut sides = [bounds.center.to_bits(), bounds.half.to_bits()];
         let reach = sides.as_flattened().iter().fold(0, |all, c| all | c.unsigned_abs());
         let shift = 50_u32.saturating_sub(leading_zeros_long(reach.into())).max(2);
-        // What the entries may be off by takes part in each plane: 2 units times the coordinates and 1, halved.
-        let mut off = (1 << 16 >> shift) + 8;
+        // The error of the entries takes part in each plane: 2 units times the coordinates and times 1, halved.
+        let mut slack = (1 << 16 >> shift) + 8;
         for c in sides.as_flattened_mut() {
             *c >>= shift;
-            off += c.abs();
+            slack += c.abs();
         }
-        Self { sides, shift, off }
+        Self { sides, shift, slack }
     }
 
-    /// Whether `a` `row` + `b` `w` may be positive in it.
+    /// Returns whether `a` `row` + `b` `w` may be positive anywhere in the box.
     #[inline(never)]
     fn reaches(&self, row: &[i64; 4], a: i32, w: &[i64; 4], b: i32) -> bool {
         let entries: [i64; 4] = core::array::from_fn(|k| row[k] * i64::from(a) + w[k] * i64::from(b));
         let cut = excess(&entries, 15).max(17);
-        // The last entry, for a coordinate of 1, which is 2¹⁶ here.
-        let mut value = self.off + (((entries[3] >> cut) as i32) << 15 >> self.shift);
+        // The last entry belongs to a coordinate of 1, which is 2¹⁶ here.
+        let mut value = self.slack + (((entries[3] >> cut) as i32) << 15 >> self.shift);
         let [center, half] = &self.sides;
         for (entry, (center, half)) in entries.iter().zip(center.iter().zip(half)) {
             let entry = (entry >> cut) as i32;
@@ -134,16 +137,17 @@ impl ShortBox {
 }
 
 impl ScreenMatrix {
-    /// Of nothing yet.
+    /// The zero matrix: a place for [`set_from`](Self::set_from) to fill.
     pub const EMPTY: Self = Self { rows: [[0; 4]; 4], scale: 0 };
 
-    /// Becomes the matrix that takes object space to clip space with a viewport folded in.
+    /// Sets the matrix to the one that takes object space to clip space with a viewport folded in.
     #[inline(never)]
     pub fn set_from(&mut self, mvp: &Projective, viewport: &Viewport) {
-        // 1. The matrix to 44 bits, so that the viewport's 16 fit beside them.
+        // 1. Cut the matrix to 44 bits, so that the 16 bits of the viewport fit beside them.
         let shift = excess(mvp.rows().as_flattened(), 44).max(0);
         let cut = |entry: i64| if shift == 0 { entry } else { scale(entry, shift) };
-        // 2. The viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. Below 2⁶⁰.
+        // 2. Fold in the viewport: X px = cx + hw x / w, so X / 512 px = (W x + 2 cx w) / 1024 w; y points down. The
+        //    result is below 2⁶⁰.
         let [.., w] = mvp.rows();
         let (width, height) = (i32::from(viewport.width()), i32::from(viewport.height()));
         let (x, y) = (2 * i32::from(viewport.x()) + width, 2 * i32::from(viewport.y()) + height);
@@ -165,18 +169,19 @@ impl ScreenMatrix {
         self.scale = 10 - shift - more;
     }
 
-    /// Whether any of a box may be seen in a rectangle of the screen, in pixels at most 2¹⁶ from its corner. The depth
-    /// planes in `clamped` do not count. Errs on the side of `true`.
+    /// Returns whether any part of a box may be visible in a rectangle of the screen, given in pixels at most 2¹⁶ from
+    /// the screen's corner. The depth planes in `clamped` do not count. Errs on the side of `true`.
     ///
     /// # Format
-    /// Planes are sums of rows, such as 512 x - left w ≥ 0, below 2⁶² and off by less than 2¹⁶. They are cut to 15 bits and a sign,
-    /// by a shift of at least 17, and the box to 14 bits, by a shift of at least 2. So entries are off by less than 2 units,
-    /// coordinates by less than 1. Products are below 2²⁹; all is counted in halves, so that their sum fits.
+    /// Planes are sums of rows, such as 512 x - left w ≥ 0, below 2⁶² and off by less than 2¹⁶. They are cut to 15 bits
+    /// and a sign, by a shift of at least 17, and the box is cut to 14 bits, by a shift of at least 2. So entries are
+    /// off by less than 2 units, and coordinates by less than 1. Products are below 2²⁹; all terms are counted in
+    /// halves, so that their sum fits.
     #[inline(never)]
     pub fn sees(&self, bounds: &Bounds, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) -> bool {
         let short = ShortBox::new(bounds);
         let [.., w] = &self.rows;
-        // Depth is as a coordinate of 512 px, and of the others no plane is left out.
+        // Depth is handled as a coordinate of 512 px. Of the planes of x and y, none is left out.
         let axes = [(columns, 0), (lines, 0), (&(0..512), clamped.0)];
         self.rows.iter().zip(axes).all(|(row, (range, clamped))| {
             (clamped & Outcode::FAR != 0 || short.reaches(row, -512, w, range.end))
@@ -184,10 +189,10 @@ impl ScreenMatrix {
         })
     }
 
-    /// The least w in a box.
+    /// Returns the least w in a box.
     ///
     /// # Format
-    /// Entries below 2⁴⁵: six products of at most 2⁶⁰.
+    /// Entries are below 2⁴⁵: six products of at most 2⁶⁰.
     #[inline(never)]
     fn least_w(&self, bounds: &Bounds) -> i64 {
         let [.., row] = &self.rows;
@@ -202,33 +207,33 @@ impl ScreenMatrix {
     }
 }
 
-/// What a mesh makes of its numbers.
+/// Relation between the numbers that a mesh stores and its positions.
 ///
 /// # Format
-/// Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3: for all three formats written as Σ e p' / 2³¹ + t with 32-bit p'. Fractions
-/// are p' / 2¹⁶: p = offset + scale p' / 2³¹. Below 2⁶².
-struct Numbers {
+/// Positions are p / 2¹⁶, and clip = Σ r p / 2¹⁶ + r3. For all three formats, this is written as Σ e p' / 2³¹ + t with
+/// 32-bit p'. Stored fractions are p' / 2¹⁶, with p = offset + scale p' / 2³¹. Entries are below 2⁶².
+struct NumberFormat {
     factor: Option<i32>,
     offset: [i32; 3],
     homogeneous: bool,
 }
 
-impl Numbers {
+impl NumberFormat {
     fn of(mesh: &Mesh<'_>, displaced: bool) -> Self {
-        let mut numbers = Self { factor: None, offset: [0; 3], homogeneous: false };
+        let mut format = Self { factor: None, offset: [0; 3], homogeneous: false };
         match &mesh.data().positions {
             _ if displaced => {}
             Positions::Quantized { scale, offset, .. } => {
-                numbers.factor = Some(scale.to_bits());
-                numbers.offset = offset.to_bits();
+                format.factor = Some(scale.to_bits());
+                format.offset = offset.to_bits();
             }
-            Positions::Homogeneous(_) => numbers.homogeneous = true,
+            Positions::Homogeneous(_) => format.homogeneous = true,
             Positions::Exact(_) => {}
         }
-        numbers
+        format
     }
 
-    /// t of a row.
+    /// Returns t of a row.
     #[inline(never)]
     fn translation(&self, row: &[i64; 4]) -> i64 {
         let mut t = if self.homogeneous { 0 } else { row[3] };
@@ -242,18 +247,18 @@ impl Numbers {
         t
     }
 
-    /// The entries e of a row.
+    /// Returns the entries e of a row.
     #[inline]
     fn entries(&self, row: &[i64; 4]) -> impl Iterator<Item = i64> {
         row.iter().take(if self.homogeneous { 4 } else { 3 }).map(|r| match self.factor {
-            // As many are.
+            // Many entries are 0.
             _ if *r == 0 => 0,
             Some(factor) => times(*r, factor),
             None => *r << 15,
         })
     }
 
-    /// A quarter of the largest value that a row can reach.
+    /// Returns a quarter of the largest value that a row can reach.
     fn reach(&self, row: &[i64; 4]) -> i64 {
         let t = self.translation(row).unsigned_abs() as i64 >> 2;
         self.entries(row).fold(t, |sum, e| sum + (e.abs() >> 2) + 2)
@@ -269,7 +274,7 @@ impl Numbers {
             (*high, *low) = if !short {
                 ((e >> 16) as i32, (e & 0xFFFF) as i32)
             } else {
-                // Rounded, but below 2³⁰.
+                // Rounded, but kept below 2³⁰.
                 let m = (((e + (1 << 9)) >> 10) as i32).min((1 << 30) - 1);
                 if SMALL_CORE { halves(m) } else { (0, 2 * m) }
             };
@@ -286,7 +291,8 @@ impl Numbers {
     }
 }
 
-/// An entry of the short path in two: 2¹⁵ high + low, low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵ stay below 2³¹.
+/// Splits an entry of the short path in two: 2¹⁵ high + low, low in -2¹⁴..2¹⁴, so that three products with |q| ≤ 2¹⁵
+/// stay below 2³¹.
 #[inline(always)]
 const fn halves(m: i32) -> (i32, i32) {
     let low = ((m & 0x7FFF) ^ 0x4000) - 0x4000;
@@ -294,10 +300,11 @@ const fn halves(m: i32) -> (i32, i32) {
 }
 
 impl Row {
-    /// A clip coordinate, by either path.
+    /// Computes a clip coordinate, by either path.
     ///
     /// # Format
-    /// |p| ≤ 2³¹, entries below 2²⁴ whole: products below 2⁵⁵ whose sum was bounded; fractions below 2¹⁶ · 2³¹.
+    /// |p| ≤ 2³¹. Whole parts of entries are below 2²⁴: their products are below 2⁵⁵, and their sum was bounded.
+    /// Fractions are below 2¹⁶ · 2³¹.
     #[inline(never)]
     fn apply(&self, p: &[i32; 4], short: bool) -> i64 {
         let (mut value, mut fraction) = (self.translation, 0_i64);
@@ -312,10 +319,10 @@ impl Row {
         value + if short { fraction } else { fraction >> 1 }
     }
 
-    /// The short path.
+    /// Computes a clip coordinate by the short path.
     ///
     /// # Format
-    /// Small cores add up products below 2³⁰, to sums that are below 2³¹ as the result is not above 2³⁰ + 1.
+    /// Small cores add up products below 2³⁰. The sums are below 2³¹, because the result is not above 2³⁰ + 1.
     #[inline(always)]
     fn apply_short(&self, q: [i16; 3]) -> i32 {
         let q = [i32::from(q[0]), i32::from(q[1]), i32::from(q[2])];
@@ -338,10 +345,10 @@ impl Row {
 }
 
 impl Transform {
-    /// Folds everything that maps a mesh's numbers to the screen into one matrix.
+    /// Folds all steps from a mesh's numbers to the screen into one matrix.
     ///
-    /// `displaced` asks for a transform of 16.16 positions whatever the mesh's own format is, for vertex shaders that
-    /// move vertices.
+    /// `displaced` asks for a transform of 16.16 positions, whatever the mesh's own format is. Vertex shaders that move
+    /// vertices need it.
     pub fn new(mvp: &Projective, viewport: &Viewport, mesh: &Mesh<'_>, displaced: bool) -> Self {
         let mut transform = Self::default();
         let mut view = ScreenMatrix::EMPTY;
@@ -350,25 +357,25 @@ impl Transform {
         transform
     }
 
-    /// Becomes the transform of a mesh, from a matrix that has the viewport in it.
+    /// Sets the transform to that of a mesh, from a matrix that has the viewport in it.
     ///
     /// # Format
-    /// Entries keep 40 significant bits relative to the largest value a vertex can reach, so a vertex is off by less
-    /// than 2⁻³⁷ of it. Clip coordinates stay below 2⁵⁵ + 2.
+    /// Entries keep 40 significant bits relative to the largest value that a vertex can reach, so a vertex is off by
+    /// less than 2⁻³⁷ of this value. Clip coordinates stay below 2⁵⁵ + 2.
     #[inline(never)]
     pub fn set_from(&mut self, view: &ScreenMatrix, mesh: &Mesh<'_>, displaced: bool) {
-        let numbers = Numbers::of(mesh, displaced);
-        // One shift for all, so that the largest reachable value is just below 2⁵⁵.
-        let shift = excess(&[view.rows.iter().fold(0, |reach, row| reach | numbers.reach(row))], 53);
+        let format = NumberFormat::of(mesh, displaced);
+        // One shift for all rows, so that the largest reachable value is just below 2⁵⁵.
+        let shift = excess(&[view.rows.iter().fold(0, |reach, row| reach | format.reach(row))], 53);
         let least_w = view.least_w(mesh.bounds());
-        self.short = numbers.factor.is_some() && scale(least_w, shift) >= Self::SHORT_W;
+        self.short = format.factor.is_some() && scale(least_w, shift) >= Self::SHORT_W;
         (self.scale, self.uniform) = (view.scale - shift, None);
         for (row, from) in self.rows.iter_mut().zip(&view.rows) {
-            numbers.row(from, shift, self.short, row);
+            format.row(from, shift, self.short, row);
         }
     }
 
-    /// Sets how depth grows with distance.
+    /// Sets the growth of depth with distance.
     pub const fn set_depth_scale(&mut self, depth_scale: DepthScale) {
         self.uniform = match depth_scale {
             DepthScale::Perspective => None,
@@ -376,13 +383,13 @@ impl Transform {
         };
     }
 
-    /// Divides by w and snaps; `None` unless w > 0.
+    /// Divides a vertex by w and snaps it; `None` unless w > 0.
     pub fn project(&self, vertex: &ClipVertex) -> Option<ScreenVertex> {
-        // Clip coordinates of the short path are 2²⁵ units of the long one's.
+        // One unit of a clip coordinate of the short path is 2²⁵ units of the long path.
         project(vertex).map(|placed| self.with_depth(placed, if self.short { vertex.z << 25 } else { vertex.z }))
     }
 
-    /// A vertex on the screen with its depth, from z of the long path.
+    /// Returns a vertex on the screen with its depth, from z of the long path.
     #[inline]
     fn with_depth(&self, vertex: ScreenVertex, z: i64) -> ScreenVertex {
         match &self.uniform {
@@ -391,29 +398,29 @@ impl Transform {
         }
     }
 
-    /// The least w, on the scale of the long path, for which quantized positions take the short one.
+    /// The least w, on the scale of the long path, for which quantized positions take the short path.
     ///
     /// # Format
-    /// Values of the short path are those of the long one / 2²⁵, below 2³⁰ and a little, off by at most 3.5: half a unit from each of
-    /// three entries, of which one may lose another half to stay below 2³⁰, half from the constant and one from the cut; 4 are
-    /// added, so that w is not below 2²⁶ for that. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at most
-    /// 2¹⁷ · 3.5 · (1 + |x / w|) / w: 2⁻⁶ on a screen of 512 px, and below 1/8 as far as |x / w| < 16 lets it be, which is well
-    /// inside the guard band.
+    /// Values of the short path are those of the long path / 2²⁵: below 2³⁰ and a little, and off by at most 3.5 units.
+    /// Each of three entries is off by half a unit, one of them may lose another half to stay below 2³⁰, the constant
+    /// is off by half, and the cut by one. 4 units are added, so that w does not fall below 2²⁶ because of them. With w
+    /// ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at most 2¹⁷ · 3.5 · (1 + |x / w|) / w: by 2⁻⁶ on a
+    /// screen of 512 px, and by less than 1/8 as long as |x / w| < 16, which is well inside the guard band.
     const SHORT_W: i64 = (1 << 51) + (4 << 25);
 
-    /// Clip coordinates of a mesh vertex; the origin for an index past the end.
+    /// Returns the clip coordinates of a mesh vertex; the origin for an index past the end.
     #[inline(never)]
     pub fn vertex(&self, positions: &Positions<'_>, index: usize) -> ClipVertex {
         self.apply(&self.numbers(positions, index))
     }
 
-    /// w of [`vertex`](Self::vertex).
+    /// Returns w of [`vertex`](Self::vertex).
     pub(crate) fn w(&self, positions: &Positions<'_>, index: usize) -> i64 {
         let [.., w] = &self.rows;
         w.apply(&self.numbers(positions, index), self.short)
     }
 
-    /// What the rows are applied to.
+    /// Returns the four numbers of a vertex that the rows are applied to.
     #[inline]
     fn numbers(&self, positions: &Positions<'_>, index: usize) -> [i32; 4] {
         let mut p = positions.numbers(index);
@@ -427,7 +434,7 @@ impl Transform {
         p
     }
 
-    /// Where a mesh vertex is on the screen, or which planes keep it off.
+    /// Returns the position of a mesh vertex on the screen, or the planes that it is outside of.
     #[inline]
     pub fn project_vertex(&self, positions: &Positions<'_>, index: usize) -> Projected {
         if let (Positions::Quantized { points, .. }, true) = (positions, self.short) {
@@ -439,7 +446,8 @@ impl Transform {
         self.project_clip_vertex(&self.vertex(positions, index))
     }
 
-    /// The positions of a mesh if all that [`project_vertex`](Self::project_vertex) does with them is [`project_quantized`](Self::project_quantized).
+    /// Returns the positions of a mesh, if [`project_vertex`](Self::project_vertex) does nothing more with them than
+    /// [`project_quantized`](Self::project_quantized).
     #[inline]
     pub(crate) fn short_points<'p>(&self, positions: &Positions<'p>) -> Option<&'p [[i16; 3]]> {
         match positions {
@@ -448,12 +456,13 @@ impl Transform {
         }
     }
 
-    /// [`project_vertex`](Self::project_vertex) by the short path, perspective depth for all depth scales; and z.
+    /// Projects a quantized position as [`project_vertex`](Self::project_vertex) does, by the short path and with
+    /// perspective depth whatever the depth scale is. Returns z, too.
     #[inline(always)]
     pub(crate) fn project_quantized(&self, q: [i16; 3]) -> (Projected, i32) {
         let [x, y, z, w] = &self.rows;
         let (w, z) = (w.apply_short(q), z.apply_short(q));
-        // In the short path's range of w, only the near and the far plane are left to be outside of.
+        // With w in the short path's range, a vertex can only be outside of the near and the far plane.
         let placed = if (z as u32) <= w as u32 {
             Projected::OnScreen(project_short([x.apply_short(q), y.apply_short(q), z, w]))
         } else {
@@ -462,7 +471,7 @@ impl Transform {
         (placed, z)
     }
 
-    /// Where a vertex in clip space is on the screen, or which planes keep it off.
+    /// Returns the position of a vertex in clip space on the screen, or the planes that it is outside of.
     pub fn project_clip_vertex(&self, vertex: &ClipVertex) -> Projected {
         match projected(vertex) {
             Projected::OnScreen(placed) => Projected::OnScreen(self.with_depth(placed, vertex.z)),
@@ -470,18 +479,19 @@ impl Transform {
         }
     }
 
-    /// Clip coordinates of a 16.16 position, of a transform made for those.
+    /// Returns the clip coordinates of a 16.16 position. The transform must be one for such positions.
     pub fn point(&self, position: Vec3) -> ClipVertex {
         let [x, y, z] = position.to_bits();
         self.apply(&[x, y, z, 0])
     }
 
-    /// Whether vertices take the 32-bit path.
+    /// Returns whether vertices take the 32-bit path.
     pub const fn is_short(&self) -> bool {
         self.short
     }
 
-    /// Both paths, coordinate by coordinate: the long one, and the short one for the few vertices that are clipped.
+    /// Computes a clip vertex, coordinate by coordinate, by either path. The short path comes here only for the few
+    /// vertices that are clipped.
     #[inline(never)]
     fn apply(&self, p: &[i32; 4]) -> ClipVertex {
         let [x, y, z, w] = core::array::from_fn(|k| self.rows[k].apply(p, self.short));
@@ -499,7 +509,7 @@ mod tests {
         let mut rng = Rng::new(1);
         let mut random = |bits: u32| rng.signed_bits(bits) as i32;
         for _ in 0..100_000 {
-            // Entries of 28 bits and a sign, the last with 15 fractional bits.
+            // Entries have 28 bits and a sign; the last one has 15 fractional bits.
             let m = [random(29), random(29), random(29)];
             let t = i64::from(random(29)) << 15 | i64::from(random(16) & 0x7FFF);
             let q = [random(16) as i16, random(16) as i16, random(16) as i16];

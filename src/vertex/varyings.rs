@@ -1,28 +1,29 @@
-//! Varyings: what is interpolated over a triangle, linearly on the screen or, perspective-correct, linearly in space.
+//! Varyings: the values that are interpolated over a triangle. They are linear on the screen or, perspective-correct,
+//! linear in space.
 //!
 //! ```text
 //! linear on the screen:     v = Σ bᵢ vᵢ                          bᵢ: a pixel's barycentric coordinates on the screen
 //! linear in space:          v = Σ bᵢ vᵢ/wᵢ  /  Σ bᵢ/wᵢ
 //! ```
-//! Plain arrays are interpolated the first way. [`Perspective`] divides a part of itself; what it takes to do so is kept
-//! in its [`PerspectiveSetup`], which for arrays is nothing at all.
+//! Plain arrays are interpolated linearly on the screen. [`Perspective`] divides some of its values by w. The data that
+//! this takes per triangle is kept in its [`PerspectiveSetup`], which is `()` for arrays.
 
 use core::fmt::Debug;
 
-/// Quantities that are interpolated over a triangle: `[i32; N]`, in any fixed-point format the shader likes, or
+/// Values that are interpolated over a triangle: `[i32; N]`, in any fixed-point format that suits the shader, or
 /// [`Perspective`].
 ///
-/// Values may differ by less than 2³¹ over the triangle; those that are linear on the screen are within 2¹³ of their exact
-/// value (and 2 for each pixel of a small triangle), so give what has to be smooth some 16 fractional bits.
+/// Values may differ by less than 2³¹ over the triangle. Values that are linear on the screen are within 2¹³ of their
+/// exact value, plus 2 per pixel on a small triangle. So values that have to be smooth need some 16 fractional bits.
 pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
-    /// How many.
+    /// Number of values.
     const LEN: usize;
-    /// All zero.
+    /// Varyings that are all zero.
     const ZERO: Self;
-    /// How many, from the first, are perspective-correct. If any, the last one is not the shader's: the pipeline keeps
-    /// 1 / w there.
+    /// Number of values, counted from the first, that are perspective-correct. If there are any, the last value is not
+    /// the shader's: the pipeline keeps 1 / w there.
     const PERSPECTIVE: usize = 0;
-    /// What the fragment stage must know of a triangle to correct them.
+    /// Data per triangle that the fragment stage needs to correct perspective-correct values.
     type PerspectiveSetup: PerspectiveSetup;
 
     /// Adds `change`, modulo 2³².
@@ -41,7 +42,7 @@ pub trait Varyings: Copy + AsRef<[i32]> + AsMut<[i32]> {
         }
     }
 
-    /// Puts 1 / w into its place.
+    /// Puts 1 / w into its place, the last value, if any value is perspective-correct.
     #[inline]
     fn set_inverse_w(&mut self, inverse_w: u32) {
         if let (true, [.., last]) = (Self::PERSPECTIVE > 0, self.as_mut()) {
@@ -66,8 +67,8 @@ impl<const N: usize> Varyings for [i32; N] {
     }
 }
 
-/// The most values that are kept in registers. More of them are changed where they are, by functions of their own: the loops
-/// around would otherwise hold copies of them, and of their changes, on the stack.
+/// The largest number of values that are kept in registers. If there are more, functions that are not inlined change
+/// them in memory: otherwise the loops around would hold copies of the values, and of their changes, on the stack.
 pub(crate) const MAX_IN_REGISTERS: usize = 3;
 
 /// Adds `changes`, modulo 2³².
@@ -96,7 +97,8 @@ fn advance_outlined<const N: usize>(values: &mut [i32; N], changes: &[i32; N], p
     advance_inlined(values, changes, pixels);
 }
 
-/// Spelled out: at `opt-level = "s"` a loop would stay a loop, through memory.
+/// Adds `pixels` times `changes`, value by value without a loop: at `opt-level = "s"`, a loop would stay a loop, and
+/// its values would go through memory.
 #[inline(always)]
 fn advance_inlined<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pixels: i32) {
     let (values, changes) = (values.as_mut_slice(), changes.as_slice());
@@ -116,7 +118,7 @@ fn advance_inlined<const N: usize>(values: &mut [i32; N], changes: &[i32; N], pi
     advance_one(values, changes, pixels, 7);
 }
 
-/// Advances a value, if there are so many.
+/// Advances value `k`, if there is one.
 #[inline(always)]
 fn advance_one(values: &mut [i32], changes: &[i32], pixels: i32, k: usize) {
     if let (Some(value), Some(change)) = (values.get_mut(k), changes.get(k)) {
@@ -124,11 +126,12 @@ fn advance_one(values: &mut [i32], changes: &[i32], pixels: i32, k: usize) {
     }
 }
 
-/// Varyings of which the first `P` are perspective-correct, and those after them linear on the screen; `N` is one more than
-/// all of them, as the pipeline keeps 1 / w in the last place.
+/// Varyings of which the first `P` are perspective-correct, and the others linear on the screen. `N` is one more than
+/// the number of both, because the pipeline keeps 1 / w in the last place.
 ///
-/// Perspective-correct values may differ by less than 2²⁸ over a triangle. They are within 2⁻¹² of the largest difference
-/// (and half a unit) of the exact value; the sub-span mode adds what [`Shader::STEP`](crate::span::Shader::STEP) says.
+/// Perspective-correct values may differ by less than 2²⁸ over a triangle. They are within 2⁻¹² of the largest
+/// difference (and half a unit) of the exact value. The sub-span mode adds the error that
+/// [`Shader::STEP`](crate::span::Shader::STEP) states.
 ///
 /// ```
 /// use zstrip::vertex::Perspective;
@@ -141,7 +144,7 @@ fn advance_one(values: &mut [i32], changes: &[i32], pixels: i32, k: usize) {
 pub struct Perspective<const P: usize, const N: usize>([i32; N]);
 
 impl<const P: usize, const N: usize> Perspective<P, N> {
-    /// From the perspective-correct and the linear ones.
+    /// Makes varyings from the perspective-correct values and the linear ones.
     #[inline]
     #[must_use]
     pub const fn new<const L: usize>(corrected: [i32; P], linear: [i32; L]) -> Self {
@@ -159,14 +162,14 @@ impl<const P: usize, const N: usize> Perspective<P, N> {
         Self(all)
     }
 
-    /// The perspective-correct ones.
+    /// Returns the perspective-correct values.
     #[inline]
     #[must_use]
     pub fn corrected(&self) -> [i32; P] {
         self.0.first_chunk().copied().unwrap_or([0; P])
     }
 
-    /// Those that are linear on the screen.
+    /// Returns the values that are linear on the screen.
     #[inline]
     #[must_use]
     pub fn linear(&self) -> &[i32] {
@@ -205,21 +208,22 @@ impl<const P: usize, const N: usize> Varyings for Perspective<P, N> {
     type PerspectiveSetup = PerspectivePlanes<P>;
 }
 
-/// Perspective of a triangle, as far as its fragments need it to correct varyings: worked out once per triangle.
+/// Data about a triangle's perspective that its fragments need to correct varyings. It is computed once per triangle.
 pub trait PerspectiveSetup: Copy + Debug {
-    /// Perspective of a triangle whose varyings are linear on the screen.
+    /// Setup of a triangle whose varyings are all linear on the screen.
     const NONE: Self;
 
-    /// Returns how much there is to correct.
+    /// Returns the amount of perspective to correct.
     fn class(&self) -> PerspectiveClass;
 
-    /// Returns the class, the plane of 1 / w in 64 bits, and the planes of perspective-correct varyings; `None` if there are none.
+    /// Returns the class, the plane of 1 / w in 64 bits, and the planes of perspective-correct varyings; `None` if no
+    /// varying is perspective-correct.
     fn parts_mut(&mut self) -> Option<(&mut PerspectiveClass, &mut Plane64, &mut [PerspectivePlane])>;
 
     /// Returns the planes of perspective-correct varyings.
     fn planes(&self) -> &[PerspectivePlane];
 
-    /// Returns the plane of 1 / w, of use where the class is [`Planes64`](PerspectiveClass::Planes64).
+    /// Returns the plane of 1 / w in 64 bits, which is set where the class is [`Planes64`](PerspectiveClass::Planes64).
     fn inverse_w64(&self) -> Plane64;
 }
 
@@ -247,19 +251,20 @@ impl PerspectiveSetup for () {
     }
 }
 
-/// How much perspective there is in a triangle.
+/// Amount of perspective in a triangle.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum PerspectiveClass {
-    /// So little that varyings are linear on the screen.
+    /// There is so little perspective that varyings are linear on the screen.
     #[default]
     Affine,
-    /// Varyings have to be divided; planes in 32 bits are exact enough for that.
+    /// Varyings have to be divided, and planes in 32 bits are exact enough to do so.
     Planes32,
-    /// Varyings have to be divided, and that takes planes in 64 bits.
+    /// Varyings have to be divided, and this takes planes in 64 bits.
     Planes64,
 }
 
-/// A plane with 32 fractional bits more than others have, modulo 2⁶⁴: value at the screen's corner and changes.
+/// A plane with 32 more fractional bits than [`PlaneEquation`](crate::raster::PlaneEquation), modulo 2⁶⁴: its value at
+/// the screen's corner, and its changes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Plane64 {
     /// The value at the pixel in the screen's top left corner.
@@ -274,24 +279,24 @@ impl Plane64 {
     /// Zero everywhere.
     pub const ZERO: Self = Self { base: 0, dx: 0, dy: 0 };
 
-    /// The value at a pixel.
+    /// Returns the value at a pixel.
     pub(crate) const fn at(&self, (x, y): (i32, i32)) -> i64 {
         self.base.wrapping_add(self.dx.wrapping_mul(x as i64)).wrapping_add(self.dy.wrapping_mul(y as i64))
     }
 }
 
-/// A perspective-correct varying on a triangle: it is `base` + (h >> `shift`), h being interpolated.
+/// A perspective-correct varying on a triangle: its value is `base` + (h >> `shift`), where h is interpolated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PerspectivePlane {
     /// The value at the first vertex.
     pub base: i32,
-    /// By how much differences from it are scaled up, so that the largest is in 2²⁷..2²⁸.
+    /// Number of bits by which differences from `base` are scaled up, so that the largest is in 2²⁷..2²⁸.
     pub shift: u32,
-    /// h / w, where it is [`Planes64`](PerspectiveClass::Planes64).
+    /// The plane of h / w, set where the class is [`Planes64`](PerspectiveClass::Planes64).
     pub wide: Plane64,
 }
 
-/// The [`PerspectiveSetup`] of `P` varyings.
+/// The [`PerspectiveSetup`] for `P` perspective-correct varyings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PerspectivePlanes<const P: usize> {
     class: PerspectiveClass,

@@ -1,9 +1,11 @@
-//! The viewport: which rectangle of the screen clip space is mapped to.
+//! The viewport: the rectangle of the screen that clip space is mapped to. A position and a size come in, and are
+//! checked once: every [`Viewport`] lies well inside of the guard band.
 
 use core::fmt;
 use embedded_graphics_core::geometry::{Point, Size};
 
-/// A rectangle of the screen in pixels; the corner may lie outside the screen, up to 32,767 px away.
+/// A rectangle of the screen in pixels. Its corner may lie outside the screen, up to [`MAX_OFFSET`](Self::MAX_OFFSET)
+/// px away.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Viewport {
@@ -27,7 +29,7 @@ pub enum ViewportError {
         /// Width and height.
         size: Size,
     },
-    /// The corner is more than [`Viewport::MAX_OFFSET`] px off the screen's.
+    /// The corner is more than [`Viewport::MAX_OFFSET`] px away from the screen's corner.
     TooFar {
         /// Position of the corner.
         top_left: Point,
@@ -61,13 +63,13 @@ impl Viewport {
     /// Largest width and height of a viewport and of a screen: gradients lose less than 2⁻³ of a step over it.
     pub const MAX_SIZE: u16 = 4096;
 
-    /// Largest distance of the corner from that of the screen, so that it cannot come near the guard band.
+    /// Largest distance of the corner from the screen's corner, so that the viewport stays away from the guard band.
     pub const MAX_OFFSET: u16 = 8192;
 
-    /// Returns the rectangle of `size` with its top left corner at `top_left`.
+    /// Makes the rectangle of `size` with its top left corner at `top_left`.
     ///
     /// # Errors
-    /// When it is empty, larger than [`MAX_SIZE`](Self::MAX_SIZE), or farther away than
+    /// When the rectangle is empty, larger than [`MAX_SIZE`](Self::MAX_SIZE), or farther away than
     /// [`MAX_OFFSET`](Self::MAX_OFFSET).
     pub const fn new(top_left: Point, size: Size) -> Result<Self, ViewportError> {
         let (Point { x, y }, Size { width, height }) = (top_left, size);
@@ -83,7 +85,7 @@ impl Viewport {
         Ok(Self { x: x as i16, y: y as i16, width: width as u16, height: height as u16 })
     }
 
-    /// Returns the whole of a screen.
+    /// Makes the rectangle that covers a whole screen.
     ///
     /// # Errors
     /// When the screen is empty or larger than [`MAX_SIZE`](Self::MAX_SIZE).
@@ -91,13 +93,13 @@ impl Viewport {
         Self::new(Point::new(0, 0), screen)
     }
 
-    /// Returns the top left corner, from that of the screen.
+    /// Returns the position of the top left corner, relative to the screen's corner.
     #[must_use]
     pub const fn top_left(&self) -> Point {
         Point::new(self.x as i32, self.y as i32)
     }
 
-    /// Returns width and height.
+    /// Returns the width and the height.
     #[must_use]
     pub const fn size(&self) -> Size {
         Size::new(self.width as u32, self.height as u32)

@@ -1,4 +1,4 @@
-//! Shaders around other shaders.
+//! Shaders around other shaders: a [`Wrapper`] names the shader inside, and gets its vertex stage from it.
 
 use super::clip_distance::MAX_DISTANCES;
 use super::shader::{Face, VertexRef, VertexShader};
@@ -6,8 +6,8 @@ use crate::math::Vec3;
 
 /// A shader around another one, whose vertex stage it leaves as it is: fog, blending, an alpha test.
 ///
-/// A wrapper is a [`VertexShader`] already; it implements [`Shader`](crate::span::Shader) itself, and hands
-/// [`Shader::setup`](crate::span::Shader::setup) on.
+/// A wrapper is a [`VertexShader`] already. It implements [`Shader`](crate::span::Shader) itself, and forwards
+/// [`Shader::setup`](crate::span::Shader::setup).
 ///
 /// ```
 /// use zstrip::color::PixelFormat;
@@ -39,7 +39,7 @@ use crate::math::Vec3;
 /// }
 /// ```
 pub trait Wrapper {
-    /// The shader inside.
+    /// Type of the shader inside.
     type Inner: VertexShader;
 
     /// Returns the shader inside.
