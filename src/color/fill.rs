@@ -15,8 +15,8 @@
 //!    clearing 1.39 → 0.89 and 0.88 → 0.63 per pixel.
 //! 3. **Values are handed over as arguments**, which are in such registers from the start. On larger cores eight words
 //!    are stored at a time, and an overlapping first store takes the place of a tail: W1 1.53 → 1.34 and 0.96 → 0.82.
-//! 4. **Small cores store five words at a time** in whole buffers. Four words suit rows, whose widths are often multiples
-//!    of four words; a whole buffer is one long stretch.
+//! 4. **Small cores store five words at a time** in whole buffers. Four words suit rows, whose widths are often
+//!    multiples of four words; a whole buffer is one long stretch.
 
 use crate::math::SMALL_CORE;
 use bytemuck::Pod;

@@ -4,6 +4,7 @@ use super::painter::RasterHooks;
 use super::scene::Scene;
 use super::state::{Cull, State};
 use super::stroke::{Stroke, Thin, block};
+use crate::color::{channels, packed};
 use crate::math::Pixels;
 use crate::raster::{PixelRect, pixel_rect, square};
 use crate::shader::{Flat, Gouraud};
@@ -11,7 +12,7 @@ use crate::span::{DepthState, Shader};
 use crate::target::Framebuffer;
 use crate::vertex::ScreenVertex;
 use embedded_graphics_core::geometry::Point;
-use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+use embedded_graphics_core::pixelcolor::Rgb888;
 use embedded_graphics_core::primitives::Rectangle;
 
 /// A point on the screen: x to the right and y down from the top left corner. The centre of a pixel is at .5.
@@ -163,11 +164,6 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 }
 
-/// A colour as flat shading hands it to its spans.
-fn word(color: Rgb888) -> u32 {
-    u32::from_be_bytes([0, color.r(), color.g(), color.b()])
-}
-
 impl<F: Framebuffer> Canvas<'_, '_, F> {
     /// Draws at another depth from here on, by a depth test of one's own; the scissor stays.
     pub const fn set_depth(&mut self, z: u16, depth: DepthState) {
@@ -196,13 +192,19 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         }
         let Self { scene, clip, state, z, .. } = self;
         let shader = Flat::unlit(color);
-        block(&mut scene.painter(clip, state, &const { RasterHooks::ANY }, &shader), rect, *z, &[], word(color));
+        block(
+            &mut scene.painter(clip, state, &const { RasterHooks::ANY }, &shader),
+            rect,
+            *z,
+            &[],
+            packed(channels(color)),
+        );
     }
 
     /// Fills a convex polygon; its corners may go round either way.
     pub fn polygon(&mut self, corners: &[ScreenPoint], color: impl Into<Rgb888>) {
         let color = color.into();
-        self.fan(corners, |corner| (*corner, []), &Flat::unlit(color), word(color));
+        self.fan(corners, |corner| (*corner, []), &Flat::unlit(color), packed(channels(color)));
     }
 
     /// Fills a convex polygon with the colours of its corners: with more than three, as a fan of triangles about the first.
@@ -256,7 +258,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
     /// Draws a line with a stroke of one's choice.
     pub fn line_with(&mut self, a: ScreenPoint, b: ScreenPoint, color: impl Into<Rgb888>, stroke: &impl Stroke) {
         let color = color.into();
-        self.segment(&[(a, []), (b, [])], &Flat::unlit(color), word(color), stroke);
+        self.segment(&[(a, []), (b, [])], &Flat::unlit(color), packed(channels(color)), stroke);
     }
 
     /// Draws a line that goes from one colour to another.

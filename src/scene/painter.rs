@@ -1,4 +1,7 @@
 //! Stages 8 to 11 of [the pipeline](crate#the-pipeline): a triangle on the screen → pixels.
+//!
+//! Triangles come in with snapped vertices, their varyings and their face's word. Only pixels of the painter's clip
+//! rectangle are written.
 
 use super::scene::{Scene, Target};
 use super::state::State;
@@ -9,34 +12,34 @@ use crate::span::{
 use crate::target::Framebuffer;
 use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, signed_area};
 
-/// Draws the triangles of a draw, with its state and shader. Public for [`Draw`](crate::scene::Draw), but nobody can name it.
-pub struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
+/// Draws the triangles of a draw call, with its state and its shader.
+pub(super) struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) target: &'p mut Target<'t, F>,
     pub(super) screen: (u16, u16),
-    /// Pixels that may be drawn: on the screen, and in the strip.
+    /// Pixels that may be drawn: in the strip, inside of the viewport and of a canvas's scissor.
     pub(super) clip: &'p PixelRect,
     pub(super) state: &'p State,
     pub(super) shader: &'p S,
     pub(super) hooks: &'p RasterHooks<F, S>,
 }
 
-/// Parts of the rasterization that only some states need, as functions chosen where the state is known: a program links what its
-/// states ask for.
-pub struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
-    /// Draws the spans of a triangle, by a depth test: stage 9 of [the pipeline](crate#the-pipeline).
+/// Parts of the rasterization that only some states need, as functions. They are chosen where the state is known, so
+/// that a program links only what its states ask for.
+pub(super) struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
+    /// Draws the spans of a triangle under a depth test: stage 9 of [the pipeline](crate#the-pipeline).
     spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
-    /// Computes the depth bias of a triangle, a part of stage 8, if the state has one.
+    /// Computes the depth bias of a triangle, a part of stage 8, if the state may have one.
     bias: Option<Bias>,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
-    /// For [`State::DEFAULT`].
+    /// Functions for [`State::DEFAULT`].
     pub(super) const DEFAULT: Self = Self { spans: if F::DEPTH { spans_nearer } else { spans_over }, bias: None };
 
-    /// For any state.
+    /// Functions for any state.
     pub(super) const ANY: Self = Self { spans: if F::DEPTH { spans_by_state } else { spans_over }, bias: Some(biased) };
 
-    /// For a state.
+    /// Chooses the functions for a state.
     #[inline(always)]
     pub(super) fn of(state: &State) -> Self {
         Self {
@@ -52,7 +55,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
 
 type Bias = fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32;
 
-/// Computes the steps of depth that a bias adds to a triangle.
+/// Computes the steps that a depth bias adds to the depths of a triangle.
 fn biased(bias: &DepthBias, [a, b, c]: &[ScreenVertex; 3], depth: &PlaneEquation) -> i32 {
     bias.steps(a.z.min(b.z).min(c.z)..a.z.max(b.z).max(c.z), depth.dx, depth.dy)
 }
@@ -83,12 +86,12 @@ fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
-    /// Returns the depth test: without a depth buffer, every fragment passes.
+    /// Returns the depth test. Without a depth buffer, every fragment passes.
     pub(super) fn test(&self) -> DepthState {
         if F::DEPTH { self.state.depth } else { DepthState::OFF }
     }
 
-    /// Draws a triangle.
+    /// Draws a triangle, unless its area is 0.
     #[inline]
     pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
         let area = signed_area(&v[0], &v[1], &v[2]);
@@ -97,7 +100,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
     }
 
-    /// Draws a triangle, whose signed area is given and not 0.
+    /// Draws a triangle whose signed area is given, and is not 0.
     #[inline(never)]
     pub(super) fn triangle_of_area(
         &mut self,
@@ -109,19 +112,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let primitive = Primitive::constant(S::Varyings::ZERO, flat, self.state.side(area), S::Setup::default());
         let mut set_up = SetUp { v, area, depth: PlaneEquation::default(), primitive };
         self.set_up(&mut set_up, varyings);
-        // Stage 9, in a loop of its own for each kind of depth test.
+        // Stage 9, in a loop for each kind of depth test.
         (self.hooks.spans)(self, &set_up);
     }
 
-    /// Computes the plane equations of depth and varyings, whose values are those at the screen's corner, and lets the shader set up:
-    /// stage 8 of [the pipeline](crate#the-pipeline). Out of line and in place, so that its stack is free again while spans are
-    /// drawn.
+    /// Computes the plane equations of depth and varyings, and lets the shader set up: stage 8 of [the
+    /// pipeline](crate#the-pipeline). The base of each plane is its value at the screen's top left corner.
+    ///
+    /// Out of line, with its result in place, so that its frame is not on the stack while spans are drawn.
     #[inline(never)]
     fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings, S::Setup>, varyings: &[S::Varyings; 3]) {
         let SetUp { v, area, depth, primitive } = set_up;
         let corners = varyings.each_ref();
         if S::Varyings::LEN == 0 && v[0].z == v[1].z && v[0].z == v[2].z {
-            // A plane that is known, and no other.
+            // Depth is constant, and there are no varyings: no gradient to compute.
             depth.base = u32::from(v[0].z) << 16;
         } else {
             let gradients = Gradients::new(v, *area, self.screen);
@@ -155,7 +159,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         primitive.setup = self.shader.setup(&triangle);
     }
 
-    /// Draws the spans between two edges, from row to row: stage 9 of [the pipeline](crate#the-pipeline).
+    /// Draws the spans between the edges of a triangle, row by row: stage 9 of [the pipeline](crate#the-pipeline).
     #[inline(never)]
     fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
         if S::Varyings::LEN > MAX_IN_REGISTERS {
@@ -172,7 +176,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             return;
         }
         let (mut left, mut right) = (outline.side(false, outline.top), outline.side(true, outline.top));
-        // What is at column 0 of the row; depth with the half that rounds.
+        // Depth at column 0 of the row, with the half that rounds.
         let mut y = outline.top;
         let mut z = depth.base.wrapping_add(1 << 15).wrapping_add_signed(depth.dy.wrapping_mul(y));
         let (bend, last, bend_right) = (outline.bend, outline.end, outline.bend_right);
@@ -185,23 +189,26 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                     left = edge;
                 }
             }
-            // All rows up to the bend, or to the end, where they lie one after the other in memory, as their depths do; otherwise one.
+            // If colours lie row after row in memory, as depths do, all rows up to the bend or to the end; otherwise
+            // one row.
             let mut row = width.wrapping_mul((y - first) as usize);
             let mut end = if y < bend { bend.min(last) } else { last };
             let mut depths = D::slots(self.target.depth, &mut nothing);
             let mut colors = framebuffer.rows(first as u32, width).unwrap_or_default();
             let mut right_end = columns.end;
             if width.wrapping_mul((end - first) as usize) > colors.len() {
-                // Or they are fewer than the screen's, or shorter.
+                // Colours do not lie row after row, or the framebuffer has fewer or shorter rows than the screen: one
+                // row.
                 depths = depths.get_mut(row..).unwrap_or_default();
                 colors = framebuffer.row(y as u32);
                 (row, end) = (0, y + 1);
                 right_end = right_end.min(colors.len() as i32);
             }
-            // Of one length, so that a span in one of them is known to be in the other.
+            // Both get one length, so that the compiler knows a span inside of one to be inside of the other.
             let length = colors.len().min(depths.len());
             let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else { return };
-            // Where each statement stands is a matter of registers: others take a few percent more, see docs/speed.md.
+            // The order of these statements decides which values stay in registers: any other order takes a few percent
+            // more, see docs/speed.md.
             while y < end {
                 let start = left.pixel().max(columns.start);
                 let past = right.pixel().min(right_end);
@@ -211,7 +218,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                     let Some(depth) = subslice(depths, at, length) else { return };
                     let Some(color) = subslice(colors, at, length) else { return };
                     let z = z.wrapping_add_signed(primitive.dz_dx.wrapping_mul(start));
-                    // Stages 10 and 11, depth test and fragments.
+                    // Stages 10 and 11: depth test and fragments.
                     self.shader.span(Span { color, depth, z, position: (start, y), primitive }, test);
                 }
                 y += 1;
@@ -222,20 +229,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
     }
 
-    /// Draws the spans of a triangle with many varyings. Their fragments take far longer than finding the span, so nothing but
-    /// the edges is kept from span to span: that keeps the stack of this function small under the fragment stage.
+    /// Draws the spans of a triangle with many varyings. Their fragments take far longer than finding the span does, so
+    /// only the edges are kept from span to span. That keeps the frame of this function small under the fragment stage.
     #[inline(always)]
     fn spans_outlined<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
         let mut nothing = [(); usize::MAX];
         let mut spans = Spans::new(set_up.v, set_up.area, &self.clip.y);
         let shader = self.shader;
         while spans.next_in(&self.clip.x) {
-            // Stages 10 and 11, depth test and fragments.
+            // Stages 10 and 11: depth test and fragments.
             shader.span(self.span_at::<D>(set_up, &spans, &mut nothing), test);
         }
     }
 
-    /// Looks up the pixels of a span, and its first depth.
+    /// Finds the colours, the depths and the first depth of a span.
     #[inline(never)]
     fn span_at<'a, D: DepthTest>(
         &'a mut self,
@@ -256,7 +263,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     }
 }
 
-/// A triangle, set up.
+/// A triangle with its plane equations and the data of the shader: the result of stage 8.
 pub(super) struct SetUp<'a, V: Varyings, T> {
     v: &'a [ScreenVertex; 3],
     area: i64,
@@ -264,15 +271,15 @@ pub(super) struct SetUp<'a, V: Varyings, T> {
     primitive: Primitive<V, T>,
 }
 
-/// `length` elements from `start` on, if there are: in two steps, each a comparison; a range is checked at both ends at once,
-/// which costs twice that.
+/// Returns `length` elements from `start` on, if there are as many. Two steps check this with one comparison each; a
+/// range is checked at both ends at once, which costs twice as much.
 #[inline(always)]
 fn subslice<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]> {
     slice.get_mut(start..)?.get_mut(..length)
 }
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
-    /// Returns what draws triangles, in the phases that draw.
+    /// Returns a painter for the strip that is drawn now. Phases that only record have no use for it.
     pub(super) fn painter<'p, S: Shader<F::Format>>(
         &'p mut self,
         clip: &'p PixelRect,

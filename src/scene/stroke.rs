@@ -1,4 +1,7 @@
-//! Strokes: a line on the screen → pixels. Each stroke is a type, so a program links those that it uses.
+//! Strokes: a line on the screen → pixels.
+//!
+//! Lines come in with their ends in 24.8 px, and with the varyings there; only pixels of the painter's clip rectangle
+//! are written. Each stroke is a type, so that a program links only the strokes that it uses.
 
 use super::painter::{Painter, RasterHooks};
 use crate::color::PixelFormat;
@@ -11,12 +14,16 @@ use crate::span::{
 use crate::target::Framebuffer;
 use crate::vertex::{ScreenVertex, Side, Varyings, VertexShader, Wrapper};
 
-/// Way to draw a line: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
-pub trait Stroke: Draw {}
+/// Style in which lines are drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
+///
+/// No other type can implement it: the trait that it extends is private. So the painter, which that trait draws with,
+/// need not be public either.
+#[expect(private_bounds, reason = "seals the trait")]
+pub trait Stroke: DrawStroke {}
 
-/// Draws lines in a stroke's way; not to be implemented outside of the crate.
-pub trait Draw {
-    /// Returns how far pixels may be away from the line, in whole px.
+/// Draws lines in the style of a stroke.
+pub(super) trait DrawStroke {
+    /// Returns how far from the line its pixels may be, in whole pixels.
     fn reach(&self) -> i32;
 
     /// Draws a line.
@@ -28,39 +35,40 @@ pub trait Draw {
     );
 }
 
-/// One pixel wide, by the diamond-exit rule: one pixel for each step along the longer axis, exactly those that OpenGL and
-/// Vulkan draw. Lines in a chain draw each pixel of a joint once.
+/// Draws lines one pixel wide, by the diamond-exit rule: one pixel for each step along the longer axis, exactly those
+/// that OpenGL and Vulkan draw. Lines in a chain draw the pixel of each joint once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Thin;
 
-/// One pixel wide, with a pattern that begins anew with each line: bit k says whether the pixels k, k + 32, k + 64 ... of
-/// the line are drawn.
+/// Draws lines one pixel wide, with a pattern that begins anew with each line. Bit k says whether the pixels k, k + 32,
+/// k + 64 ... of the line are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Dashed(pub u32);
 
 impl Dashed {
-    /// Four pixels drawn, four left out.
+    /// Draws four pixels, and leaves four out.
     pub const EVEN: Self = Self(0x0F0F_0F0F);
-    /// Every other pixel.
+    /// Draws every other pixel.
     pub const DOTTED: Self = Self(0x5555_5555);
 }
 
-/// A rectangle along the line, its ends cut straight, its corners rounded to 1/256 px: drawn as exactly as any two triangles.
+/// Draws a line as a rectangle along it, with ends cut straight. The corners are rounded to 1/256 px, and the rectangle
+/// is drawn as exactly as any two triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Thick(u32);
 
-/// Smooth: as [`Thick`], of any width down to parts of a pixel, but each pixel is covered as much as the line covers a
-/// pixel-sized box around its centre, and blended accordingly over what is there.
+/// Draws a line as [`Thick`] does, but smoothly, in any width down to parts of a pixel. A pixel is covered as much as
+/// the line covers a box of one pixel around its centre, and is blended accordingly with what is there.
 ///
-/// Draw it after what lies behind it, and think of not writing depths: a pixel at the rim hides what comes after as
-/// one inside does. Colours and depths are stretched to reach half a pixel beyond either end.
+/// Draw it after everything that is farther away. Consider not to write depths: a pixel at the rim hides later draws as
+/// much as a pixel inside does. Colours and depths are stretched, so that they reach half a pixel beyond either end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Smooth(u32);
 
-/// The widest line, 2048 px.
+/// Width of the widest line, 2048 px in 24.8.
 const WIDEST: u32 = 1 << 19;
 
-/// Returns a width in 24.8 px, between 0 and [`WIDEST`].
+/// Returns a width in 24.8 px, clamped to 0..=[`WIDEST`].
 const fn width_bits(width: Pixels) -> u32 {
     match width.to_bits() {
         ..0 => 0,
@@ -70,7 +78,7 @@ const fn width_bits(width: Pixels) -> u32 {
 }
 
 impl Thick {
-    /// Creates a stroke of a width up to 2048 px; wider ones become as wide as that, negative ones 0.
+    /// Creates a stroke of a width up to 2048 px. Larger widths become 2048 px, negative ones 0.
     #[must_use]
     pub const fn new(width: Pixels) -> Self {
         Self(width_bits(width))
@@ -84,7 +92,7 @@ impl Thick {
 }
 
 impl Smooth {
-    /// Creates a stroke of a width up to 2048 px; wider ones become as wide as that, negative ones 0.
+    /// Creates a stroke of a width up to 2048 px. Larger widths become 2048 px, negative ones 0.
     #[must_use]
     pub const fn new(width: Pixels) -> Self {
         Self(width_bits(width))
@@ -102,7 +110,7 @@ impl Stroke for Dashed {}
 impl Stroke for Thick {}
 impl Stroke for Smooth {}
 
-impl Draw for Thin {
+impl DrawStroke for Thin {
     fn reach(&self) -> i32 {
         1
     }
@@ -118,7 +126,7 @@ impl Draw for Thin {
     }
 }
 
-impl Draw for Dashed {
+impl DrawStroke for Dashed {
     fn reach(&self) -> i32 {
         1
     }
@@ -156,26 +164,28 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
         (*value, *step) = (start as i32, change);
     }
     let shader = painter.shader;
-    // The planes of a line change along its longer axis only. What a shader is told of is the change along the line.
+    // The planes of a line change along its longer axis only. The shader is told the change from pixel to pixel of the
+    // line.
     let primitive = |at_origin: S::Varyings, d_dx: S::Varyings, d_dy: S::Varyings| {
         let (area, side, at, corners) = (0, Side::Front, &at_origin, [from, to, to]);
         let setup = shader.setup(&TriangleSetup { corners, area, flat, side, at_origin: at, d_dx: &change });
         Primitive { dz_dx: dz, d_dx, d_dy, ..Primitive::constant(at_origin, flat, side, setup) }
     };
-    // With the half that rounds, and the bias.
+    // Both depths below include the bias and the half that rounds.
     let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
     let mut pixels = pixels;
     let (mut z, mut pattern) =
         (z.wrapping_add(bias), if DASHED { pattern.rotate_right(skipped & 31) } else { pattern });
     let mut on = skipped.wrapping_sub(along.origin()) as i32;
     if skipped < along.origin() {
-        // A first pixel in front of the one that values are given for has those of the end.
+        // The first pixel may lie in front of the pixel `origin`, for which values are given. It has the values of the
+        // line's start.
         let first = primitive(*from, S::Varyings::ZERO, S::Varyings::ZERO);
         let z = (u32::from(a.z) << 16).wrapping_add(bias);
         let pixel = LinePixels { left: 1, ..pixels };
         draw_line::<F, S, DASHED>(painter, &LineRun { pixels: pixel, z, pattern, primitive: &first });
         pattern = pattern.rotate_right(1);
-        // The pixel is drawn.
+        // That pixel is drawn.
         let _ = pixels.next();
         on = 0;
     }
@@ -192,8 +202,8 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
-    /// Returns what is added to depths in a range, in 16.16, that change by `dz` from pixel to pixel: the bias, and the half
-    /// that rounds.
+    /// Returns what is added to depths in 16.16: the bias, and the half that rounds. The depths are between `nearest`
+    /// and `farthest`, and change by `dz` from pixel to pixel.
     #[inline]
     fn bias(&self, [nearest, farthest]: [u16; 2], dz: i32) -> u32 {
         let bias = self.state.bias;
@@ -202,17 +212,17 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     }
 }
 
-/// Pixels of a line, and what is interpolated over them.
+/// Pixels of a line, and the values that are interpolated over them.
 struct LineRun<'r, V: Varyings, T> {
     pixels: LinePixels,
     /// Depth at the first pixel, 16.16, with the half that rounds.
     z: u32,
-    /// Pattern of a dashed line, the lowest bit for the first pixel.
+    /// Pattern of a dashed line; its lowest bit is for the first pixel.
     pattern: u32,
     primitive: &'r Primitive<V, T>,
 }
 
-/// Draws pixels of a line, with a loop for each kind of test.
+/// Draws pixels of a line, in a loop for each kind of depth test.
 #[inline(never)]
 fn draw_line<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     painter: &mut Painter<'_, '_, F, S>,
@@ -239,7 +249,7 @@ fn draw_line<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
 }
 
 impl<V: Varyings, T> LineRun<'_, V, T> {
-    /// Draws all pixels, each as a span of its own, into rows that lie one after the other.
+    /// Draws all pixels, each as a span of its own, into rows that lie one after the other in memory.
     #[inline(always)]
     fn draw<P: PixelFormat, S: Shader<P, Varyings = V, Setup = T>, D: DepthTest, const DASHED: bool>(
         &self,
@@ -252,7 +262,7 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
     ) {
         let index = |(x, y): (i32, i32)| (y.wrapping_mul(width as i32)).wrapping_add(x) as usize;
         let LinePixels { mut position, straight, diagonal, mut error, height, length, left } = self.pixels;
-        // The same place in colours and depths; in range, as the pixels are in the strip.
+        // Index of the pixel among colours and among depths. It is in range, as all pixels are in the strip.
         let mut at = index((position.0, position.1 - first_row));
         let (straight_at, diagonal_at) = (index(straight), index(diagonal));
         let Self { mut z, mut pattern, primitive, .. } = *self;
@@ -278,7 +288,7 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
         }
     }
 
-    /// Draws all pixels into any framebuffer, each as a span of its own.
+    /// Draws all pixels, each as a span of its own, into any framebuffer.
     fn draw_spans<F: Framebuffer, S: Shader<F::Format, Varyings = V, Setup = T>, const DASHED: bool>(
         &self,
         painter: &mut Painter<'_, '_, F, S>,
@@ -290,7 +300,7 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
             if !DASHED || pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
                 let at = width.wrapping_mul((y - first_row) as usize).wrapping_add(x as usize);
-                // Without a depth buffer, the test is one that passes.
+                // Without a depth buffer, every depth passes.
                 let mut nowhere = 0;
                 let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
                 if let [color] = color {
@@ -304,18 +314,19 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
     }
 }
 
-/// The corners of a rectangle along a line: `half` to either side, and `more` beyond the ends, in 24.8 px.
+/// Computes the corners of a rectangle along a line: `half` to either side, and `more` beyond its ends, in 24.8 px.
 ///
 /// # Format
-/// Corners within 1/256 px of the exact ones for widths up to 2048 px, beside rounding; not farther out than the rasterizer
-/// can take.
+/// For widths up to 2048 px, corners are within 1/256 px of the exact ones, apart from rounding. They are never farther
+/// out than the rasterizer can take.
 #[inline(never)]
 fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, more: u32) -> [ScreenVertex; 4] {
-    // 2.30 times 24.8, rounded.
+    // A product of 2.30 and 24.8, rounded.
     let times = |c: i32, length: u32| (crate::math::mul_high_signed(c, length << 3) + 1) >> 1;
     let (along, aside) = ((times(u, more), times(v, more)), (times(-v, half), times(u, half)));
-    // An end so far out that its corners would be out of range is moved in by four times as much: a line that comes from
-    // there to the screen does so at an angle for which that is enough, and it is far longer.
+    // An end whose corners would be out of range is moved inward, by four times the distance of a corner from it. A
+    // line that comes from there to the screen does so at an angle for which that is enough, and it is far longer than
+    // that.
     const LIMIT: i32 = (1 << 23) - 1;
     let room = LIMIT - (half + more) as i32;
     let inward = (times(u, 4 * (half + more)), times(v, 4 * (half + more)));
@@ -346,7 +357,7 @@ fn fill<F: Framebuffer, S: Shader<F::Format>>(
     painter.triangle(&[*a, *c, *d], &[*from, *to, *from], flat);
 }
 
-impl Draw for Thick {
+impl DrawStroke for Thick {
     fn reach(&self) -> i32 {
         (self.0 >> 9) as i32 + 2
     }
@@ -364,7 +375,7 @@ impl Draw for Thick {
     }
 }
 
-impl Draw for Smooth {
+impl DrawStroke for Smooth {
     fn reach(&self) -> i32 {
         (self.0 >> 9) as i32 + 3
     }
@@ -378,7 +389,7 @@ impl Draw for Smooth {
     ) {
         let [(a, from), (b, to)] = ends;
         let unit = unit(b.x - a.x, b.y - a.y);
-        // Half a pixel more, and two units for the rounding of the corners.
+        // Half a pixel more, and two units of 1/256 px for the rounding of the corners.
         let corners = rectangle(a, b, unit, self.0 / 2 + 130, 130);
         let coverage = Coverage::new(a, b, unit, self.0, painter.screen);
         let shader = Covered { shader: painter.shader, coverage };
@@ -392,36 +403,44 @@ impl Draw for Smooth {
     }
 }
 
-/// Part of a pixel that a line covers: a box of 1 px, turned to the line, moved over it.
+/// Part of a pixel that a line covers: the overlap of the line with a box of 1 px, which is turned to the line.
 ///
-/// Along and across the line the overlap of two intervals is a trapezoid; the product of both is what is covered.
+/// As the box moves along the line, its overlap with the line's extent is a trapezoid; likewise across the line. The
+/// covered part is the product of both.
 struct Coverage {
-    /// Distance from the line, 12.20 px, and from its start along it, 16.16 px: at the pixel `origin`, and their changes.
+    /// Distance from the line at the pixel `origin`, positive to the right of the line, in 12.20 px.
     distance: i32,
+    /// Distance from the line's start at the pixel `origin`, measured along the line, in 16.16 px.
     way: i32,
     origin: (i32, i32),
+    /// Changes of `distance` per pixel in x and in y, and those of `way`.
     step: [(i32, i32); 2],
-    /// Half the width and half a pixel, and the most that can be covered, 12.20.
+    /// Distance at which the overlap across the line ends: half of the width and half a pixel, in 12.20 px.
     outer: i32,
+    /// Largest overlap across the line, in 12.20 px.
     most: i32,
-    /// Where along it the line ends, and half a pixel, and the most that can be covered, 16.16.
+    /// Place at which the overlap along the line ends: the length and half a pixel, in 16.16 px.
     end: i32,
+    /// Largest overlap along the line, in 16.16 px.
     longest: i32,
 }
 
 impl Coverage {
+    /// Computes the coverage of a line from `a` to `b`, with the unit vector (u, v).
+    ///
     /// # Format
-    /// Unit vector 2.30. Steps are off by 2⁻²¹ and 2⁻¹⁷ px: over 320 pixels in x and in y, distances by 2⁻¹¹ px, and what is
-    /// behind the ends by 2⁻⁷.
+    /// The unit vector is 2.30. Steps are off by 2⁻²¹ and 2⁻¹⁷ px. Over 320 pixels in x and in y, distances from the
+    /// line are off by 2⁻¹¹ px, and those along the line by 2⁻⁷ px.
     #[inline(never)]
     fn new(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), width: u32, (w, h): (u16, u16)) -> Self {
         let origin = ((a.x >> 8).max(0).min(i32::from(w) - 1), (a.y >> 8).max(0).min(i32::from(h) - 1));
         let (x, y) = (i64::from(256 * origin.0 + 128 - a.x), i64::from(256 * origin.1 + 128 - a.y));
         let (u, v) = (i64::from(u), i64::from(v));
         let (dx, dy) = (i64::from(b.x - a.x), i64::from(b.y - a.y));
-        // 24.8 times 2.30: 38 fractional bits. Distances grow to the right of the line, as y points down.
+        // 24.8 times 2.30 has 38 fractional bits. Distances grow to the right of the line, as y points down.
         let (length, way) = ((u * dx + v * dy) >> 22, (u * x + v * y) >> 22);
-        // Over the screen both change by less than 6000 px: an end that is farther away than that does not matter.
+        // Over the screen, both distances change by less than 6000 px. An end that is farther away than that has no
+        // influence, so the distance to it may stop at 16,000 px.
         let stop = |way: i64| way.clamp(-16_000 << 16, 16_000 << 16) as i32;
         let step = |c: i64, down: u32| ((c >> (down - 1)) + 1) as i32 >> 1;
         Self {
@@ -437,7 +456,7 @@ impl Coverage {
     }
 }
 
-/// A shader whose fragments cover their pixels in part.
+/// Wraps a shader so that its fragments cover their pixels in part.
 struct Covered<'s, S> {
     shader: &'s S,
     coverage: Coverage,
@@ -480,7 +499,7 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
                 varyings = corrected.varyings();
                 corrected.advance(1);
             }
-            // Overlaps as 1.8.
+            // Overlaps in 1.8.
             let across = outer.wrapping_sub(distance.wrapping_abs()).min(most) >> 12;
             let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
             let depth = (z >> 16) as u16;
@@ -502,7 +521,7 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
     }
 }
 
-/// `under`, covered by `part` / 256 with `over`; each channel to nearest.
+/// Covers `under` with `over` to `part` / 256; each channel is rounded to nearest.
 #[inline]
 fn mix<P: PixelFormat>(under: P::Raw, over: P::Raw, part: i32) -> P::Raw {
     let ([r, g, b], [r1, g1, b1]) = (P::unpack(under), P::unpack(over));

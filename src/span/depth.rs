@@ -313,27 +313,30 @@ fn untested_short_tail_outlined<D: DepthTest>(test: D, mut depths: &mut [D::Dept
 
 #[cfg(test)]
 mod tests {
+    use super::super::naive;
     use super::*;
     use crate::math::random::Rng;
 
     #[test]
-    fn few_depths_are_tested_one_by_one() {
+    fn a_tested_prefix_and_the_plain_loop_draw_what_the_plain_loop_draws() {
         let mut rng = Rng::new(1);
         for case in 0..4000 {
-            let mut random = || rng.next_u32();
-            let (length, z, dz_dx) = (case % (RUN + 1), random() >> 1, random() as i32 >> 12);
-            let mut expected = [(); RUN].map(|()| if random() % 16 < 1 { 0 } else { u16::MAX });
-            let mut found = expected;
-            let mut left = length;
-            for (k, depth) in expected[..length].iter_mut().enumerate() {
-                let near = (z.wrapping_add_signed(dz_dx * k as i32) >> 16) as u16;
-                if near >= *depth {
-                    break;
-                }
-                (*depth, left) = (near, left - 1);
-            }
-            assert_eq!(super::untested_tail(DepthLess, &mut found[..length], z, dz_dx), left, "{case}");
-            assert_eq!(found, expected, "{case}");
+            let (z, dz_dx) = ((rng.below(40_000) as u32 + 1000) << 16, rng.next_u32() as i32 >> 12);
+            let case = naive::Case { length: case % (RUN + 1), z, dz_dx, background: 0_u8 };
+            naive::compare(
+                DepthLess,
+                case,
+                &mut rng,
+                |depth| depth,
+                |_| Some(7),
+                &mut [("a tested prefix", &mut |color, depth| {
+                    let passed = depth.len() - untested_tail(DepthLess, depth, z, dz_dx);
+                    let (prefix, color) = color.split_at_mut(passed);
+                    prefix.fill(7);
+                    let z = z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32));
+                    naive::draw(DepthLess, color, &mut depth[passed..], z, dz_dx, |_| Some(7));
+                })],
+            );
         }
     }
 

@@ -6,7 +6,7 @@ use core::fmt::Debug;
 use std::vec::Vec;
 
 /// Draws a span pixel by pixel. `pixel` returns the colour of the k-th pixel, or `None` if its fragment is discarded.
-fn draw<R, D: DepthTest>(
+pub(super) fn draw<R, D: DepthTest>(
     test: D,
     color: &mut [R],
     depth: &mut [D::Depth],

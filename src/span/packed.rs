@@ -1,4 +1,4 @@
-//! Spans of three channels that are interpolated linearly, in formats of 5 or 6 bits per channel.
+//! Spans whose three channels are interpolated linearly, in formats of 5 or 6 bits per channel.
 //!
 //! The plain loop, over channels in 8.16:
 //!
@@ -9,17 +9,18 @@
 //!         color = pack(r >> 16, g >> 16, b >> 16)
 //!     z += dz_dx;  r += dr;  g += dg;  b += db
 //! ```
-//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. W2 is a quad that fills the
-//! screen, in instructions per pixel; W5 a torus of short spans, in millions of instructions per frame.
+//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. W2 is a quad that
+//! fills the screen, in instructions per pixel. W5 is a torus with short spans, in millions of instructions per frame.
 //!
-//! 1. **One word for all channels**, with one addition per pixel, and no shifts but those of the format. Together with a loop
-//!    over rows of its own: W2 39.7 → 25.2 and 26.8 → 19.5.
-//! 2. **Runs of 16 pixels, in two passes**: depths first and, if all pass, colours then, each with all of its values in
-//!    registers. W2 25.4 → 19.3 and 19.0 → 14.7. A run of which some pixels fail is drawn pixel by pixel.
-//! 3. **Short spans have loops of their own**, unrolled by 8, 4, 2 and 1, out of line, and compute their channels themselves: half
-//!    of a torus's spans are three pixels long or less. W5 2.89 → 2.46 and 2.06 → 1.75. Cores with many registers draw them in
-//!    one pass, others in two.
-//! 4. **A tail of a run is tested like a run**, without a loop: W5 2.490 → 2.462 on a Cortex-M0+.
+//! 1. **One word holds all channels**: one addition per pixel, and no shifts except those of the format. Together with
+//!    a loop over rows of its own: W2 39.7 → 25.2 and 26.8 → 19.5.
+//! 2. **Runs of 16 pixels are drawn in two passes**: first the depths and, if all pass, then the colours. Each pass has
+//!    all of its values in registers: W2 25.4 → 19.3 and 19.0 → 14.7. If some pixels of a run fail, the run is drawn
+//!    pixel by pixel.
+//! 3. **Short spans have loops of their own**, unrolled by 8, 4, 2 and 1. They are out of line, and compute their
+//!    channels themselves, because half of a torus's spans have at most three pixels: W5 2.89 → 2.46 and 2.06 → 1.75.
+//!    Cores with many registers draw them in one pass, others in two.
+//! 4. **The tail of a span is tested like a run**, without a loop: W5 2.490 → 2.462 on a Cortex-M0+.
 //!
 //! | pixels of a span | small cores | others |
 //! |---|---|---|
@@ -41,7 +42,8 @@ const RUN: usize = super::depth::RUN;
 /// A primitive whose varyings are colours.
 type Colored = Primitive<[i32; 3], ColorSetup>;
 
-/// Packs the bits that a word of channels leaves out, 9 or 10 bits of each, with a bit above for what they carry into the word.
+/// Packs the bits that a word of channels leaves out: the upper 9 or 10 of them for each channel. Above each channel is
+/// one bit for the carry into the word.
 ///
 /// ```text
 /// bits   31      30 .. 21   20      19 .. 11   10      9 .. 0
@@ -52,37 +54,42 @@ const fn low([r, g, b]: [i32; 3]) -> u32 {
     (r as u32 >> 3 & 0x3FF) << 21 | (b as u32 >> 4 & 0x1FF) << 11 | g as u32 >> 4 & 0x3FF
 }
 
-/// Half of the units of [`low`]: what rounds to them.
+/// Half of a unit of [`low`] in each channel, which is added to round to these units.
 const LOW_HALVES: [i32; 3] = [4, 8, 8];
 
-/// Distance of [`low`]'s carries from the units of the word that they carry into, and those units.
+/// Shift that moves the carries of [`low`] to the units of the word that they are added to; [`UNITS`] are these units.
 const CARRY: u32 = 10;
 const UNITS: u32 = 1 << 21 | 1 << 10 | 1;
 
-/// Pixels until all is made anew: a multiple of a run, and of the columns after which dithering repeats.
+/// Number of pixels after which the word is computed anew from the planes. It is a multiple of a run's length, and of
+/// the 8 columns after which dithering repeats.
 const LONG: usize = 512;
 
-/// Draws a span with one addition a pixel for all three channels, for formats of 5 or 6 bits a channel.
+/// Draws a span with one addition per pixel for all three channels, in formats of 5 or 6 bits per channel.
 ///
 /// ```text
 /// pixels      0 1 2 3   4 5 6 7   8 9 ..    12 ..     16 ..
 /// word made   step      group     eight     group     run
 /// ```
 /// # Format
-/// Steps of 1, 4 and 8 pixels are rounded to units of the word, 8.3 or 8.2 for green. If the step of a pixel is x units off,
-/// that of 4 is off by the distance of 4 x from an integer, that of 8 by that of 8 x: a pixel of a run by
-/// 3 |x| + d(4 x) + d(8 x) at most, which is 33/16 for x = 7/16 and less for others. Channels are moved so that this cancels
-/// in the run's middle: half of it is 0.26 for green, 0.13 for the others. From run to run words are stepped with 9 bits
-/// more, over [`LONG`] pixels off by less than 2⁻⁷. With the rounding of the word it is below 0.39. Squeezed channels are
-/// off by at most 1/2, and by 1/16 from the records (1/8 for red, whose word is finer): in all, within 1 of 255 before the
-/// lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its neighbour.
+/// Steps of 1, 4 and 8 pixels are rounded to units of the word: 8.3, or 8.2 for green. Let x be the error of a step of
+/// one pixel in these units. The step of 4 pixels is then off by d(4 x), the distance of 4 x from an integer, and the
+/// step of 8 pixels by d(8 x). A pixel of a run is off by at most 3 |x| + d(4 x) + d(8 x). That is 33/16 for x = 7/16,
+/// and less for any other x. Channels are moved so that the error is 0 in the middle of the run. The error that is left
+/// is half of the sum: 0.26 for green, 0.13 for the others.
+///
+/// From run to run, words are stepped with 9 more bits: over [`LONG`] pixels that is off by less than 2⁻⁷. With the
+/// rounding of the word, the error is below 0.39. Squeezed channels are off by at most 1/2, and those from the records
+/// by 1/16 more (by 1/8 for red, which the word of a span holds in finer units than green). In all, a channel is within
+/// 1 of 255 before its lower bits are cut. And 0.5..=254.5 is far enough from the ends that no channel runs into its
+/// neighbour.
 #[inline(always)]
 pub(crate) fn packed_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
     draw_span::<P, D, SMALL_CORE>(span, test);
 }
 
-/// Draws a span; less than a run of it in one loop, or in two: first depths and then colours, each with all of its values, and its
-/// parameters, in registers, even if they are few.
+/// Draws a span. Pixels that do not fill a run are drawn in one loop or, with `TWO_PASS`, in two: first depths and then
+/// colours. Each of the two loops has its values and parameters in registers, even on a core with few.
 #[inline(always)]
 fn draw_span<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>,
@@ -91,13 +98,13 @@ fn draw_span<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     let Span { color, depth, z, primitive, position } = span;
     let (x, y) = position;
     if let ([color], [depth]) = (&mut *color, &mut *depth) {
-        // A tip of a triangle.
+        // A single pixel: the tip of a triangle.
         let word = word_at::<P>(primitive, x, y);
-        // Small cores would keep the triangle's on the stack.
+        // On small cores, the triangle's mask would be kept on the stack, so they make a new one.
         let mask = if SMALL_CORE { P::packed_mask() } else { primitive.setup.mask };
         return SpanCursor { z, dz_dx: 0, word, step: 0, mask }.dot::<P, D>(test, position, color, depth);
     }
-    // Of what a short span does not need, nothing is even passed on.
+    // Short spans are passed only what they need.
     if color.len() >= RUN {
         draw_runs::<P, D, TWO_PASS>(test, depth, z, primitive, color, x, y);
     } else if !TWO_PASS {
@@ -105,18 +112,19 @@ fn draw_span<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     } else {
         match untested_short_tail(test, depth, z, primitive.dz_dx) {
             0 => color_short_at::<P>(color, primitive, x, y),
-            left => draw_partial_at::<P, D>(test, depth, z, primitive, color, x, y, left),
+            untested => draw_partial_at::<P, D>(test, depth, z, primitive, color, x, y, untested),
         }
     }
 }
 
-/// The word of a pixel. Out of line: a loop over rows would keep all that it takes on the stack.
+/// Computes the word of a pixel. Out of line: a loop over rows would otherwise keep the values that this takes on its
+/// stack.
 #[inline(never)]
 fn word_at<P: PixelFormat>(primitive: &Colored, x: i32, y: i32) -> u32 {
     word(channels_at::<P>(primitive, x, y))
 }
 
-/// The moved channels of a pixel, with room for dithering.
+/// Computes the moved channels of a pixel, scaled to leave room for dithering.
 #[inline(always)]
 fn channels_at<P: PixelFormat>(primitive: &Colored, x: i32, y: i32) -> [i32; 3] {
     let mut channels = primitive.setup.at_origin;
@@ -125,7 +133,7 @@ fn channels_at<P: PixelFormat>(primitive: &Colored, x: i32, y: i32) -> [i32; 3] 
     spread(P::DITHER, channels)
 }
 
-/// Draws a span of at least a run.
+/// Draws a span of at least one run.
 #[inline(never)]
 fn draw_runs<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     test: D,
@@ -161,7 +169,8 @@ fn draw_runs<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
             cursor.colors::<P>([correction, middle], addends, colors);
         } else {
             draw_partial::<P, D>(test, depths, cursor.z, primitive, colors, cursor.word, addends, RUN - passed);
-            // As if it changed: the compiler would otherwise prepare all multiples of the step, and spill them.
+            // Hides that the step stays the same: the compiler would otherwise prepare all multiples of it, and spill
+            // them.
             cursor.dz_dx = black_box(cursor.dz_dx);
         }
         cursor.z = cursor.z.wrapping_add_signed(cursor.dz_dx.wrapping_mul(RUN as i32));
@@ -178,11 +187,11 @@ fn draw_runs<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     }
     match untested_short_tail(test, depth, cursor.z, cursor.dz_dx) {
         0 => color_short::<P>(color, cursor.word, primitive, addends),
-        left => draw_partial::<P, D>(test, depth, cursor.z, primitive, color, cursor.word, addends, left),
+        untested => draw_partial::<P, D>(test, depth, cursor.z, primitive, color, cursor.word, addends, untested),
     }
 }
 
-/// Draws less than a run, from a pixel at (x, y) on.
+/// Draws less than a run, from pixel (x, y) on.
 #[inline(never)]
 fn draw_short_at<P: PixelFormat, D: DepthTest>(
     test: D,
@@ -195,12 +204,12 @@ fn draw_short_at<P: PixelFormat, D: DepthTest>(
 ) {
     let Some(depth) = depth.get_mut(..color.len()) else { return };
     let word = word(channels_at::<P>(primitive, x, y));
-    // What comes now is loaded now.
+    // Keeps the loads below this line from moving above it, where registers are needed for the word.
     compiler_fence(Ordering::SeqCst);
     SpanCursor::new(z, word, primitive).draw_short::<P, D>(test, primitive, P::dither((x, y)), color, depth);
 }
 
-/// Draws less than a run, from a word of channels on.
+/// Draws less than a run, beginning with a word of channels.
 #[inline(never)]
 fn draw_short<P: PixelFormat, D: DepthTest>(
     test: D,
@@ -215,7 +224,7 @@ fn draw_short<P: PixelFormat, D: DepthTest>(
     SpanCursor::new(z, word, primitive).draw_short::<P, D>(test, primitive, addends, color, depth);
 }
 
-/// Colours less than a run, from a pixel on.
+/// Colours less than a run, from pixel (x, y) on.
 #[inline(never)]
 fn color_short_at<P: PixelFormat>(color: &mut [P::Raw], primitive: &Colored, x: i32, y: i32) {
     let mut nothing = [(); usize::MAX];
@@ -230,7 +239,7 @@ fn color_short_at<P: PixelFormat>(color: &mut [P::Raw], primitive: &Colored, x: 
     );
 }
 
-/// Colours less than a run, from a word of channels on.
+/// Colours less than a run, beginning with a word of channels.
 #[inline(never)]
 fn color_short<P: PixelFormat>(color: &mut [P::Raw], word: u32, primitive: &Colored, addends: &[u32; 8]) {
     let mut nothing = [(); usize::MAX];
@@ -238,8 +247,9 @@ fn color_short<P: PixelFormat>(color: &mut [P::Raw], word: u32, primitive: &Colo
     SpanCursor::new(0, word, primitive).draw_short::<P, DepthOff>(DepthOff, primitive, addends, color, nothing);
 }
 
-/// Draws less than a run, from a pixel on, of which the depths have been tested but for the last ones.
-#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
+/// Draws less than a run, from pixel (x, y) on. All depths have passed and are stored, except for the last `untested`
+/// ones.
+#[expect(clippy::too_many_arguments, reason = "a structure in their place would have to be in memory")]
 #[cold]
 #[inline(never)]
 fn draw_partial_at<P: PixelFormat, D: DepthTest>(
@@ -250,7 +260,7 @@ fn draw_partial_at<P: PixelFormat, D: DepthTest>(
     colors: &mut [P::Raw],
     x: i32,
     y: i32,
-    left: usize,
+    untested: usize,
 ) {
     draw_partial_inlined::<P, D>(
         test,
@@ -260,12 +270,13 @@ fn draw_partial_at<P: PixelFormat, D: DepthTest>(
         colors,
         || word_at::<P>(primitive, x, y),
         P::dither((x, y)),
-        left,
+        untested,
     );
 }
 
-/// Draws up to a run, from a word of channels on, of which the depths have been tested but for the last ones.
-#[expect(clippy::too_many_arguments, reason = "no structure that would have to be in memory for it")]
+/// Draws at most a run, beginning with a word of channels. All depths have passed and are stored, except for the last
+/// `untested` ones.
+#[expect(clippy::too_many_arguments, reason = "a structure in their place would have to be in memory")]
 #[cold]
 #[inline(never)]
 fn draw_partial<P: PixelFormat, D: DepthTest>(
@@ -276,9 +287,9 @@ fn draw_partial<P: PixelFormat, D: DepthTest>(
     colors: &mut [P::Raw],
     word: u32,
     addends: &[u32; 8],
-    left: usize,
+    untested: usize,
 ) {
-    draw_partial_inlined::<P, D>(test, depths, z, primitive, colors, || word, addends, left);
+    draw_partial_inlined::<P, D>(test, depths, z, primitive, colors, || word, addends, untested);
 }
 
 #[expect(clippy::too_many_arguments, reason = "as above")]
@@ -291,9 +302,9 @@ fn draw_partial_inlined<P: PixelFormat, D: DepthTest>(
     colors: &mut [P::Raw],
     word: impl FnOnce() -> u32,
     addends: &[u32; 8],
-    left: usize,
+    untested: usize,
 ) {
-    let (dz_dx, passed) = (primitive.dz_dx, depths.len().wrapping_sub(left));
+    let (dz_dx, passed) = (primitive.dz_dx, depths.len().wrapping_sub(untested));
     let mut z = z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32));
     if passed == 0 && all_hidden(test, depths, z, dz_dx) {
         return;
@@ -322,7 +333,7 @@ fn draw_partial_inlined<P: PixelFormat, D: DepthTest>(
     }
 }
 
-/// Returns whether none of the depths passes: where the first one does not, that is usual.
+/// Returns whether no depth passes. If the first one does not pass, usually none does.
 #[inline(always)]
 fn all_hidden<D: DepthTest>(test: D, depths: &[D::Depth], mut z: u32, dz_dx: i32) -> bool {
     for depth in depths {
@@ -334,7 +345,7 @@ fn all_hidden<D: DepthTest>(test: D, depths: &[D::Depth], mut z: u32, dz_dx: i32
     true
 }
 
-/// A span part by part.
+/// Draws a long span in parts of [`LONG`] pixels.
 #[cold]
 #[inline(never)]
 fn draw_long<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
@@ -353,13 +364,13 @@ fn draw_long<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
     }
 }
 
-/// Returns what dithering adds to a pixel of a run.
+/// Returns the dither addend of a pixel of a run.
 #[inline(always)]
 fn addend<P: PixelFormat>(addends: &[u32; 8], pixel: usize) -> u32 {
     if P::DITHER.is_some() { addends.get(pixel % 8).copied().unwrap_or(0) } else { 0 }
 }
 
-/// Place in a span of packed channels: all that changes from pixel to pixel.
+/// State of the loops over packed channels: all that changes from pixel to pixel.
 struct SpanCursor {
     z: u32,
     dz_dx: i32,
@@ -429,7 +440,7 @@ impl SpanCursor {
         mut color: &mut [P::Raw],
         mut depth: &mut [D::Depth],
     ) {
-        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
         macro_rules! draw {
             ($first:ident $($k:literal $color:ident $depth:ident)*) => {
                 let Some(([$($color),*], rest)) = core::mem::take(&mut color).split_first_chunk_mut() else { return };
@@ -477,7 +488,7 @@ mod tests {
     use core::fmt::Debug;
     use embedded_graphics_core::pixelcolor::Rgb565;
 
-    /// The colours of all pixels of a span, by its definition.
+    /// Computes the colours of all pixels of a span by their definition.
     fn colors<P: PixelFormat>(primitive: &Colored, (x, y): (i32, i32), length: usize) -> std::vec::Vec<P::Raw> {
         let ColorSetup { step, correction, middle, .. } = primitive.setup;
         let addends = P::dither((x, y));
@@ -506,7 +517,7 @@ mod tests {
         (0..length).map(color).collect()
     }
 
-    /// A triangle whose colours are `first` at a pixel.
+    /// Creates a triangle whose channels are `first` at pixel (x, y).
     fn primitive<P: PixelFormat>(
         first: [i32; 3],
         (x, y): (i32, i32),
@@ -523,7 +534,7 @@ mod tests {
         Primitive { dz_dx, d_dx, d_dy, ..Primitive::constant(at_origin, 0, side, setup) }
     }
 
-    /// Spans of all lengths over depths of which all, some or none pass, in a format and by a test.
+    /// Compares spans of all lengths, in a format and under a depth test. All, some or none of their pixels pass.
     fn compare<P: PixelFormat<Raw: PartialEq + Debug>, D: DepthTest<Depth: PartialEq + Debug>>(
         test: D,
         stored: impl Fn(u16) -> D::Depth,
@@ -570,7 +581,7 @@ mod tests {
         compare::<Rgb565, _>(DepthDyn::new(DepthState { compare: Compare::Greater, write: false }), |depth| depth);
     }
 
-    /// Any lengths, any colours at both ends, some pixels hidden: the others are within 1 of 255 before their bits are cut.
+    /// Spans have any length and any colours at both ends, and some of their pixels are hidden.
     #[test]
     fn packed_channels_are_within_1_of_255() {
         let mut rng = Rng::new(1);
@@ -595,7 +606,7 @@ mod tests {
                 assert_eq!(usize::from(depth), 200 + (x << 10 >> 16), "{case}: {x}");
                 for (k, (shift, bits)) in [(11, 5), (5, 6), (0, 5)].into_iter().enumerate() {
                     let found = i32::from(pixel) >> shift & ((1 << bits) - 1);
-                    // 8.16, as if it had not been squeezed.
+                    // The channel in 8.16, as if it had not been squeezed.
                     let c = (i64::from(exact(k, x)) * 256 / 255 - (1 << 15)) as i32;
                     let cut = |c: i32| (c >> 16).clamp(0, 255) >> (8 - bits);
                     assert!((cut(c - (1 << 16))..=cut(c + (1 << 16))).contains(&found), "{case}: {x}, channel {k}");

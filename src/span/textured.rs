@@ -1,4 +1,4 @@
-//! Spans of textures that repeat, nearest texels: the fastest loop for textures.
+//! Spans of repeating textures, with nearest texels: the fastest loop for textures.
 //!
 //! The plain loop, over u q, v q and q = 1 / w, which are linear on the screen:
 //!
@@ -9,21 +9,26 @@
 //!         store z >> 16, unless the texel is transparent
 //!     z += dz_dx;  uq += duq;  vq += dvq;  q += dq
 //! ```
-//! The departures from it, with what each gained in instructions per pixel of W3, a tilted quad, on a Cortex-M0+ and a Cortex-M4
-//! when it was made:
+//! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. Gains are
+//! instructions per pixel of W3, a tilted quad:
 //!
-//! 1. **A division every 16 pixels**, and at the last pixel; in between u and v are linear, both in one word:
+//! 1. **Coordinates are divided every 16 pixels**, and at the last pixel. In between u and v are linear, both in one
+//!    word:
 //!
 //!    ```text
 //!    bits   31 .. 16   15 .. 0
 //!              v          u        fractions of the texture; what is carried from u into v is 2⁻¹⁶ of it
 //!    ```
-//!    Steps rounded to 2⁻¹⁶ are off by at most 2⁻¹³. In the last run of a span they are taken backwards from its end, so that
-//!    both ends are exact.
-//! 2. **Runs of 16 pixels in two passes** on small cores, depths first and texels then, each with its values in registers: 33.5 → 31.3.
-//! 3. **q, u q and v q are normalized once per span**, and a run gets its word and step out of line: 30.6 → 29.0 and 20.7 → 20.2.
-//! 4. **Texels of a run out of line, the last few pixels in two passes too**: 29.0 → 27.3.
-//! 5. **Divided and scaled in two instructions each** where products are long: 19.7 → 18.9 on a Cortex-M4.
+//!    Steps are rounded to 2⁻¹⁶, so a pixel of a run is off by at most 2⁻¹³. The last run of a span is stepped
+//!    backwards from its end, so that both ends are exact.
+//! 2. **Runs of 16 pixels are drawn in two passes** on small cores, first depths and then texels. Each pass has its
+//!    values in registers: 33.5 → 31.3.
+//! 3. **q, u q and v q are normalized once per span**, and the word and the step of a run are computed out of line:
+//!    30.6 → 29.0 and 20.7 → 20.2.
+//! 4. **Texels of a run are fetched out of line**, and the last pixels of a span are drawn in two passes too: 29.0 →
+//!    27.3.
+//! 5. **Dividing takes two instructions, and scaling too**, where the core has long products: 19.7 → 18.9 on a
+//!    Cortex-M4.
 
 use super::depth::{DepthTest, RUN, count_passing_prefix, untested_tail};
 use super::perspective::nth;
@@ -33,11 +38,11 @@ use crate::math::{CoarseDivisor, SMALL_CORE};
 use crate::texture::Texture;
 use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Varyings};
 
-/// Pixels from one division to the next.
+/// Number of pixels from one division to the next.
 pub(crate) const STEP: usize = RUN;
 
-/// Draws a span of a texture that repeats; the first two varyings are u and v, 16.16. Not for triangles whose perspective
-/// is [`Planes64`](PerspectiveClass::Planes64).
+/// Draws a span of a repeating texture. The first two varyings are u and v in 16.16. The perspective of the triangle
+/// must not be [`Planes64`](PerspectiveClass::Planes64).
 #[inline(never)]
 pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings, U>(
     texture: &T,
@@ -60,7 +65,8 @@ pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
             cursor.run16_two_pass::<P, T, D>(texture, test, &mut stepper, colors, depths);
         } else {
             (cursor.vu, cursor.step) = stepper.next_run();
-            // Read anew: what it is multiplied by would be computed before the loop otherwise, and live on the stack.
+            // Reads the step from memory. The compiler would otherwise compute its multiple before the loop, and keep
+            // it on the stack.
             cursor.dz_dx = stepper.dz_dx;
             cursor.run16::<P, T, D>(texture, test, colors, depths);
         }
@@ -79,12 +85,12 @@ pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
 /// Colours a run.
 #[inline(never)]
 fn color_run16<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; STEP], mut vu: u32, step: u32) {
-    // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+    // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! color {
         ($($color:ident)*) => {
             let [$($color),*] = colors;
             $(
-                // The step first: the other one is not needed any more, and need not be copied.
+                // Steps first: the fetch may then overwrite the old word, which need not be copied.
                 let here = vu;
                 vu = vu.wrapping_add(step);
                 if let Some(pixel) = texture.fetch::<P>(here) {
@@ -97,7 +103,7 @@ fn color_run16<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; ST
     let _ = vu;
 }
 
-/// Colours fewer pixels than a run; yields where the next one is.
+/// Colours fewer pixels than a run has, and returns the word of the pixel after them.
 #[inline(never)]
 fn color_short<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw], mut vu: u32, step: u32) -> u32 {
     for color in colors {
@@ -110,19 +116,19 @@ fn color_short<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw], m
     vu
 }
 
-/// u and v in one word; v as if nothing had been carried from u.
+/// Packs u and v into one word. v is as if nothing had been carried from u.
 #[inline(always)]
 const fn packed((u, v): (i32, i32)) -> u32 {
     ((v as u32) << 16).wrapping_add(u as u32 & 0xFFFF)
 }
 
-/// The word that steps both: what is carried from u is carried, up or down.
+/// Packs the steps of u and v into one word, which steps both. Carries from u go into v, up or down.
 #[inline(always)]
 const fn step([du, dv]: [i32; 2]) -> u32 {
     ((dv as u32) << 16).wrapping_add(du as u32)
 }
 
-/// Place in a textured span: all that changes from pixel to pixel.
+/// State of the loops over a textured span: all that changes from pixel to pixel.
 struct TexelCursor {
     z: u32,
     dz_dx: i32,
@@ -131,7 +137,7 @@ struct TexelCursor {
 }
 
 impl TexelCursor {
-    /// Draws the next run of a texture that is opaque, depths first and colours then: each loop has all of its values in
+    /// Draws the next run of an opaque texture, first depths and then colours. Each loop has all of its values in
     /// registers.
     #[inline(always)]
     fn run16_two_pass<P: PixelFormat, T: Texture, D: DepthTest>(
@@ -147,7 +153,7 @@ impl TexelCursor {
         if passed == STEP {
             color_run16::<P, T>(texture, colors, vu, step);
         } else {
-            // A copy, so that the cursor itself need not be in memory.
+            // A copy, so that the cursor itself stays in registers.
             Self { vu, step, ..*self }.partial::<P, T, D>(texture, test, passed, colors, depths);
         }
         self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(STEP as i32));
@@ -162,7 +168,7 @@ impl TexelCursor {
         colors: &mut [P::Raw; STEP],
         depths: &mut [D::Depth; STEP],
     ) {
-        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
         macro_rules! draw {
             ($($color:ident $depth:ident)*) => {
                 let [$($color),*] = colors;
@@ -173,7 +179,7 @@ impl TexelCursor {
         draw!(a az b bz c cz d dz e ez f fz g gz h hz i iz j jz k kz l lz m mz n nz o oz p pz);
     }
 
-    /// Draws pixels one by one, or in pairs.
+    /// Draws pixels one by one, in pairs on larger cores.
     #[inline(always)]
     fn tail<P: PixelFormat, T: Texture, D: DepthTest>(
         mut self,
@@ -195,7 +201,7 @@ impl TexelCursor {
         }
     }
 
-    /// Draws up to a run of pixels, in two loops too.
+    /// Draws at most a run of pixels in two passes.
     #[inline(always)]
     fn short_two_pass<P: PixelFormat, T: Texture, D: DepthTest>(
         self,
@@ -213,7 +219,7 @@ impl TexelCursor {
         }
     }
 
-    /// Draws pixels, of which the first depths have been tested.
+    /// Draws pixels; the first `passed` depths have passed already, and are stored.
     #[inline(never)]
     fn partial<P: PixelFormat, T: Texture, D: DepthTest>(
         mut self,
@@ -256,26 +262,27 @@ impl TexelCursor {
     }
 }
 
-/// Both coordinates along a span, from run to run.
+/// Both coordinates of a texture along a span, from run to run.
 ///
-/// q, d q of u and that of v are shifted up, so that the larger q of both ends has its top bit set. Where there is no
-/// perspective, q is 0.
+/// q, d q of u and d q of v are shifted up, so that the larger q of both ends has its top bit set. Without perspective,
+/// q is 0.
 struct UvStepper {
-    /// q and the others where the stepper is, and what the next run adds.
+    /// q, d q of u and d q of v at the stepper's position, and their changes over the next run.
     at: [i32; 3],
     step: [i32; 3],
-    /// u and v there.
+    /// u and v at the stepper's position.
     uv: (i32, i32),
     u: Scale,
     v: Scale,
-    /// q and the others at the last pixel.
+    /// q, d q of u and d q of v at the last pixel.
     end: [i32; 3],
-    /// Change of depth a pixel; of no meaning here.
+    /// Change of depth per pixel. The stepper keeps it in memory for the loop, and does not use it itself.
     dz_dx: i32,
 }
 
 impl UvStepper {
-    /// A run before a span, whose last pixel is `way` pixels from the first.
+    /// Creates a stepper that is one run to the left of the first pixel. The last pixel is `way` pixels to the right of
+    /// the first one.
     #[inline(never)]
     fn new<V: Varyings, U>(primitive: &Primitive<V, U>, position: (i32, i32), way: i32) -> Self {
         let varyings = primitive.at(position);
@@ -287,7 +294,7 @@ impl UvStepper {
         let mut most = (q as u32).max(end as u32) | 1;
         let mut shift = 0;
         if SMALL_CORE {
-            // Few, and fewer than a table takes.
+            // Takes a few rounds, and fewer instructions than `leading_zeros` does with its table.
             while most >> 31 == 0 {
                 (most, shift) = (most << 1, shift + 1);
             }
@@ -317,7 +324,8 @@ impl UvStepper {
         }
     }
 
-    /// Goes a run on: what to draw it with. Out of line: its values are more than the loop around it has registers for.
+    /// Moves on by one run, and returns the word and the step with which that run is drawn. Out of line: it has more
+    /// values than the loop around it has registers for.
     #[inline(never)]
     fn next_run(&mut self) -> (u32, u32) {
         let [q, u, v] = self.at;
@@ -343,7 +351,8 @@ impl UvStepper {
         (packed(from), step([du.wrapping_add(8) >> 4, dv.wrapping_add(8) >> 4]))
     }
 
-    /// Goes on to the end: what to draw the last pixels with, the last of them `way` pixels ahead.
+    /// Moves on to the last pixel, `way` pixels ahead, and returns the word and the step with which the pixels up to it
+    /// are drawn.
     #[inline(never)]
     fn last(&mut self, way: usize) -> (u32, u32) {
         let from = self.uv;
@@ -356,12 +365,14 @@ impl UvStepper {
     }
 }
 
-/// Scale from the interpolated form of a coordinate back to the coordinate.
+/// Scale that takes a coordinate from its interpolated form h back to 16.16.
 struct Scale {
-    /// Half of what is shifted out; 4 times that on cores with a long product.
+    /// Half of the last bit that stays after the shift, which rounds. On cores with long products it is multiplied by
+    /// 4.
     half: i32,
-    /// By how much to shift; on cores with a long product 2³⁰, shifted by that.
+    /// Number of bits to shift by. On cores with long products, 2³⁰ shifted right by that number.
     by: i32,
+    /// Coordinate for h = 0.
     base: i32,
 }
 
@@ -376,16 +387,16 @@ impl Scale {
         }
     }
 
-    /// To nearest.
+    /// Scales `h` back and adds the base, rounded to nearest.
     ///
     /// # Format
-    /// |`h`| ≤ 2²⁸ and a little; shifts are at most 28.
+    /// |`h`| is at most a little more than 2²⁸; shifts are at most 28.
     #[inline(always)]
     fn scaled(&self, h: i32) -> i32 {
         if SMALL_CORE {
             self.base.wrapping_add(h.wrapping_add(self.half) >> (self.by & 31))
         } else {
-            // The same in two instructions.
+            // A long product shifts, in two instructions with the sum.
             let h = (h << 2).wrapping_add(self.half);
             self.base.wrapping_add(((i64::from(h) * i64::from(self.by)) >> 32) as i32)
         }
@@ -403,14 +414,14 @@ mod tests {
     use crate::vertex::{Perspective, Side};
     use embedded_graphics_core::pixelcolor::Rgb565;
 
-    /// A stepper without perspective, that has been at `uv`.
+    /// Creates a stepper without perspective. It is at `u` and `v`, and moves on by `du` and `dv`.
     fn stepper([u, v]: [i32; 2], [du, dv]: [i32; 2]) -> UvStepper {
         let scale = || Scale::new(None);
         let at = [0, u, v];
         UvStepper { at, step: [0, du, dv], uv: (u, v), u: scale(), v: scale(), end: [0; 3], dz_dx: 0 }
     }
 
-    /// All loops, over a tile of which no texel is transparent.
+    /// Compares all loops with the plain one, over an opaque tile.
     fn compare<D: DepthTest<Depth: PartialEq + core::fmt::Debug>>(test: D, stored: impl Fn(u16) -> D::Depth) {
         let texels: [[u16; 8]; 4] =
             core::array::from_fn(|y| core::array::from_fn(|x| ((8 * y + x) as u16).wrapping_mul(0x0843)));
@@ -472,7 +483,7 @@ mod tests {
         for case in 0..5000 {
             let way = (random() % 200) as i32;
             let q = [random(), random()].map(|q| ((q >> 1 >> (random() % 9)) | 1 << 22) as i32);
-            // |d q| up to q / 8, at both ends.
+            // |d q| goes up to q / 8 at both ends.
             let corner = Perspective::<2, 3>::ZERO;
             let mut primitive = Primitive::constant(corner, 0, Side::Front, ());
             let ends = [0, 1].map(|_| q.map(|q| ((i64::from(random() as i32) * i64::from(q)) >> 34) as i32));
