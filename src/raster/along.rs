@@ -1,29 +1,30 @@
-//! What is interpolated along a line: values at its pixels, linear on the screen.
+//! Interpolation along a line: a line and the values at its ends come in, and values at its pixels go out, linear on
+//! the screen.
 //!
 //! ```text
-//!   a ──┼────────┼────────┼── b      The value at a pixel is that of the point of the line at the height of the pixel's
-//!       0        1        2          centre along the major axis. The first pixel may be one whose centre lies before a:
-//!                                    it has the value at a itself, so that no value leaves the range of the two ends.
+//!   a ──┼────────┼────────┼── b      The value at a pixel is that of the point of the line which is level with the
+//!       0        1        2          pixel's centre along the major axis. The centre of the first pixel may lie before
+//!                                    a: this pixel has the value at a itself, so no value leaves the ends' range.
 //! ```
-//! One reciprocal a line, no division. Values are kept modulo 2³², as planes over triangles are.
+//! This takes one reciprocal per line, and no division. Values are kept modulo 2³², as planes over triangles are.
 
 use super::line::Line;
 use crate::math::{mul_high, reciprocal};
 
-/// What all quantities on a line share.
+/// The part of the interpolation that is common to all values on a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Along {
-    /// 2⁶³ / (length << shift), and shift, which puts the top bit of the length into bit 31.
+    /// 2⁶³ / (length << shift), where shift puts the top bit of the length into bit 31.
     reciprocal: u32,
     shift: u32,
-    /// Where the centre of the pixel `origin` is between the ends: 0.32.
+    /// Position of the centre of the pixel `origin` between the two ends, 0.32.
     part: u32,
-    /// 1 if the first pixel begins before its centre, otherwise 0.
+    /// 1 if the centre of the first pixel lies before the line's start, otherwise 0.
     origin: u32,
 }
 
 impl Along {
-    /// Of a line that has pixels.
+    /// Prepares interpolation along a line that has pixels.
     #[inline]
     pub fn new(line: &Line) -> Self {
         let shift = line.length().leading_zeros() & 31;
@@ -36,23 +37,25 @@ impl Along {
         Self { reciprocal, shift, part, origin }
     }
 
-    /// The pixel that values are given for: 0 or 1. If it is 1, pixel 0 has the value of the line's start.
+    /// Returns the number of the pixel that values are given for: 0 or 1. If it is 1, pixel 0 has the value at the
+    /// line's start.
     #[inline]
     pub const fn origin(&self) -> u32 {
         self.origin
     }
 
-    /// The value at the pixel `origin`, and its change a pixel, both times 2^`scale`, modulo 2³².
+    /// Returns the value at the pixel `origin` and its change per pixel, both times 2^`scale`, modulo 2³².
     ///
     /// # Format
-    /// The difference of the values, times 2^`scale`, is below 2³². The first value is within 8 units of the exact one and
-    /// not outside of the ends; the change is within 1/2 unit and 2⁻²⁸ of it (1 unit if the line is shorter than 2 px): over
-    /// 8192 px, a value is within 2¹³, and a depth in 16.16 within 1/4 of a step over all of 32,767 px.
+    /// The difference of the values, times 2^`scale`, is below 2³². The first value is within 8 units of the exact one,
+    /// and never outside of the two ends' range. The change is within 1/2 unit and 2⁻²⁸ of the exact change (within 1
+    /// unit if the line is shorter than 2 px). Over 8192 px, a value is within 2¹³. Over all of 32,767 px, a depth in
+    /// 16.16 is within 1/4 of a step.
     #[inline]
     pub fn value(&self, from: i32, to: i32, scale: u32) -> (u32, i32) {
         let difference = to.wrapping_sub(from);
         let magnitude = difference.unsigned_abs() << scale;
-        // length ≥ 2⁸ if there is a pixel to step to, and so shift ≤ 23; rounded below that.
+        // length ≥ 2⁸ if there is a pixel to step to, so shift ≤ 23. The step is rounded where the shift is smaller.
         let step = mul_high(magnitude, self.reciprocal);
         let step = match 23_u32.saturating_sub(self.shift) {
             0 => step,
@@ -85,7 +88,7 @@ mod tests {
         })
     }
 
-    /// The exact value at a pixel, in f64, stopped at the line's start.
+    /// Returns the exact value at a pixel, in f64, and the value at the line's start for centres before it.
     fn exact(line: &Line, k: u32, from: i32, to: i32) -> f64 {
         let way = f64::from(line.lead()) + 256.0 * f64::from(k);
         f64::from(from) + (way / f64::from(line.length())).max(0.0) * (f64::from(to) - f64::from(from))

@@ -1,22 +1,23 @@
-//! Unit vectors along lines, which have a width.
+//! Unit vectors along lines that have a width.
 
 use crate::math::{isqrt, mul_high, mul_high_signed, reciprocal};
 
-/// The vector of length 1 in the direction of (x, y); zero for the zero vector.
+/// Returns the vector of length 1 in the direction of (x, y); zero for the zero vector.
 ///
 /// # Format
-/// Components within ±2²⁵; result 2.30, within 2⁻²³ of the exact one. A root of 15 bits and its reciprocal give it within
-/// 2⁻¹², e being what its squared length lacks: then it is multiplied by 1 + e / 2, off by 3/8 e².
+/// Components are within ±2²⁵. The result is 2.30, within 2⁻²³ of the exact one. A root of 15 bits and its reciprocal
+/// give a first vector within 2⁻¹². Its squared length falls short of 1 by e; multiplying it by 1 + e / 2 leaves an
+/// error of 3/8 e².
 pub(crate) fn unit(x: i32, y: i32) -> (i32, i32) {
     let larger = x.unsigned_abs().max(y.unsigned_abs());
     if larger == 0 {
         return (0, 0);
     }
-    // The larger one to 2²⁹..2³⁰.
+    // Scales the larger component to 2²⁹..2³⁰.
     let up = larger.leading_zeros().saturating_sub(2);
     let (x, y) = (x << up, y << up);
     let (a, b) = (x >> 15, y >> 15);
-    // 2²⁸..=2³¹; the root is in 2¹⁴..2¹⁶.
+    // The sum is in 2²⁸..=2³¹, so the root is in 2¹⁴..2¹⁶.
     let root = isqrt((a * a).wrapping_add(b * b) as u32).max(1);
     let zeros = root.leading_zeros();
     // 2⁴⁶ / root.

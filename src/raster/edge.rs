@@ -1,12 +1,15 @@
-//! An edge of a triangle, walked from row to row: exact, with one addition of 64 bits a row.
+//! An edge of a triangle, stepped from row to row: two vertices come in, and the exact pixel at which spans begin or
+//! end goes out, for one addition of 64 bits per row.
 //!
-//! The pixel where a span begins, or the one behind its end, is the first whose centre is not left of the edge:
-//! pixel = ⌈(x - 128) / 256⌉ with x the edge's position, in 1/256 px, at the height of the row's pixel centres. A centre
-//! exactly on the edge belongs to the span to its right, which is the top-left rule for edges that are not horizontal.
+//! The first pixel of a span, and the first one after its end, is the first pixel whose centre is not left of the edge:
+//! pixel = ⌈(x - 128) / 256⌉, where x is the edge's position, in 1/256 px, at the height of the row's pixel centres. A
+//! centre exactly on the edge belongs to the span to its right. This is the top-left rule for edges that are not
+//! horizontal.
 //!
-//! With dy the edge's height, that position in pixels is a multiple of 1 / D, D = 256 dy. So a value that is too small by more
-//! than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the exact one. D is below 2³², and 45
-//! bits behind the point leave room for the rounding of a step in each of 4,096 rows.
+//! Let dy be the edge's height, and D = 256 dy. The position in pixels, (x - 128) / 256, is a multiple of 1 / D. So a
+//! value that is too small by more than 0 and at most 1 / D is as good as the exact one: its ⌊ ⌋ + 1 is the ⌈ ⌉ of the
+//! exact one. D is below 2³², and 45 bits after the point leave room for the rounding of one step in each of 4,096
+//! rows.
 
 use crate::math::{ShortDivisor, divide_modulo, leading_zeros_long, mul_high_apart, reciprocal};
 use crate::vertex::ScreenVertex;
@@ -14,35 +17,35 @@ use crate::vertex::ScreenVertex;
 /// The state of an edge at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// One pixel more than the position, less something within what the module's documentation allows; 45 fractional bits.
+    /// The position plus one pixel, and less by an error that the module's documentation allows; 45 fractional bits.
     x: i64,
-    /// What a row adds.
+    /// Change of the position per row.
     step: i64,
 }
 
 /// Fractional bits of positions.
 const FRACTION: u32 = 45;
 
-/// `value` 2^`by`, 0 < `by` < 32, in two words.
+/// Returns `value` 2^`by`, 0 < `by` < 32, computed in two words.
 #[inline(always)]
-const fn shifted(value: i32, by: u32) -> i64 {
-    // Shifts of 64 bits are calls on small cores.
+const fn shift_to_words(value: i32, by: u32) -> i64 {
+    // A shift of 64 bits would be a call on small cores.
     ((value >> (32 - by)) as i64) << 32 | ((value as u32) << by) as i64
 }
 
 impl Edge {
-    /// An edge with nothing to walk.
+    /// An edge without rows.
     pub const EMPTY: Self = Self { x: 0, step: 0 };
 
-    /// The edge from `a` down to `b`, at pixel row `row`; `EMPTY` unless `b` is below `a`.
+    /// Makes the edge from `a` down to `b`, at pixel row `row`; `EMPTY` unless `b` is below `a`.
     ///
     /// # Format
-    /// Points in 24.8, at most ±32,767 px; `row` is one the edge crosses: 0 ≤ p < dy for its height p below `a`.
+    /// Points are in 24.8, at most ±32,767 px. The edge must cross `row`: 0 ≤ p < dy for the row's height p below `a`.
     ///
-    /// The usual edge is below 32 px high, 64 px wide, and dx dy is below 2²⁶. Its step is h 2^(z - 2) with the z of
-    /// [`ShortDivisor`], and 1 / D, more than 2^(z + 5), is 128 units of h. On up to 32 rows, h is off by less than 0.55 a row
-    /// and 5 in all, cut by less than 1 a row; the start is cut by 1: the sum is in -56..=23, and what is taken off at the
-    /// start makes that -104..=-25.
+    /// The usual edge is less than 32 px high and 64 px wide, and dx dy is below 2²⁶. Its step is h 2^(z - 2) with the
+    /// z of [`ShortDivisor`], and 1 / D, which is more than 2^(z + 5), is more than 128 units of h. On up to 32 rows, h
+    /// is off by less than 0.55 per row and by less than 5 in all, and cut by less than 1 per row; the start is cut by
+    /// 1. The sum of these errors is in -56..=23. 48 units are subtracted at the start, which makes the sum -104..=-25.
     #[inline]
     pub fn new(a: &ScreenVertex, b: &ScreenVertex, row: i32) -> Self {
         let (dx, dy) = (b.x - a.x, b.y - a.y);
@@ -60,31 +63,33 @@ impl Edge {
         let divisor = ShortDivisor::new(dy as u32);
         let by = divisor.shift() - 2;
         let h = divisor.divide(dx);
-        let step = shifted(h, by);
+        let step = shift_to_words(h, by);
         let along = if p < 256 {
-            // p h / 2⁸ in two products that fit.
-            shifted((h >> 8) * p + (((h & 0xFF) * p) >> 8) - 48, by)
+            // p h / 2⁸ as the sum of two products that fit 32 bits.
+            shift_to_words((h >> 8) * p + (((h & 0xFF) * p) >> 8) - 48, by)
         } else {
-            ((step * i64::from(p)) >> 8) - shifted(48, by)
+            ((step * i64::from(p)) >> 8) - shift_to_words(48, by)
         };
         Self { x: Self::start(a.x) + along, step }
     }
 
-    /// A position of 24.8, and half a pixel: of the centre that it is compared with, and the one pixel more.
+    /// Returns a position of 24.8 plus half a pixel: minus half a pixel for the centre that it is compared with, plus
+    /// the one pixel that positions are ahead.
     #[inline(always)]
     const fn start(x: i32) -> i64 {
         ((x + 128) as i64) << (FRACTION - 8)
     }
 
-    /// [`new`](Self::new) for other edges: the quotient in two digits, the second of which divides the rest that the first one
-    /// leaves.
+    /// Makes an edge as [`new`](Self::new) does, for larger edges. The quotient has two digits: the second one divides
+    /// the remainder that the first one leaves.
     ///
     /// # Format
-    /// For |dx| < 2¹⁷, dy < 2¹⁹. dx / dy is h 2^(z - 43), h below 2²⁹ and off by less than 2; the rest, in units of 2^(z - 43), is
-    /// below 2 dy, so 32 bits hold it although its terms do not fit; its quotient is cut to 2^(2z - 82), or to a unit. (Edges below
-    /// 8/256 px have one row, for which the first digit is enough: theirs is not brought to its place.) 2¹¹ rows
-    /// lose less than 2¹² units, or 2^(z - 12) where edges are lower: within the half of 1 / D that is taken off. |p step|
-    /// is below |dx| 2⁴⁵.
+    /// |dx| < 2¹⁷ and dy < 2¹⁹. dx / dy is h 2^(z - 43), with h below 2²⁹ and off by less than 2. The remainder, in
+    /// units of 2^(z - 43), is below 2 dy, so 32 bits hold it although its terms do not fit. The quotient of the
+    /// remainder is cut to 2^(2z - 82), or to a unit. (An edge below 8/256 px has one row, for which the first digit is
+    /// enough. The second digit of such an edge is not shifted to its place.) 2¹¹ rows lose less than 2¹² units, or
+    /// 2^(z - 12) where edges are lower. This is within the half of 1 / D that is subtracted. |p step| is below |dx|
+    /// 2⁴⁵.
     #[inline(never)]
     fn large(x: i32, dx: i32, dy: i32, p: i32) -> Self {
         let z = leading_zeros_long(dy as u64) - 32;
@@ -96,15 +101,16 @@ impl Edge {
         Self { x: Self::start(x).wrapping_add((step.wrapping_mul(p.into())) >> 8) - (1 << (z + 4)), step }
     }
 
-    /// The same by long division, rounded down.
+    /// Makes an edge as [`new`](Self::new) does, for edges of any size, by long division that rounds down.
     ///
     /// # Format
-    /// |p dx| < 2⁴⁸. The start and up to 4,095 steps are each too small by less than 1; with the 1 that is taken off that is
-    /// within 1 / D = 2³⁷ / dy, more than 2¹³. A step of an edge with two rows, dy > 2⁸, is below 2⁶²; others are not taken.
+    /// |p dx| < 2⁴⁸. The start and up to 4,095 steps are each too small by less than 1. Together with the 1 that is
+    /// subtracted, this is within 1 / D = 2³⁷ / dy, which is more than 2¹³. The step of an edge with two rows, dy > 2⁸,
+    /// is below 2⁶²; edges with fewer rows do not take their step.
     #[cold]
     #[inline(never)]
     fn huge(x: i32, dx: i32, dy: i32, p: i32) -> Self {
-        // n 2^bits = (n 2^(bits - 32)) 2³², and the 96 bits of the factor in two parts.
+        // n 2^bits = (n 2^(bits - 32)) 2³²: the 96 bits of the dividend in two parts.
         let quotient =
             |n: i64, bits: u32| divide_modulo(n >> (64 - bits), (n << (bits - 32)) as u32, dy.unsigned_abs().into());
         let step = quotient(dx.into(), FRACTION);
@@ -112,7 +118,7 @@ impl Edge {
         Self { x: Self::start(x).wrapping_add(along) - 1, step }
     }
 
-    /// The first pixel whose centre is on the edge or to the right of it.
+    /// Returns the first pixel whose centre is on the edge or to the right of it.
     #[inline]
     pub const fn pixel(&self) -> i32 {
         (self.x >> FRACTION) as i32
@@ -134,7 +140,7 @@ mod tests {
         ScreenVertex::new(x, y, 0)
     }
 
-    /// ⌈N / D⌉ in exact arithmetic.
+    /// Returns ⌈N / D⌉ in exact arithmetic.
     fn exact(a: (i32, i32), b: (i32, i32), row: i32) -> i32 {
         let [ax, ay, bx, by] = [a.0, a.1, b.0, b.1].map(i128::from);
         let (dx, dy) = (bx - ax, by - ay);
@@ -142,7 +148,7 @@ mod tests {
         -((-n).div_euclid(256 * dy)) as i32
     }
 
-    /// Any size, any start; ends on pixel centres, where positions are whole pixels, as often as not.
+    /// Edges of any size and any start. Half of them end on pixel centres, where positions are whole pixels.
     #[test]
     fn each_row_begins_at_the_exact_pixel() {
         let mut rng = Rng::new(7);
@@ -176,7 +182,7 @@ mod tests {
         assert!(usual > 50_000 && rows > 1_000_000, "{usual} edges, {rows} rows");
     }
 
-    /// The steepest and the flattest edges of the short way, where its bound is used up most.
+    /// Tests the steepest and the flattest edges of the short way, which come nearest to its bound.
     #[test]
     fn short_edges_are_exact_at_the_limits() {
         for dy in (1..1 << 13).step_by(7).chain((1 << 13) - 40..1 << 13) {

@@ -1,55 +1,56 @@
-//! Plane equations: how depth and varyings change from pixel to pixel.
+//! Plane equations: vertices and the values at them come in, and the change of depth and varyings per pixel goes out.
 //!
-//! A quantity that is v0, v1, v2 at the vertices is a plane over the screen. By Cramer's rule
+//! A value that is v0, v1, v2 at the vertices is a plane over the screen. By Cramer's rule
 //!
 //! ```text
 //! dv/dx = ((v1 - v0) (y2 - y0) - (v2 - v0) (y1 - y0)) / area        area = (x1 - x0) (y2 - y0) - (x2 - x0) (y1 - y0)
 //! dv/dy = ((v2 - v0) (x1 - x0) - (v1 - v0) (x2 - x0)) / area
 //! ```
 //!
-//! All values are kept modulo 2³². Inside the triangle the true value fits, and sums and integer multiples of the
-//! gradients are exact modulo 2³², so it does not matter that a gradient, or the plane outside of the triangle, does not.
-//! What is off is only the rounding of the gradients, 2⁻¹⁶ a pixel in 16.16: below 2⁻³ over the largest viewport.
+//! All values are kept modulo 2³². Inside the triangle the true value fits 32 bits. Sums and integer multiples of the
+//! gradients are exact modulo 2³². So it does not matter that a gradient, or the plane outside of the triangle, does
+//! not fit.
+//! The only error is the rounding of the gradients, 2⁻¹⁶ per pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::math::{
     SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed, reciprocal,
 };
 use crate::vertex::{Plane64, ScreenVertex};
 
-/// What all plane equations of a triangle share.
+/// The part of the plane equations that is common to all values on a triangle.
 #[derive(Clone, Copy, Debug)]
 pub struct Gradients {
-    /// Vertices 1 and 2 as seen from vertex 0; from the other side where the area is below 0.
+    /// Vertices 1 and 2 relative to vertex 0; with the opposite sign where the area is below 0.
     x: [i32; 2],
     y: [i32; 2],
-    /// The centre of the pixel at the origin as seen from vertex 0.
+    /// The centre of the pixel at the origin, relative to vertex 0.
     to: (i32, i32),
     /// Twice the signed area; never 0.
     area: i64,
-    /// 2⁶³ / (|area| << shift), and shift, which puts the top bit of |area| into bit 31; 0 for triangles of more than
-    /// 512 px.
+    /// 2⁶³ / (|area| << shift), where shift puts the top bit of |area| into bit 31; 0 for triangles of more than 512
+    /// px.
     reciprocal: u32,
     shift: i32,
-    /// The shift, if x and y are within -2¹⁵..2¹⁵; otherwise more than any.
+    /// The shift, if x and y are within -2¹⁵..2¹⁵; otherwise more than any shift.
     small_shift: i32,
-    /// The pixel at which planes are evaluated: the one that holds vertex 0, for large triangles brought onto the screen.
+    /// The pixel at which planes are evaluated: the one that holds vertex 0, moved onto the screen for large triangles.
     origin: (i32, i32),
 }
 
-/// A plane: values at pixel centres, modulo 2³².
+/// A plane: the values at pixel centres, modulo 2³².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct PlaneEquation {
     /// Change from one pixel to the next on the right.
     pub dx: i32,
     /// Change from one row to the next.
     pub dy: i32,
-    /// Value at the centre of the screen's first pixel: at pixel (x, y) it is `base + dx x + dy y`.
+    /// Value at the centre of the screen's first pixel. The value at pixel (x, y) is `base + dx x + dy y`.
     pub base: u32,
 }
 
 impl Gradients {
-    /// Of a triangle with its [`signed_area`](crate::vertex::signed_area), which must not be 0, for a screen of
-    /// `width` × `height` px.
+    /// Prepares the planes of a triangle with its [`signed_area`](crate::vertex::signed_area), which must not be 0, for
+    /// a screen of `width` × `height` px.
     #[inline]
     pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {
         let [a, b, c] = v;
@@ -70,38 +71,38 @@ impl Gradients {
             (it.shift, it.small_shift) = (shift as i32, shift as i32);
             it.reciprocal = reciprocal(magnitude << shift);
         } else if within(1 << 17, [b.x - a.x, c.x - a.x, b.y - a.y, c.y - a.y]) {
-            // Areas up to 2³⁵, of which the upper 32 bits count: 2⁻³¹ is lost.
+            // Areas up to 2³⁵. Only their upper 32 bits count, which loses 2⁻³¹.
             let magnitude = area.unsigned_abs();
             let zeros = leading_zeros_long(magnitude);
             it.shift = zeros as i32 - 32;
             it.reciprocal = reciprocal(((magnitude << zeros) >> 32) as u32);
         } else {
-            // `clamp` would panic on an empty screen.
+            // `min` and `max` instead of `clamp`, which would panic on an empty screen.
             it.origin = (origin.0.min(i32::from(width) - 1).max(0), origin.1.min(i32::from(height) - 1).max(0));
             it.to = (256 * it.origin.0 + 128 - a.x, 256 * it.origin.1 + 128 - a.y);
         }
         it
     }
 
-    /// The plane through the values at the three vertices times 2^`scale`, modulo 2³²; usually 16.16.
+    /// Returns the plane through the values at the three vertices times 2^`scale`, modulo 2³²; usually 16.16.
     ///
     /// # Format
-    /// Any values, `scale` up to 16. Evaluated at a pixel inside the triangle and on the screen, the result is within 2¹³ of
-    /// the exact plane: 2⁻³ of a unit in 16.16.
+    /// Values are arbitrary, and `scale` is up to 16. Evaluated at a pixel inside the triangle and on the screen, the
+    /// result is within 2¹³ of the exact plane: 2⁻³ of a unit in 16.16.
     #[inline(never)]
     pub fn plane(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
         let (v1, v2) = (values[1].wrapping_sub(values[0]), values[2].wrapping_sub(values[0]));
         if v1 | v2 == 0 {
             return PlaneEquation { dx: 0, dy: 0, base: (values[0] as u32) << scale };
         }
-        // Small differences on a small triangle, the usual case, take 32 bits: 2¹⁴ · 2¹⁵ · 2.
+        // The usual case, small differences on a small triangle, fits 32 bits: 2¹⁴ · 2¹⁵ · 2.
         let up = self.small_shift + scale as i32 - 23;
         if up <= 4 && moderate(v1) & moderate(v2) {
             let a = v1 * self.y[1] - v2 * self.y[0];
             let b = v2 * self.x[0] - v1 * self.x[1];
             let (dx, dy) = if SMALL_CORE { high_two(a, b, self.reciprocal) } else { high(a, b, self.reciprocal) };
-            // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high; a unit of `high` is at most
-            // 2⁴ / 2¹⁶, and 2⁻⁴ over the 128 px of a small triangle in both directions.
+            // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high. A unit of `high` is at most
+            // 2⁴ / 2¹⁶, which makes 2⁻⁴ over the 128 px of a small triangle in both directions.
             let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
             if up < 0 {
                 if bits >> 29 == 0 {
@@ -111,68 +112,70 @@ impl Gradients {
                 return self.through_vertex_0(values[0], scale, dx << up, dy << up);
             }
         }
-        self.plane_apart(values, scale)
+        self.plane_outlined(values, scale)
     }
 
-    /// The same for others.
+    /// Returns the plane for all cases that [`plane`](Self::plane) does not handle itself.
     #[inline(never)]
-    fn plane_apart(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
+    fn plane_outlined(&self, values: [i32; 3], scale: u32) -> PlaneEquation {
         let numerators = self.numerators(values);
         match self.gentle(&numerators, scale) {
             Some([dx, dy]) => self.through_vertex_0(values[0], scale, dx, dy),
             None => {
                 let plane = self.steep(values[0], &numerators, scale);
-                PlaneEquation { base: plane.base.wrapping_sub(self.along(plane.dx, plane.dy)), ..plane }
+                PlaneEquation { base: plane.base.wrapping_sub(self.origin_offset(plane.dx, plane.dy)), ..plane }
             }
         }
     }
 
-    /// The plane with these gradients through vertex 0.
+    /// Returns the plane with the gradients `dx` and `dy` through vertex 0.
     ///
     /// # Format
-    /// Both are below 2²⁹, at a pixel at most half a pixel from vertex 0: 2²⁹⁻⁶ · 2⁷ twice, below 2³¹. The cut bits are 2⁻¹¹ of a
-    /// unit in 16.16.
+    /// Both gradients are below 2²⁹, and the origin's centre is at most half a pixel from vertex 0: 2²⁹⁻⁶ · 2⁷ twice,
+    /// below 2³¹. The cut bits are 2⁻¹¹ of a unit in 16.16.
     #[inline(always)]
     fn through_vertex_0(&self, v0: i32, scale: u32, dx: i32, dy: i32) -> PlaneEquation {
         let offset = ((dx >> 6) * self.to.0 + (dy >> 6) * self.to.1) >> 2;
         let base = ((v0 as u32) << scale).wrapping_add(offset as u32);
-        PlaneEquation { dx, dy, base: base.wrapping_sub(self.along(dx, dy)) }
+        PlaneEquation { dx, dy, base: base.wrapping_sub(self.origin_offset(dx, dy)) }
     }
 
-    /// What the gradients make from the screen's corner to the origin.
+    /// Returns the change of a plane with these gradients from the screen's corner to the origin.
     #[inline(always)]
-    fn along(&self, dx: i32, dy: i32) -> u32 {
+    fn origin_offset(&self, dx: i32, dy: i32) -> u32 {
         dx.wrapping_mul(self.origin.0).wrapping_add(dy.wrapping_mul(self.origin.1)) as u32
     }
 
-    /// The plane of any triangle and any values.
+    /// Returns the plane of any triangle and any values.
     #[inline(always)]
     fn steep(&self, v0: i32, numerators: &[i64; 2], scale: u32) -> PlaneEquation {
-        // Bits cut from what was rounded down leave what is rounded down.
+        // The numbers were rounded down, and cutting their low bits rounds them down again: the result is rounded down.
         let mut plane = Plane64::ZERO;
         self.exact(v0, numerators, &mut plane);
         let cut = |value: i64| (value >> (32 - scale)) as u32;
         PlaneEquation { dx: cut(plane.dx) as i32, dy: cut(plane.dy) as i32, base: cut(plane.base) }
     }
 
-    /// Gradients times |area| / 256.
+    /// Returns the gradients times |area| / 256.
     ///
     /// # Format
-    /// Differences of 33 bits times 2²⁵, below 2⁵⁸; in sums below 2⁵⁹.
+    /// Differences of 33 bits times 2²⁵ are below 2⁵⁸, and their sums below 2⁵⁹.
     fn numerators(&self, [v0, v1, v2]: [i32; 3]) -> [i64; 2] {
         let v = [i64::from(v1) - i64::from(v0), i64::from(v2) - i64::from(v0)];
         [minor(&v, &self.y), -minor(&v, &self.x)]
     }
 
-    /// 256 2^scale n / |area|, if both are below 2²⁹ (2¹³ in 16.16), which loses little enough to the reciprocal: relative
-    /// error below 2⁻²⁸, so less than 2⁻⁵ of a unit over 512 px in both directions, and one unit of 2⁻¹⁶ a pixel.
+    /// Returns the gradients, 256 2^scale n / |area|, if both are below 2²⁹ (2¹³ in 16.16).
     ///
-    /// 256 / |area| = 2^shift reciprocal / 2⁵⁵; n is normalized to n 2^up in 2³⁰..2³¹, or cut to that (by less than
-    /// 2⁻³⁰).
+    /// Below this bound, the reciprocal loses little enough: its relative error is below 2⁻²⁸, so less than 2⁻⁵ of a
+    /// unit over 512 px in both directions, and one unit of 2⁻¹⁶ per pixel.
+    ///
+    /// 256 / |area| = 2^shift reciprocal / 2⁵⁵. n is normalized to n 2^up in 2³⁰..2³¹, or cut to this range (by less
+    /// than 2⁻³⁰).
     fn gentle(&self, numerators: &[i64; 2], scale: u32) -> Option<[i32; 2]> {
         let mut gradients = [0; 2];
         for (gradient, n) in gradients.iter_mut().zip(numerators) {
-            // Redundant sign bits, all but the last of which can go.
+            // Redundant sign bits. All but the last of them are shifted out.
             let zeros = leading_zeros_long((n ^ (n >> 63)) as u64);
             let normalized = (n << (zeros - 1) >> 32) as i32;
             let high = mul_high_apart(normalized, self.reciprocal);
@@ -186,11 +189,12 @@ impl Gradients {
         Some(gradients)
     }
 
-    /// The plane by its gradients' numerators, with 32 fractional bits, modulo 2⁶⁴ and with its base at the origin, by long
-    /// division, for triangles that are larger or steep; each of its three numbers is rounded down.
+    /// Computes the plane from its gradients' numerators, with 32 fractional bits, modulo 2⁶⁴, and with its base at the
+    /// origin. It divides by long division, for triangles that are larger or steep. Each of the plane's three numbers
+    /// is rounded down.
     ///
     /// # Format
-    /// The difference to the origin is Σ n to, of up to 84 bits, from two halves of each n.
+    /// The difference from vertex 0 to the origin is Σ n to, of up to 84 bits, made from two halves of each n.
     fn exact(&self, v0: i32, &[a, b]: &[i64; 2], plane: &mut Plane64) {
         let (x, y) = (i64::from(self.to.0), i64::from(self.to.1));
         let low = i64::from(a as u32) * x + i64::from(b as u32) * y;
@@ -200,14 +204,15 @@ impl Gradients {
         plane.dy = self.divided(b >> 24, (b as u32) << 8);
     }
 
-    /// (`high` 2³² + `low`) 2³² / |area|, rounded down, modulo 2⁶⁴.
+    /// Returns (`high` 2³² + `low`) 2³² / |area|, rounded down, modulo 2⁶⁴.
     #[inline(always)]
     fn divided(&self, high: i64, low: u32) -> i64 {
         divide_modulo(high, low, self.area.unsigned_abs())
     }
 
-    /// Makes `plane` the plane through the values at the three vertices with 32 fractional bits, modulo 2⁶⁴, by long division; each
-    /// of its three numbers is rounded down before it is carried from the origin to the screen's corner.
+    /// Sets `plane` to the plane through the values at the three vertices, with 32 fractional bits, modulo 2⁶⁴, by long
+    /// division. Each of its three numbers is rounded down before the base is moved from the origin to the screen's
+    /// corner.
     #[inline(never)]
     pub fn plane_wide(&self, values: [i32; 3], plane: &mut Plane64) {
         self.exact(values[0], &self.numerators(values), plane);
@@ -216,36 +221,37 @@ impl Gradients {
     }
 }
 
-/// What is no [`small_shift`](Gradients::small_shift).
+/// A [`small_shift`](Gradients::small_shift) that is larger than any shift: the triangle is not small.
 const LARGE: i32 = 1 << 16;
 
-/// High words of the products with a number whose top bit is set, rounded down.
+/// Returns the high words of two products with a number whose top bit is set, rounded down.
 #[inline(always)]
 fn high(a: i32, b: i32, n: u32) -> (i32, i32) {
-    // One instruction each, if n is taken for n - 2³².
+    // One instruction per product, if n is taken as n - 2³².
     let high = |a: i32| (((i64::from(a) * i64::from(n as i32)) >> 32) as i32).wrapping_add(a);
     (high(a), high(b))
 }
 
-/// The same by products of 16 bits, out of line, where it would spill all that is kept across it.
+/// Returns the high words as [`high`] does, by products of 16 bits. Not inlined, because its registers would push the
+/// values that are live around it to the stack.
 #[inline(never)]
 fn high_two(a: i32, b: i32, n: u32) -> (i32, i32) {
     (mul_high_signed(a, n), mul_high_signed(b, n))
 }
 
-/// Whether all are within -`half`..`half`, a power of two.
+/// Returns whether all numbers are within -`half`..`half`, where `half` is a power of two.
 #[inline(always)]
 fn within(half: i32, [a, b, c, d]: [i32; 4]) -> bool {
     (((a + half) | (b + half) | (c + half) | (d + half)) as u32) < 2 * half as u32
 }
 
-/// Whether a difference of values is within -2¹⁴..2¹⁴.
+/// Returns whether a difference of values is within -2¹⁴..2¹⁴.
 #[inline]
 fn moderate(difference: i32) -> bool {
     (difference.wrapping_add(1 << 14)) as u32 >> 15 == 0
 }
 
-/// The determinant of differences of values and of coordinates.
+/// Returns the determinant of differences of values and of coordinates.
 #[inline(never)]
 fn minor(v: &[i64; 2], c: &[i32; 2]) -> i64 {
     v[0] * i64::from(c[1]) - v[1] * i64::from(c[0])

@@ -1,14 +1,14 @@
-//! Lines of one pixel's width → pixels, by the diamond-exit rule, as OpenGL and Vulkan have it.
+//! Lines of one pixel's width: two ends come in, and pixels go out, by the diamond-exit rule of OpenGL and Vulkan.
 //!
 //! ```text
 //!      ,'.              Each pixel has a diamond, |x| + |y| < 1/2 about its centre. A line draws the pixels whose
-//!    ,'   `.            diamonds it meets, except for the one that it ends in: so lines in a chain draw each pixel of
-//!  --+-----+--> line    a joint once. A line flatter than 45° meets at most one diamond in a column, that of the row in
-//!    `.   ,'            which it passes the column's centre; only at its two ends the diamond has to be looked at.
-//!      `.'
+//!    ,'   `.            diamonds it meets, except for the pixel that it ends in. So a chain of lines draws the
+//!  --+-----+--> line    pixel of each joint once. A line flatter than 45° meets at most one diamond per column:
+//!    `.   ,'            the one of the row in which the line passes the column's centre. Only at the two ends of
+//!      `.'              a line, the diamond itself has to be tested.
 //! ```
-//! Ties are decided as if both end points were moved by (-ε, -ε²): then no point lies on the border of a diamond, and no
-//! line passes between two rows.
+//! Ties are decided as if both end points were moved by (-ε, -ε²): then no point lies on the border of a diamond, and
+//! no line passes exactly between two rows.
 //!
 //! # Source
 //! OpenGL 4.6, 14.5.1; Vulkan, "Basic Line Segment Rasterization"; Bresenham 1965 for the stepping.
@@ -18,47 +18,50 @@ use crate::math::divide;
 use core::num::NonZeroU32;
 use core::ops::Range;
 
-/// A line's pixels. *Major* is the axis along which it is longer (x if both are the same); it draws one pixel for each
-/// step along it.
+/// The pixels of a line. The *major* axis is the one along which the line is longer (x if it is equally long along
+/// both). The line draws one pixel per step along its major axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Line {
     steep: bool,
-    /// Which way it goes along the major and the minor axis: 1 or -1.
+    /// Direction along the major and the minor axis: 1 or -1.
     direction: (i32, i32),
-    /// Its length along both axes, in 24.8 px; the first is not below the second, and at most 2²⁴.
+    /// Length along the major axis (`length`) and along the minor axis (`height`), in 24.8 px: `length` ≥ `height`, and
+    /// at most 2²⁴.
     length: u32,
     height: u32,
-    /// How many pixels it draws.
+    /// Number of pixels that the line draws.
     count: u32,
-    /// From the start to the centre of the first pixel, along the major axis, in 24.8 px: -128..=256. It is negative if
-    /// the line starts behind the centre of its first pixel.
+    /// Distance from the start to the centre of the first pixel, along the major axis, in 24.8 px: -128..=256. It is
+    /// negative if the line starts after the centre of its first pixel.
     lead: i32,
-    /// The first pixel along both axes, and the Bresenham error there: 0..`length`.
+    /// The first pixel, along the major and the minor axis, and the Bresenham error there, in 0..`length`.
     first: (i32, i32),
     error: u32,
 }
 
-/// Where a point's diamond is: the pixel's number along an axis, and the way from its centre to the point, -127..=128.
+/// Returns the pixel whose diamond a point may lie in: its number along one axis, and the distance from its centre to
+/// the point, -127..=128.
 #[inline]
 const fn pixel_of(coordinate: i32) -> (i32, i32) {
     let pixel = (coordinate - 1) >> 8;
     (pixel, coordinate - (256 * pixel + 128))
 }
 
-/// The pixel whose diamond holds a point (moved by (-ε, -ε²)), along the axis that is asked for.
+/// Returns the pixel whose diamond holds a point (moved by (-ε, -ε²)): its row if `along_y` is set, otherwise its
+/// column.
 #[inline]
 const fn diamond(point: (i32, i32), along_y: bool) -> Option<i32> {
     let ((column, x), (row, y)) = (pixel_of(point.0), pixel_of(point.1));
     let sum = x.abs() + y.abs();
-    // On the border, moving by -ε leads inside from the right half; from the two tips in the middle it does not.
+    // On the border, moving by -ε leads inside from the right half. From the two tips in the middle, it does not.
     if sum < 128 || (sum == 128 && x > 0) { Some(if along_y { row } else { column }) } else { None }
 }
 
 impl Line {
-    /// The line from `a` to `b`.
+    /// Makes the line from `a` to `b`.
     ///
     /// # Format
-    /// Points (x, y) in 24.8, at most ±32,767 px. Exact: as if computed with infinite precision.
+    /// Points (x, y) are in 24.8, at most ±32,767 px. The pixels are exact: as if computed with infinite precision.
     pub fn new(a: (i32, i32), b: (i32, i32)) -> Self {
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let steep = dx.abs() < dy.abs();
@@ -66,8 +69,9 @@ impl Line {
         let (along, aside) = if steep { (dy, dx) } else { (dx, dy) };
         let direction = (if along < 0 { -1 } else { 1 }, if aside < 0 { -1 } else { 1 });
         let (length, height) = (along.unsigned_abs(), aside.unsigned_abs());
-        // Forward, the first centre not before the start, up to the last one before the end; a centre at the start is not
-        // before it, as the line begins ε earlier. Backward, the other way round.
+        // Forward, pixels run from the first centre that is not before the start, up to the last one that is before the
+        // end. A centre at the start is not before it, because the line begins ε earlier. Backward, it is the other way
+        // round.
         let back = i32::from(along < 0);
         let first = diamond(a, steep).unwrap_or(first_centre(start) - back);
         let last = match diamond(b, steep) {
@@ -83,17 +87,18 @@ impl Line {
         line
     }
 
-    /// Finds the first pixel along the minor axis, from the start's fraction of a pixel, and the error there.
+    /// Finds the first pixel along the minor axis, and the error there, from the start's fraction of a pixel.
     ///
-    /// At the centre of the first pixel the line is at n / 256 `length` px, n = `fraction` `length` ± `lead` `height`,
-    /// from the row that the start is in. Steps change n by multiples of 256, so its lower 8 bits do not matter.
+    /// At the centre of the first pixel, the line is at n / 256 `length` px from the row that the start is in, with n =
+    /// `fraction` `length` ± `lead` `height`. Steps change n by multiples of 256, so its lower 8 bits do not matter.
     ///
     /// # Format
-    /// n in 2³⁴; n / 256 in ±2²⁶. Within three pixels of the start.
+    /// n is within 2³⁴, and n / 256 within ±2²⁶. The first pixel is within three pixels of the start.
     #[inline]
     fn place(&mut self, fraction: i32) {
         let (length, height) = (self.length as i32, self.height as i32);
-        // ε moves a flat line that goes right and down (or left and up) down, and any other line up or to the left.
+        // ε moves a flat line that goes right and down (or left and up) down. It moves any other line up or to the
+        // left.
         let falls = !self.steep && self.height > 0 && self.direction.0 == self.direction.1;
         let tie = i32::from(!falls);
         let lead = self.lead * self.direction.1;
@@ -111,37 +116,37 @@ impl Line {
             n -= length;
             self.first.1 += 1;
         }
-        // Backward, the error is counted from the other side.
+        // Backward, the error is counted from the other side of the pixel.
         self.error = (if self.direction.1 < 0 { length - 1 - n } else { n }) as u32;
     }
 
-    /// Whether y is the major axis.
+    /// Returns whether y is the major axis.
     #[inline]
     pub const fn is_steep(&self) -> bool {
         self.steep
     }
 
-    /// Its length along the major axis, in 24.8 px.
+    /// Returns the length along the major axis, in 24.8 px.
     #[inline]
     pub const fn length(&self) -> u32 {
         self.length
     }
 
-    /// From the start to the centre of the first pixel, along the line's major axis in 24.8 px: at least -128; negative if
-    /// the line starts behind that centre.
+    /// Returns the distance from the start to the centre of the first pixel, along the major axis in 24.8 px: at least
+    /// -128. It is negative if the line starts after that centre.
     #[inline]
     pub const fn lead(&self) -> i32 {
         self.lead
     }
 
-    /// Number of pixels.
+    /// Returns the number of pixels.
     #[inline]
     pub const fn count(&self) -> u32 {
         self.count
     }
 
-    /// Its pixels inside of a rectangle, in drawing order, and the number of the first of them in the whole line. They are
-    /// the same as without the rectangle.
+    /// Returns the line's pixels inside of a rectangle, in drawing order, and the number of the first of them in the
+    /// whole line. The rectangle does not change which pixels a line has: the pixels outside of it are only left out.
     ///
     /// ```
     /// use zstrip::internals::{Line, PixelRect};
@@ -151,7 +156,7 @@ impl Line {
     /// ```
     ///
     /// # Format
-    /// Steps and errors below 2²⁵ make 2⁴² in 64 bits.
+    /// The product of steps and height, both below 2²⁵, fits 64 bits.
     pub fn pixels(&self, clip: &PixelRect) -> (u32, LinePixels) {
         let (majors, minors) = if self.steep { (&clip.y, &clip.x) } else { (&clip.x, &clip.y) };
         let along = advance(self.first.0, self.direction.0, majors);
@@ -161,7 +166,7 @@ impl Line {
         let mut moved = 0;
         let mut error = self.error;
         if let (1.., Some(length)) = (skipped, NonZeroU32::new(self.length)) {
-            (moved, error) = divide(self.reach(skipped), length);
+            (moved, error) = divide(self.error_after(skipped), length);
         }
         let (major, minor) =
             (self.first.0 + skipped as i32 * self.direction.0, self.first.1 + moved as i32 * self.direction.1);
@@ -176,17 +181,18 @@ impl Line {
         (skipped, pixels)
     }
 
-    /// Steps until the line has moved so many pixels aside, or all of its steps.
+    /// Returns the number of steps until the line has moved `pixels` pixels aside, or of all its steps if it never
+    /// does.
     fn until(&self, pixels: u32) -> u32 {
-        // It moves aside by its height, and by less than a pixel more.
+        // In all, the line moves aside by its height, and by less than one more pixel.
         if pixels > (self.height >> 8) + 1 {
             return self.count;
         }
         let way = u64::from(pixels) * u64::from(self.length);
         match NonZeroU32::new(self.height) {
             _ if pixels == 0 => 0,
-            // The quotient is not above the number of steps then.
-            Some(height) if way <= self.reach(self.count) => {
+            // In this case the quotient is not above the number of steps.
+            Some(height) if way <= self.error_after(self.count) => {
                 let (quotient, rest) = divide(way - u64::from(self.error), height);
                 quotient + u32::from(rest > 0)
             }
@@ -194,13 +200,13 @@ impl Line {
         }
     }
 
-    /// The error after some steps, with nothing taken off it.
-    fn reach(&self, steps: u32) -> u64 {
+    /// Returns the error after some steps, if nothing is ever taken off it.
+    fn error_after(&self, steps: u32) -> u64 {
         u64::from(self.error) + u64::from(steps) * u64::from(self.height)
     }
 }
 
-/// How many pixels on from `first` the range begins and ends, in a direction.
+/// Returns the numbers of steps from `first`, in a direction, at which a range begins and ends.
 #[inline]
 fn advance(first: i32, direction: i32, range: &Range<i32>) -> Range<u32> {
     let (start, end) = if direction < 0 {
@@ -211,19 +217,20 @@ fn advance(first: i32, direction: i32, range: &Range<i32>) -> Range<u32> {
     start.max(0) as u32..end.max(0) as u32
 }
 
-/// A walk over pixels of a line: one addition and one comparison for each.
+/// An iterator over pixels of a line: one addition and one comparison per pixel.
 #[derive(Clone, Copy, Debug)]
 pub struct LinePixels {
     /// The next pixel.
     pub(crate) position: (i32, i32),
-    /// Step along the major axis, and along both.
+    /// Step along the major axis, and step along both axes.
     pub(crate) straight: (i32, i32),
     pub(crate) diagonal: (i32, i32),
-    /// The error less `length`, below 0: it grows by `height`, and where it would not be negative, the step is diagonal.
+    /// The error minus `length`, below 0. It grows by `height` per pixel. The step is diagonal where it would not be
+    /// negative.
     pub(crate) error: i32,
     pub(crate) height: i32,
     pub(crate) length: i32,
-    /// How many pixels are left.
+    /// Number of pixels that are left.
     pub(crate) left: u32,
 }
 

@@ -1,5 +1,7 @@
-//! Screen primitive → spans: exact edges walked row by row, the plane equations of what is interpolated, and the pixels of
-//! lines and points.
+//! Screen primitive → spans and pixels: vertices on the screen come in. Exact spans of triangles, row by row, the plane
+//! equations of interpolated values, and the pixels of lines and points go out.
+//!
+//! Coverage is exact, as if computed with infinite precision, for vertices within ±32,767 px.
 
 mod along;
 mod direction;

@@ -1,19 +1,20 @@
-//! Perspective-correct varyings, at the vertices: what is linear on the screen, and how much perspective there is.
+//! Perspective-correct varyings, at the vertices: varyings and 1 / w come in. Values that are linear on the screen, and
+//! the amount of perspective, go out.
 //!
-//! A varying that is linear in space is no plane on the screen, but v / w and 1 / w are. With d = v - v₀, scaled to 28 bits,
-//! and q = 1 / w, scaled so that the largest of a triangle has 31 bits,
+//! A varying that is linear in space is not a plane on the screen, but v / w and 1 / w are. With d = v - v₀, scaled to
+//! 28 bits, and q = 1 / w, scaled so that the largest q of a triangle has 31 bits,
 //!
 //! ```text
 //! v = v₀ + Σ bᵢ (dᵢ qᵢ) / Σ bᵢ qᵢ            bᵢ: a pixel's barycentric coordinates on the screen
 //! ```
-//! so a pixel takes the planes of d q and of q, and one reciprocal. Since |d| q is at most an eighth of q at the vertices, it is
-//! at every pixel.
+//! so a pixel takes the planes of d q and of q, and one reciprocal. |d| q is at most an eighth of q at the vertices,
+//! and therefore at every pixel.
 
 use super::gradient::Gradients;
 use crate::math::mul_high_signed;
 use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64, ScreenVertex, Varyings};
 
-/// Puts d q (or d, where perspective is too weak to be seen) and q in the place of perspective-correct varyings and 1 / w;
+/// Replaces perspective-correct varyings by d q (or by d, where perspective is too weak to be seen), and 1 / w by q.
 /// `screen` is the screen's size.
 #[inline]
 pub fn homogenize<V: Varyings>(
@@ -28,7 +29,7 @@ pub fn homogenize<V: Varyings>(
     }
 }
 
-/// The planes of d q and q in 64 bits, where 32 are too few.
+/// Computes the planes of d q and q in 64 bits, where 32 are too few.
 #[inline]
 pub fn widen<C: PerspectiveSetup>(gradients: &Gradients, values: &[&[i32]; 3], perspective: &mut C) {
     if let Some((PerspectiveClass::Planes64, inverse_w64, planes)) = perspective.parts_mut() {
@@ -52,7 +53,7 @@ fn planes_in_64_bits(
     }
 }
 
-/// Columns and rows that a plane's value may have to be carried over.
+/// Returns the number of columns and rows that a plane's value may have to be carried over.
 fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
     let [a, b, c] = v;
     let columns = a.x.max(b.x).max(c.x) - a.x.min(b.x).min(c.x);
@@ -60,10 +61,13 @@ fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
     (columns as u32 >> 8).min(width.into()) + (rows as u32 >> 8).min(height.into())
 }
 
+/// Replaces the values at three vertices as [`homogenize`] does, and returns the amount of perspective.
+///
 /// # Format
-/// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](crate::raster::Gradients)); so are q and d q, which
-/// makes h, of 28 bits, wrong by some 2³¹ (reach + 64) / q. [`Planes32`](PerspectiveClass::Planes32) keeps that below 2¹⁵
-/// units, 2⁻¹³ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter of that, 2⁻¹⁶.
+/// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](crate::raster::Gradients)). So are q and
+/// d q, which makes h, of 28 bits, wrong by some 2³¹ (reach + 64) / q. [`Planes32`](PerspectiveClass::Planes32) keeps
+/// this error below 2¹⁵ units, 2⁻¹³ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter
+/// of that, 2⁻¹⁶.
 #[inline(never)]
 fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], reach: u32) -> PerspectiveClass {
     let [a, b, c] = values;
@@ -92,8 +96,8 @@ fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], reach: u32)
     class
 }
 
-/// Numbers in the ratio of 1 / w, from the words of [`inverse_w`](crate::vertex::inverse_w): the largest in 2³⁰..2³¹, none
-/// below 1.
+/// Returns numbers in the ratio of 1 / w, from the words of [`inverse_w`](crate::vertex::inverse_w): the largest is in
+/// 2³⁰..2³¹, and none is below 1.
 fn weights(words: [u32; 3]) -> [u32; 3] {
     let [a, b, c] = words;
     let most = (a & 63).max(b & 63).max(c & 63);

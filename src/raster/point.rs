@@ -1,8 +1,8 @@
-//! Points → squares of pixels.
+//! Points → squares of pixels: a centre and a side come in, and a rectangle of pixels goes out.
 
 use super::triangle::PixelRect;
 
-/// The pixels of a square: those whose centres are inside of it, or on its left or top side.
+/// Returns the pixels of a square: the pixels whose centres are inside of it, or on its left or top side.
 ///
 /// ```
 /// use zstrip::internals::{PixelRect, square};
@@ -11,12 +11,13 @@ use super::triangle::PixelRect;
 /// ```
 ///
 /// # Format
-/// Centre in 24.8, at most ±32,767 px; `side` in 24.8, up to 65,535 px. Exact: centres in x - `side` / 2..x + `side` / 2,
-/// twice as many units for the half, below 2²⁶.
+/// The centre is in 24.8, at most ±32,767 px, and `side` in 24.8, up to 65,535 px. The result is exact: it holds the
+/// centres in x - `side` / 2..x + `side` / 2. To include the half, coordinates are counted in twice as many units,
+/// below 2²⁶.
 #[inline]
 pub const fn square(center: (i32, i32), side: u32) -> PixelRect {
     let side = (if side > 1 << 24 { 1 << 24 } else { side }) as i32;
-    // The first pixel whose centre, 256 p + 128, is not before c / 2.
+    // The first pixel whose centre, 256 p + 128, is not less than c / 2.
     const fn first(c: i32) -> i32 {
         (c + 255) >> 9
     }

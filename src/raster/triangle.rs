@@ -1,10 +1,10 @@
-//! Triangles → spans, row by row from the top.
+//! Triangles → spans: three vertices on the screen come in, and spans go out, row by row from the top.
 //!
 //! ```text
-//!        a            a, b, c by height; the long edge goes from a to c, the short side bends at b. Rows whose centres
-//!       / \           lie in a.y..b.y are between the long edge and ab, those in b.y..c.y between the long edge and bc:
-//!      /   b          a centre on the upper end of an edge belongs to it, one on the lower end does not, which is the
-//!     / ,-'           top-left rule for horizontal edges.
+//!        a            a, b, c are sorted by height. The long edge goes from a to c, and the short side bends at b.
+//!       / \           Rows whose centres lie in a.y..b.y are between the long edge and ab, and rows whose centres
+//!      /   b          lie in b.y..c.y are between the long edge and bc. A centre on the upper end of an edge belongs
+//!     / ,-'           to the edge, and a centre on the lower end does not: the top-left rule for horizontal edges.
 //!    c-'
 //! ```
 
@@ -22,13 +22,13 @@ pub struct PixelRect {
 }
 
 impl PixelRect {
-    /// Whether no pixel is in it.
+    /// Returns whether the rectangle has no pixels.
     #[inline]
     pub const fn is_empty(&self) -> bool {
         self.x.start >= self.x.end || self.y.start >= self.y.end
     }
 
-    /// The pixels that are in both.
+    /// Returns the pixels that are in both rectangles.
     #[inline]
     pub fn intersection(&self, other: &Self) -> Self {
         Self {
@@ -38,13 +38,13 @@ impl PixelRect {
     }
 }
 
-/// The first pixel whose centre is at or behind a 24.8 coordinate.
+/// Returns the first pixel whose centre is at or after a 24.8 coordinate.
 #[inline]
 pub const fn first_centre(coordinate: i32) -> i32 {
     (coordinate + 127) >> 8
 }
 
-/// The pixels whose centres lie in the bounding box of a triangle; no other can be covered.
+/// Returns the pixels whose centres lie in the bounding box of a triangle. The triangle can cover no other pixels.
 #[inline]
 pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
     let [a, b, c] = v;
@@ -54,11 +54,11 @@ pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
     }
 }
 
-/// Walks the spans of a triangle inside a rectangle from top to bottom: calls `span(y, columns)` for each that is not
-/// empty.
+/// Finds the spans of a triangle inside a rectangle, from top to bottom, and calls `span(y, columns)` for each span
+/// that is not empty.
 ///
-/// `area` is the triangle's [`signed_area`](crate::vertex::signed_area), vertices are within ±32,767 px. Coverage is
-/// exact: as if computed with infinite precision, with the top-left rule, for either winding.
+/// `area` is the triangle's [`signed_area`](crate::vertex::signed_area). Vertices are within ±32,767 px. Coverage is
+/// exact, as if computed with infinite precision, with the top-left rule and for either winding.
 ///
 /// ```
 /// use zstrip::vertex::ScreenVertex;
@@ -76,8 +76,8 @@ pub fn spans(v: &[ScreenVertex; 3], area: i64, clip: &PixelRect, mut span: impl 
     }
 }
 
-/// The spans of a triangle, one by one: all that walks is in one place, and what it takes to walk is not on the stack while a
-/// span is drawn.
+/// The spans of a triangle, one by one. The whole state of the iteration is in this struct, and the temporaries of one
+/// step are no longer on the stack while a span is drawn.
 #[derive(Debug)]
 pub struct Spans<'v> {
     outline: Outline<'v>,
@@ -85,20 +85,20 @@ pub struct Spans<'v> {
     right: Edge,
     /// The span's row.
     pub y: i32,
-    /// Its columns.
+    /// The span's columns.
     pub x: Range<i32>,
 }
 
 impl<'v> Spans<'v> {
-    /// Before the first span in the rows of `clip`. Other parameters are those of [`spans`].
+    /// Begins in front of the first span in the rows of `clip`. Other parameters are those of [`spans`].
     #[inline]
     pub fn new(v: &'v [ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
         let outline = Outline::new(v, area, clip);
-        // Edges are made at their first row.
+        // Edges are made when their first row is reached.
         Self { y: outline.top.wrapping_sub(1), outline, left: Edge::EMPTY, right: Edge::EMPTY, x: 0..0 }
     }
 
-    /// Goes on to the next span in these columns that is not empty, if there is one.
+    /// Goes on to the next span that is not empty in these columns, and returns whether there is one.
     #[inline(never)]
     pub fn next_in(&mut self, columns: &Range<i32>) -> bool {
         loop {
@@ -123,29 +123,30 @@ impl<'v> Spans<'v> {
     }
 }
 
-/// A triangle's rows, and its edges.
+/// The rows of a triangle, and its edges.
 #[derive(Debug)]
 pub struct Outline<'v> {
-    /// The vertices by height.
+    /// The vertices, sorted by height.
     a: &'v ScreenVertex,
     b: &'v ScreenVertex,
     c: &'v ScreenVertex,
     /// The first row.
     pub top: i32,
-    /// The first row below the bend, where another edge takes the place of one, if there are rows above it.
+    /// The first row below the bend, where a new edge replaces the short side's first edge; `i32::MIN` if no row is
+    /// above it.
     pub bend: i32,
-    /// The row behind the last.
+    /// The first row after the last.
     pub end: i32,
-    /// Whether the bend is to the right of the long edge.
+    /// Set if the bend is to the right of the long edge.
     pub bend_right: bool,
 }
 
 impl<'v> Outline<'v> {
-    /// The rows of a triangle that are in `clip`. Other parameters are those of [`spans`].
+    /// Finds the rows of a triangle that are in `clip`. Other parameters are those of [`spans`].
     #[inline(never)]
     pub fn new(v: &'v [ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
         let [mut a, mut b, mut c] = v.each_ref();
-        // The sign of the area, changed by each exchange.
+        // The sign of the area: each exchange of two vertices inverts it.
         let mut bend_right = area > 0;
         if b.y < a.y {
             (a, b) = (b, a);
@@ -165,7 +166,7 @@ impl<'v> Outline<'v> {
         Self { a, b, c, top, bend: if bend > top { bend } else { i32::MIN }, end, bend_right }
     }
 
-    /// The edge on the left, or on the right, at a row; it has to be stepped once a row.
+    /// Returns the edge on the left, or on the right, at a row. The caller has to step it once per row.
     #[inline(never)]
     pub fn side(&self, right: bool, row: i32) -> Edge {
         let (mut from, mut to) = (self.a, self.c);
