@@ -13,12 +13,12 @@ mod firmware;
 #[cfg(target_os = "none")]
 mod rows {
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-    use zstrip::light::{DirectionalLight, Light, Lighting, LitMaterial, Material, PointLight, Viewer};
+    use zstrip::light::{DirectionalLight, Lighting, LitMaterial, Material, Matte, PointLight, Sun, Sunlit, Viewer};
     use zstrip::math::{Affine, Projective, Scalar, Vec3};
     use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
     use zstrip::shader::{
         Add, AddAlpha, Alpha, AlphaTest, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity,
-        PerFragment, PerFragmentNear, ScreenDoor, Shaded, Textured,
+        Phong, PhongNear, ScreenDoor, Textured,
     };
     use zstrip::span::{DepthState, Shader};
     use zstrip::target::{Strip, WithDepth, WithRecords};
@@ -32,8 +32,8 @@ mod rows {
 
     pub const ROWS: &[Row] = &[
         ("nothing", |_| {}),
-        ("`Flat`; `Shaded` per face", |s| square(s, &flat())),
-        ("`Gouraud`; `Shaded` per vertex", |s| square(s, &GOURAUD)),
+        ("`Flat`", |s| square(s, &flat())),
+        ("`Gouraud`", |s| square(s, &GOURAUD)),
         ("`Matcap`", |s| square(s, &Matcap::<Rgb565, 64>::new(&BALL, &Affine::IDENTITY))),
         ("`Textured`, nearest, repeated, w constant", |s| square(s, &Textured::new(&TILE))),
         ("the same in perspective", |s| floor(s, &Textured::new(&TILE))),
@@ -48,11 +48,11 @@ mod rows {
         ("nearest, lit", |s| floor(s, &Textured::new(&TILE).lit(light()))),
         ("bilinear, lit", |s| floor(s, &Textured::new(&TILE).filter(Bilinear).lit(light()))),
         ("`Blend` of it, nearest, `Opacity`", |s| floor(s, &Blend::new(Textured::new(&TILE), Opacity(100)))),
-        ("`Shaded` per fragment, 1 directional light, matte", |s| square(s, &far::<1>(0))),
+        ("`Phong`, 1 directional light, matte", |s| square(s, &far::<1>(0))),
         ("the same, 2 directional lights", |s| square(s, &far::<2>(0))),
         ("1 directional light, glossy, shininess 32", |s| square(s, &far::<1>(32))),
         ("the same, shininess 255", |s| square(s, &far::<1>(255))),
-        ("`Shaded` per fragment, near, 1 point light, matte", |s| square(s, &near(0, Viewer::Toward(Vec3::Z)))),
+        ("`PhongNear`, 1 point light, matte", |s| square(s, &near(0, Viewer::Toward(Vec3::Z)))),
         ("the same, glossy, shininess 32", |s| square(s, &near(32, Viewer::Toward(Vec3::Z)))),
         ("the same, viewer near", |s| square(s, &near(32, Viewer::At(Vec3::from_ints(0, 0, 3))))),
         ("`Blend` of `Flat`, `Opacity`", |s| glass(s, &Blend::new(flat(), Opacity(100)))),
@@ -120,8 +120,9 @@ mod rows {
         }
     }
 
-    fn light() -> Light {
-        Light::new(Vec3::from_ints(1, 2, 4), Rgb888::new(220, 220, 200), Rgb888::new(30, 30, 30))
+    fn light() -> Sunlit {
+        let sun = Sun::new(Vec3::from_ints(1, 2, 4), Rgb888::new(220, 220, 200), Rgb888::new(30, 30, 30));
+        sun.on(&Matte::WHITE, &Affine::IDENTITY)
     }
 
     static BALL: [[u16; 64]; 64] = [[0x1234; 64]; 64];
@@ -149,26 +150,31 @@ mod rows {
         Material::glossy(Rgb888::new(200, 100, 50), Rgb888::new(250, 250, 250), shininess)
     }
 
-    const SUN: DirectionalLight = DirectionalLight { direction: Vec3::from_ints(1, 2, 4), color: [220, 220, 200] };
+    const SUN: DirectionalLight =
+        DirectionalLight { direction: Vec3::from_ints(1, 2, 4), color: Rgb888::new(220, 220, 200) };
 
     fn on<const D: usize, const P: usize>(lighting: Lighting<D, P>, shininess: u8) -> LitMaterial<D, P> {
         lighting.on(&material(shininess), &Affine::IDENTITY, SQUARE.bounds())
     }
 
-    fn far<const D: usize>(shininess: u8) -> Shaded<PerFragment, D, 0> {
-        let lighting =
-            Lighting { ambient: [30; 3], directional: [SUN; D], points: [], viewer: Viewer::Toward(Vec3::Z) };
-        Shaded::new(PerFragment, on(lighting, shininess))
+    fn far<const D: usize>(shininess: u8) -> Phong<D> {
+        let lighting = Lighting {
+            ambient: Rgb888::new(30, 30, 30),
+            directional: [SUN; D],
+            points: [],
+            viewer: Viewer::Toward(Vec3::Z),
+        };
+        Phong::new(on(lighting, shininess))
     }
 
-    fn near(shininess: u8, viewer: Viewer) -> Shaded<PerFragmentNear, 0, 1> {
+    fn near(shininess: u8, viewer: Viewer) -> PhongNear<0, 1> {
         let lamp = PointLight {
             position: Vec3::from_ints(0, 0, 2),
             color: [220, 220, 200],
             range: Scalar::from_bits(5 << 16),
         };
-        let lighting = Lighting { ambient: [30; 3], directional: [], points: [lamp], viewer };
-        Shaded::new(PerFragmentNear, on(lighting, shininess))
+        let lighting = Lighting { ambient: Rgb888::new(30, 30, 30), directional: [], points: [lamp], viewer };
+        PhongNear::new(on(lighting, shininess))
     }
 }
 

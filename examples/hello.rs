@@ -3,7 +3,7 @@ use std::io::Write;
 use zstrip::Renderer;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
-use zstrip::light::Light;
+use zstrip::light::{Material, Sun};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Flat;
@@ -27,9 +27,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let camera =
         Projective::perspective(Angle16::from_degrees(45), Size::new(320, 240), Scalar::ONE, Scalar::from_num(20))?;
     let view = Affine::look_at(Vec3::from_ints(2, 3, 4), Vec3::ZERO, Vec3::Y)?;
-    let light = Light::new(Vec3::from_ints(1, 3, 2), Rgb888::CSS_DARK_GRAY, Rgb888::CSS_DIM_GRAY);
+    let sun = Sun::new(Vec3::from_ints(1, 3, 2), Rgb888::CSS_DARK_GRAY, Rgb888::CSS_DIM_GRAY);
     // Made here: the closure is called for each strip.
-    let (mvp, shader) = (camera * view, Flat::new(light, Rgb888::CSS_ORANGE));
+    let (mvp, shader) = (camera * view, Flat::new(sun.on(&Material::matte(Rgb888::CSS_ORANGE), &Affine::IDENTITY)));
 
     let mut png = png::Encoder::new(std::fs::File::create("hello.png")?, 320, 240);
     png.set_color(png::ColorType::Rgb);

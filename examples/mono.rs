@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::geometry::Size;
-use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb888, RgbColor};
+use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8};
 use zstrip::frame::{RamBudget, Renderer};
 use zstrip::math::{Affine, Angle16, Scalar, Vec3};
 use zstrip::shader::Gouraud;
@@ -111,7 +111,7 @@ fn frame(settings: &Settings, number: u32) -> Result<Vec<u8>, Box<dyn Error>> {
 fn torus<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let nearer = Affine::translation(Vec3::from_milli(0, 0, 500)) * scenes::torus_model(turn);
     let mvp = scenes::camera(scene.screen(), Scalar::from_bits(1 << 15), Scalar::from_bits(12 << 16)) * nearer;
-    scene.draw(&scenes::torus::MESH, &mvp, &Gouraud::new(scenes::LIGHT.to_object(&nearer), Rgb888::WHITE));
+    scene.draw(&scenes::torus::MESH, &mvp, &Gouraud::new(scenes::LIGHT.on(&zstrip::light::Matte::WHITE, &nearer)));
 }
 
 /// What the panel shows, enlarged: rows of dots that are on or off.

@@ -128,7 +128,7 @@ mod counting {
     use zstrip::embedded_graphics_core::geometry::Size;
     use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
     use zstrip::frame::RamBudget;
-    use zstrip::light::Light;
+    use zstrip::light::{Material, Sun};
     use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
     use zstrip::mesh::Mesh;
     use zstrip::shader::Gouraud;
@@ -218,8 +218,9 @@ mod counting {
             let model = Affine::translation(Vec3::from_ints(0, 0, -3))
                 * Affine::rotation_y(Angle16::from_degrees(29))
                 * Affine::rotation_x(Angle16::from_degrees(40));
-            let light = Light::from_channels(Vec3::from_ints(2, 4, 3), [215; 3], [40; 3]).to_object(&model);
-            let (mvp, shader) = (*self.camera * model, Gouraud::new(light, Rgb888::new(255, 160, 64)));
+            let sun = Sun::from_channels(Vec3::from_ints(2, 4, 3), [215; 3], [40; 3]);
+            let (mvp, shader) =
+                (*self.camera * model, Gouraud::new(sun.on(&Material::matte(Rgb888::new(255, 160, 64)), &model)));
             let start = ticks::now();
             let stats = renderer.frame_to(sink, &mut memory.color[..pixels], Rgb565::BLACK, |scene| {
                 if let Some(mesh) = self.mesh {

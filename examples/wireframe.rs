@@ -11,7 +11,7 @@ use scenes::wires::BEHIND_LINES;
 use std::process::ExitCode;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::light::Light;
+use zstrip::light::{Material, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
 use zstrip::shader::{DepthOnly, Flat};
@@ -107,7 +107,13 @@ struct Wireframe {
     /// Edges that are drawn in this frame: sharp ones, and outlines.
     seen: Vec<[u16; 2]>,
     mvp: Projective,
-    light: Light,
+    surface: Sunlit,
+}
+
+/// The part's paint under the light of the drawing office.
+fn surface(model: &Affine) -> Sunlit {
+    let sun = Sun::from_channels(Vec3::from_ints(2, 4, 3), [190, 200, 205], [50, 50, 55]);
+    sun.on(&Material::matte(Rgb888::new(120, 150, 170)), model)
 }
 
 impl Wireframe {
@@ -115,8 +121,7 @@ impl Wireframe {
         let part = Part::bracket();
         let mut room = vec![[0; 2]; part.quads.len()];
         let all = edges(&part.mesh(), &mut room).expect("a place for each side").to_vec();
-        let light = Light::from_channels(Vec3::from_ints(0, 0, 1), [200; 3], [55; 3]);
-        Self { part, all, seen: Vec::new(), mvp: Projective::IDENTITY, light }
+        Self { part, all, seen: Vec::new(), mvp: Projective::IDENTITY, surface: surface(&Affine::IDENTITY) }
     }
 }
 
@@ -139,8 +144,7 @@ impl Demo for Wireframe {
             Scalar::from_num(12),
         );
         self.mvp = camera.expect("a camera") * model;
-        let light = Light::from_channels(Vec3::from_ints(2, 4, 3), [190, 200, 205], [50, 50, 55]);
-        self.light = light.to_object(&model);
+        self.surface = surface(&model);
         // An edge is an outline if one of its quads faces the eye, and the other does not.
         let eye = model.inverse_rigid().transform_point(Vec3::ZERO);
         self.seen.clone_from(&self.part.sharp);
@@ -160,7 +164,7 @@ impl Demo for Wireframe {
         let white = Flat::unlit(Rgb888::new(214, 236, 244));
         match mode {
             2 => {
-                scene.draw_with(BEHIND_LINES, &mesh, &self.mvp, &Flat::new(self.light, Rgb888::new(120, 150, 170)));
+                scene.draw_with(BEHIND_LINES, &mesh, &self.mvp, &Flat::new(self.surface));
                 let ink = Flat::unlit(Rgb888::new(8, 16, 24));
                 let blended = DepthState { compare: Compare::Less, write: false };
                 let state = State { depth: blended, ..State::DEFAULT };

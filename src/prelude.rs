@@ -24,11 +24,11 @@
 pub use crate::{
     color::Rgb565Be,
     frame::{FrameError, FramebufferRenderer, Renderer},
-    light::Light,
+    light::{DirectionalLight, Lighting, Material, Sun},
     math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3},
     mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices},
     scene::{Cull, Scene, State, Thick, Thin},
-    shader::{Flat, Gouraud, Textured},
+    shader::{Flat, Gouraud, Phong, Textured},
     target::{Framebuffer, StripPixels},
 };
 #[doc(no_inline)]

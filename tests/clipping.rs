@@ -13,7 +13,7 @@ use support::{Soup, angle, strips, vector, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::internals::{ClipVertex, Outcode, clip_triangle};
-use zstrip::light::Light;
+use zstrip::light::{Material, Matte, Sun};
 use zstrip::math::{Affine, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
@@ -271,7 +271,8 @@ fn depth_is_cut_or_clamped_pixel_by_pixel() {
 /// Everything that a draw can be told, on triangles of every kind.
 #[test]
 fn no_input_panics_in_any_state() {
-    let light = Light::new(Vec3::from_ints(1, 2, 3), Rgb888::WHITE, Rgb888::CSS_GRAY);
+    let sun = Sun::new(Vec3::from_ints(1, 2, 3), Rgb888::WHITE, Rgb888::CSS_GRAY);
+    let light = sun.on(&Matte::WHITE.vertex_colors(), &Affine::IDENTITY);
     let mut drawn = 0;
     for seed in 0..300_u64 {
         let mut rng = Rng::new(seed);
@@ -290,8 +291,8 @@ fn no_input_panics_in_any_state() {
             rng.pick(&[0, 200, 2000]),
             Rgb565::BLACK,
             |scene| {
-                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Flat::colors(light));
-                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::colors(light));
+                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Flat::new(light));
+                scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::new(light));
                 scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
             },
         )
@@ -334,8 +335,8 @@ fn extreme_positions_and_matrices_never_panic() {
         let scale = Scalar::from_bits(rng.pick(&[1, 1 << 16, i32::MAX]));
         let offset = Vec3::new(extreme(&mut rng), extreme(&mut rng), extreme(&mut rng));
         let mvp = if rng.one_in(3) { Projective::IDENTITY } else { extreme_matrix(&mut rng) };
-        let light = Light::new(vector(&mut rng, 9.0), Rgb888::WHITE, Rgb888::WHITE)
-            .to_object(&Affine::rotation_x(angle(&mut rng)));
+        let light = Sun::new(vector(&mut rng, 9.0), Rgb888::WHITE, Rgb888::WHITE)
+            .on(&Material::matte(Rgb888::CSS_CORAL), &Affine::rotation_x(angle(&mut rng)));
         let corner = [(); 2].map(|()| rng.pick(&[-8192_i16, 8192, 0, 3]));
         let size = [(); 2].map(|()| rng.pick(&[1_u16, 4096, 20]));
         let viewport =
@@ -351,8 +352,8 @@ fn extreme_positions_and_matrices_never_panic() {
                 let mesh = mesh.unwrap_or_else(|error| panic!("seed {seed}: {error}"));
                 strips::<Gray8>((20, 15), 6, rng.pick(&[0, 500]), Gray8::new(0), |scene| {
                     scene.set_viewport(viewport);
-                    scene.draw_with(NO_CULLING, &mesh, &mvp, &Flat::new(light, Rgb888::CSS_CORAL));
-                    scene.draw_with(NO_CULLING, &mesh, &mvp, &Gouraud::new(light, Rgb888::CSS_CORAL));
+                    scene.draw_with(NO_CULLING, &mesh, &mvp, &Flat::new(light));
+                    scene.draw_with(NO_CULLING, &mesh, &mvp, &Gouraud::new(light));
                     let _ = scene.is_visible(mesh.bounds(), &mvp);
                 });
             }

@@ -9,7 +9,7 @@ use reference::rng::Rng;
 use std::ops::Range;
 use support::{difference, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
-use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::internals::{Outcode, ScreenMatrix};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
@@ -271,7 +271,7 @@ fn scenes_may_leave_out_what_is_not_visible() {
                     left_out += 1;
                     continue;
                 }
-                scene.draw(torus, &mvp, &Gouraud::new(scenes::LIGHT, Rgb888::WHITE));
+                scene.draw(torus, &mvp, &Gouraud::new(scenes::LIT_COLORS));
             }
         });
         (picture, left_out)

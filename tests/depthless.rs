@@ -133,7 +133,7 @@ where
 {
     let mvp = scenes::camera(SCREEN, Scalar::ONE, Scalar::ONE * 20)
         * (Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_y(Angle16(5000)));
-    scene.draw(&scenes::polygons::PILLAR, &mvp, &Flat::colors(scenes::LIGHT));
+    scene.draw(&scenes::polygons::PILLAR, &mvp, &Flat::new(scenes::LIT_COLORS));
 }
 
 #[test]

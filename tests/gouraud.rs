@@ -8,10 +8,10 @@ use reference::rng::Rng;
 use support::{Soup, difference, strips};
 use zstrip::color::{Bgr565Be, Ditherable, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Bgr565, Bgr888, Gray8, Rgb565, Rgb666, Rgb888};
-use zstrip::light::{Lighting, Material};
+use zstrip::light::{Lighting, Matte};
 use zstrip::math::{Affine, Projective};
 use zstrip::mesh::Mesh;
-use zstrip::shader::{Gouraud, PerVertex, Shaded};
+use zstrip::shader::Gouraud;
 use zstrip::span::{DepthState, Fragment, Shader};
 use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Cull, State};
@@ -65,10 +65,10 @@ fn for_meshes<P>(mut check: impl FnMut(&Mesh<'_>, DepthState, &str)) {
 
 /// Lit per vertex, by white light from everywhere on a white surface, which leaves the colours of the vertices.
 fn check_lit<P: PixelFormat<Raw: PartialEq + Debug>>() {
-    let material = Material { vertex_colors: true, ..Material::matte(Rgb888::new(255, 255, 255)) };
+    let material = Matte::WHITE.vertex_colors();
     let lighting = Lighting::directional(Rgb888::new(255, 255, 255), []);
     for_meshes::<P>(|mesh, depth, case| {
-        let lit = Shaded::new(PerVertex, lighting.on(&material, &Affine::IDENTITY, mesh.bounds()));
+        let lit = Gouraud::new(lighting.on(&material, &Affine::IDENTITY, mesh.bounds()));
         let (lit, gouraud) = (picture::<P>(mesh, depth, &lit), picture::<P>(mesh, depth, &Gouraud::vertex_colors()));
         assert_eq!(difference(&lit, &gouraud, SCREEN.0), None, "{case}");
     });

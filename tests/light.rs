@@ -3,15 +3,18 @@
 mod reference;
 mod support;
 
+use core::cell::Cell;
 use reference::rng::Rng;
 use support::{strips, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
-use zstrip::light::{DirectionalLight, Light, Lighting, Material, PointLight, Viewer};
+use zstrip::light::{DirectionalLight, Lighting, LitColor, Material, Matte, PointLight, Sun, Unlit, Viewer};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
-use zstrip::shader::{Matcap, PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
-use zstrip::span::Shader;
+use zstrip::shader::{Flat, Gouraud, Matcap, Phong, PhongNear, Surface, Textured};
+use zstrip::span::{Fragment, Shader};
+use zstrip::texture::Tile;
+use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Cull, State};
 
 type V = [f64; 3];
@@ -47,21 +50,44 @@ fn apply(m: &Affine, v: V, w: f64) -> V {
     })
 }
 
+/// The numbers of a material.
+#[derive(Clone, Copy)]
+struct Paint {
+    ambient: [u8; 3],
+    diffuse: [u8; 3],
+    specular: [u8; 3],
+    shininess: u8,
+    vertex_colors: bool,
+}
+
+impl Paint {
+    fn material(&self) -> Material {
+        let material = Material::glossy(rgb(self.diffuse), rgb(self.specular), self.shininess);
+        let material = material.with_ambient(rgb(self.ambient));
+        if self.vertex_colors { material.vertex_colors() } else { material }
+    }
+}
+
+fn rgb([r, g, b]: [u8; 3]) -> Rgb888 {
+    Rgb888::new(r, g, b)
+}
+
 /// Colour of a point with a normal, both in the lights' space, and how far its light is from going on or off with n · l.
 fn reference<const D: usize, const P: usize>(
     lighting: &Lighting<D, P>,
-    material: &Material,
+    material: &Paint,
     normal: V,
     position: V,
     color: [u8; 3],
 ) -> (V, f64) {
     let level = |c: [u8; 3]| c.map(|c| f64::from(c) / 255.0);
+    let of_light = |c: Rgb888| level([c.r(), c.g(), c.b()]);
     let product = |a: V, b: V| [a[0] * b[0], a[1] * b[1], a[2] * b[2]];
     let toward = match lighting.viewer {
         Viewer::Toward(direction) => unit(float(direction)),
         Viewer::At(eye) => unit(minus(float(eye), position)),
     };
-    let mut body = product(level(material.ambient), level(lighting.ambient));
+    let mut body = product(level(material.ambient), of_light(lighting.ambient));
     let mut shine = [0.0; 3];
     let mut edge = 1.0_f64;
     let mut light = |direction: V, fade: f64, light: V| {
@@ -79,12 +105,12 @@ fn reference<const D: usize, const P: usize>(
         }
     };
     for l in &lighting.directional {
-        light(unit(float(l.direction)), 1.0, level(l.color));
+        light(unit(float(l.direction)), 1.0, of_light(l.color));
     }
     for l in &lighting.points {
         let to = minus(float(l.position), position);
         let left = (1.0 - dot(to, to) / f64::from(l.range).powi(2)).max(0.0);
-        light(unit(to), left * left, level(l.color));
+        light(unit(to), left * left, of_light(l.color));
     }
     if material.vertex_colors {
         body = product(body, level(color));
@@ -162,28 +188,30 @@ fn sampled_normals_are_lit_as_in_double_precision() {
                 let middle = apply(&model, float(mesh.bounds().center), 1.0);
                 let mut directional = || DirectionalLight {
                     direction: fixed(random_vector(&mut rng, 9.0)),
-                    color: random_color(&mut rng).map(|c| c / 2),
+                    color: rgb(random_color(&mut rng).map(|c| c / 2)),
                 };
                 let directional = [directional(), directional()];
                 let mut point = || PointLight {
                     position: fixed(plus(middle, random_vector(&mut rng, 4.0 * scale))),
-                    color: random_color(&mut rng).map(|c| c / 2),
+                    color: rgb(random_color(&mut rng).map(|c| c / 2)),
                     range: Scalar::from_num(3.0 * scale) + Scalar::from_bits((word(&mut rng) >> 14) as i32),
                 };
                 let points = [point(), point()];
                 let eye = plus(middle, times(unit(random_vector(&mut rng, 1.0)), 6.0 * scale));
-                let lighting = Lighting { ambient: [40, 30, 20], directional, points, viewer: Viewer::At(fixed(eye)) };
+                let lighting =
+                    Lighting { ambient: Rgb888::new(40, 30, 20), directional, points, viewer: Viewer::At(fixed(eye)) };
                 let distant = Lighting { points: [], viewer: Viewer::Toward(fixed(eye)), ..without_points(&lighting) };
-                let material = Material {
+                let material = Paint {
                     ambient: random_color(&mut rng),
                     diffuse: random_color(&mut rng),
                     specular: random_color(&mut rng),
                     shininess,
-                    two_sided: false,
                     vertex_colors: word(&mut rng) & 1 != 0,
                 };
-                let (lit, lit_far) =
-                    (lighting.on(&material, &model, mesh.bounds()), distant.on(&material, &model, mesh.bounds()));
+                let (lit, lit_far) = (
+                    lighting.on(material.material(), &model, mesh.bounds()),
+                    distant.on(material.material(), &model, mesh.bounds()),
+                );
                 for _ in 0..200 {
                     let p = fixed(plus(float(mesh.bounds().center), random_vector(&mut rng, 1.5)));
                     let color = random_color(&mut rng);
@@ -195,11 +223,11 @@ fn sampled_normals_are_lit_as_in_double_precision() {
                     let float_of = |c: [i32; 3]| c.map(|c| f64::from(c) / 256.0);
                     let (exact, edge) = reference(&distant, &material, normal, position, color);
                     if edge > 1.0 / 2048.0 {
-                        far.add(float_of(lit_far.far(&n, color)), exact);
+                        far.add(float_of(lit_far.shade_distant(&n, color).to_bits()), exact);
                     }
                     let (exact, edge) = reference(&lighting, &material, normal, position, color);
                     if edge > 1.0 / 512.0 {
-                        near.add(float_of(lit.near(&n, &lit.local(p), color)), exact);
+                        near.add(float_of(lit.shade_at(&n, &lit.local(p), color).to_bits()), exact);
                     } else {
                         skipped += 1;
                     }
@@ -258,7 +286,7 @@ const COLORS: [[u8; 3]; 4] = [[255, 255, 255], [200, 10, 100], [20, 240, 90], [1
 
 fn lighting() -> Lighting<1, 1> {
     Lighting {
-        ambient: [30, 30, 40],
+        ambient: Rgb888::new(30, 30, 40),
         directional: [DirectionalLight::new(Vec3::from_milli(400, 700, 900), Rgb888::new(200, 190, 170))],
         points: [PointLight::new(Vec3::from_milli(-300, 200, 1200), Rgb888::new(120, 160, 255), Scalar::from_num(2.5))],
         viewer: Viewer::Toward(Vec3::Z),
@@ -300,11 +328,9 @@ fn pictures_are_those_of_double_precision() {
     let mesh = square(&normals, &COLORS);
     let lighting = lighting();
     for (vertex_colors, shininess) in [(false, 0), (true, 20), (false, 64)] {
-        let material = Material {
-            vertex_colors,
-            ..Material::glossy(Rgb888::new(200, 120, 60), Rgb888::new(90, 90, 90), shininess)
-        };
-        let lit = lighting.on(&material, &Affine::IDENTITY, mesh.bounds());
+        let color = [200, 120, 60];
+        let material = Paint { ambient: color, diffuse: color, specular: [90; 3], shininess, vertex_colors };
+        let lit = lighting.on(material.material(), &Affine::IDENTITY, mesh.bounds());
         let normal = |k: usize| normals[k].map(|c| f64::from(c) / 16_384.0);
         let position = |k: usize| float(CORNERS[k]);
         let s = f64::from(shininess);
@@ -316,23 +342,23 @@ fn pictures_are_those_of_double_precision() {
             reference(&lighting, &material, n, interpolated(corners, [1.0 / 3.0; 3], position), COLORS[corners[0]]).0
         };
         let name = |frequency: &str| format!("{frequency}, shininess {shininess}");
-        compare(&name("per face"), &Shaded::new(PerFace, lit), &mesh, per_face, (1.0 + 0.02 * s, 0.6));
+        compare(&name("per face"), &Flat::new(lit), &mesh, per_face, (1.0 + 0.02 * s, 0.6));
 
         let per_vertex = |corners: [usize; 3], weights: V| {
             interpolated(corners, weights, |k| reference(&lighting, &material, normal(k), position(k), COLORS[k]).0)
         };
-        compare(&name("per vertex"), &Shaded::new(PerVertex, lit), &mesh, per_vertex, (1.5 + 0.02 * s, 0.5));
+        compare(&name("per vertex"), &Gouraud::new(lit), &mesh, per_vertex, (1.5 + 0.02 * s, 0.5));
 
         let at = |lighting: &Lighting<1, 1>, corners: [usize; 3], weights: V| {
             let n = unit(interpolated(corners, weights, normal));
             reference(lighting, &material, n, interpolated(corners, weights, position), COLORS[corners[0]]).0
         };
         let near = |corners, weights| at(&lighting, corners, weights);
-        compare(&name("per fragment, near"), &Shaded::new(PerFragmentNear, lit), &mesh, near, (1.2 + 0.04 * s, 0.4));
+        compare(&name("per fragment, near"), &PhongNear::new(lit), &mesh, near, (1.2 + 0.04 * s, 0.4));
         let close = Lighting { viewer: Viewer::At(Vec3::from_milli(200, -300, 2000)), ..lighting };
-        let lit_close = close.on(&material, &Affine::IDENTITY, mesh.bounds());
+        let lit_close = close.on(material.material(), &Affine::IDENTITY, mesh.bounds());
         let near = |corners, weights| at(&close, corners, weights);
-        let shader = Shaded::new(PerFragmentNear, lit_close);
+        let shader = PhongNear::new(lit_close);
         compare(&name("per fragment, viewer near"), &shader, &mesh, near, (1.2 + 0.04 * s, 0.4));
 
         let distant = without_points(&lighting);
@@ -340,8 +366,8 @@ fn pictures_are_those_of_double_precision() {
             let n = unit(interpolated(corners, weights, normal));
             reference(&distant, &material, n, [0.0; 3], COLORS[corners[0]]).0
         };
-        let lit = distant.on(&material, &Affine::IDENTITY, mesh.bounds());
-        compare(&name("per fragment"), &Shaded::new(PerFragment, lit), &mesh, far, (0.8 + 0.04 * s, 0.4));
+        let lit = distant.on(material.material(), &Affine::IDENTITY, mesh.bounds());
+        compare(&name("per fragment"), &Phong::new(lit), &mesh, far, (0.8 + 0.04 * s, 0.4));
     }
 }
 
@@ -382,7 +408,7 @@ fn two_sided_materials_light_their_backs() {
     let front = normals();
     let back = front.map(|n| n.map(|c| -c));
     let one = Material::glossy(Rgb888::new(200, 120, 60), Rgb888::WHITE, 16);
-    let two = Material { two_sided: true, ..one };
+    let two = one.two_sided();
     let lighting = lighting();
     let picture = |mesh: &Mesh<'_>, material: &Material, frequency: usize, flip: bool| {
         let lit = lighting.on(material, &Affine::IDENTITY, mesh.bounds());
@@ -390,9 +416,9 @@ fn two_sided_materials_light_their_backs() {
         let state =
             State { front: if flip { zstrip::Winding::Clockwise } else { zstrip::Winding::CounterClockwise }, ..BOTH };
         whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| match frequency {
-            0 => scene.draw_with(state, mesh, &Projective::IDENTITY, &Shaded::new(PerVertex, lit)),
-            1 => scene.draw_with(state, mesh, &Projective::IDENTITY, &Shaded::new(PerFragment, far)),
-            _ => scene.draw_with(state, mesh, &Projective::IDENTITY, &Shaded::new(PerFragmentNear, lit)),
+            0 => scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::new(lit)),
+            1 => scene.draw_with(state, mesh, &Projective::IDENTITY, &Phong::new(far)),
+            _ => scene.draw_with(state, mesh, &Projective::IDENTITY, &PhongNear::new(lit)),
         })
         .0
     };
@@ -410,6 +436,36 @@ fn two_sided_materials_light_their_backs() {
     }
 }
 
+/// Colours of a surface at vertices that have these normals.
+fn at_vertices(surface: &impl Surface, normals: &[[i16; 3]; 4]) -> [LitColor; 4] {
+    /// A shader that keeps what it is told.
+    struct Seen<'a, S>(&'a S, Cell<[LitColor; 4]>);
+
+    impl<S: Surface> VertexShader for Seen<'_, S> {
+        type Varyings = [i32; 0];
+
+        fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 0] {
+            let mut all = self.1.get();
+            all[vertex.index()] = self.0.vertex(vertex);
+            self.1.set(all);
+            []
+        }
+    }
+
+    impl<S: Surface> Shader<Rgb888> for Seen<'_, S> {
+        type Setup = ();
+
+        fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<[u8; 3]> {
+            None
+        }
+    }
+
+    let seen = Seen(surface, Cell::default());
+    let mesh = square(normals, &COLORS);
+    whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| scene.draw_with(BOTH, &mesh, &Projective::IDENTITY, &seen));
+    seen.1.get()
+}
+
 #[test]
 fn lights_of_models_scaled_far_down_keep_their_direction() {
     for scale in [1.0, 0.1, 0.01, 0.002] {
@@ -417,12 +473,13 @@ fn lights_of_models_scaled_far_down_keep_their_direction() {
             let turn =
                 Affine::rotation_y(Angle16::from_degrees(degrees)) * Affine::rotation_x(Angle16::from_degrees(31));
             let model = turn * Affine::scale(Scalar::from_num(scale));
-            let light = Light::new(Vec3::from_ints(4, 7, 6), Rgb888::WHITE, Rgb888::BLACK);
-            let (small, exact) = (light.to_object(&model).on([255; 3]), light.to_object(&turn).on([255; 3]));
-            for normal in [[16_384, 0, 0], [0, 16_384, 0], [0, 0, 16_384], [9459, 9459, 9459]] {
-                let off = small.shade(normal)[0].abs_diff(exact.shade(normal)[0]);
+            let sun = Sun::new(Vec3::from_ints(4, 7, 6), Rgb888::WHITE, Rgb888::BLACK);
+            let (small, exact) = (sun.on(&Matte::WHITE, &model), sun.on(&Matte::WHITE, &turn));
+            let normals = [[16_384, 0, 0], [0, 16_384, 0], [0, 0, 16_384], [9459, 9459, 9459]];
+            for (small, exact) in at_vertices(&small, &normals).into_iter().zip(at_vertices(&exact, &normals)) {
                 // Rows of a model scaled by 0.002 have 131 steps.
                 let allowed = if scale < 0.01 { 7 * 128 } else { 256 };
+                let off = small.to_bits()[0].abs_diff(exact.to_bits()[0]);
                 assert!(off <= allowed, "scale {scale}, {degrees} degrees: off by {off} / 256");
             }
         }
@@ -433,7 +490,7 @@ fn lights_of_models_scaled_far_down_keep_their_direction() {
 fn lit_pictures_do_not_depend_on_strips() {
     let normals = normals();
     let mesh = square(&normals, &COLORS);
-    let material = Material { vertex_colors: true, ..Material::glossy(Rgb888::WHITE, Rgb888::WHITE, 30) };
+    let material = Material::glossy(Rgb888::WHITE, Rgb888::WHITE, 30).vertex_colors();
     let lit = lighting().on(&material, &Affine::IDENTITY, mesh.bounds());
     let far = without_points(&lighting()).on(&material, &Affine::IDENTITY, mesh.bounds());
     // Cut by the side of a perspective camera's near plane too.
@@ -449,15 +506,10 @@ fn lit_pictures_do_not_depend_on_strips() {
     let texels: [[[u8; 3]; 2]; 2] = [[[10, 20, 30], [200, 20, 30]], [[10, 200, 30], [10, 20, 230]]];
     let draw = |rows: usize, records: usize| {
         strips::<Rgb565>(SCREEN, rows, records, Rgb565::BLACK, |scene| {
-            scene.draw_with(BOTH, &mesh, &mvp, &Shaded::new(PerFace, lit));
-            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(3000))), &Shaded::new(PerVertex, lit));
-            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(6000))), &Shaded::new(PerFragment, far));
-            scene.draw_with(
-                BOTH,
-                &mesh,
-                &(mvp * Affine::rotation_x(Angle16(9000))),
-                &Shaded::new(PerFragmentNear, lit),
-            );
+            scene.draw_with(BOTH, &mesh, &mvp, &Flat::new(lit));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(3000))), &Gouraud::new(lit));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(6000))), &Phong::new(far));
+            scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(9000))), &PhongNear::new(lit));
             let matcap = Matcap::<Rgb888, 2>::new(&texels, &Affine::IDENTITY);
             scene.draw_with(BOTH, &mesh, &(mvp * Affine::rotation_x(Angle16(12_000))), &matcap);
         })
@@ -471,4 +523,125 @@ fn lit_pictures_do_not_depend_on_strips() {
             "{rows} rows, {records} records"
         );
     }
+}
+
+/// Draws the square with a texture on a surface, and compares it with the product of both in double precision.
+///
+/// Texture coordinates go from 0 to 1, and each texel is many pixels wide; pixels at the sides of texels are left out.
+fn compare_textured(what: &str, surface: impl Surface, mesh: &Mesh<'_>, exact: impl Fn(usize) -> V) {
+    // Levels of RGB565 that are whole numbers of 8 bits, or nearly.
+    static TEXELS: [[u16; 2]; 2] = [[0xFFFF, 0xA145], [0x07FF, 0x8410]];
+    static CHECKS: Tile<'static, 2, 2> = Tile::new(&TEXELS);
+    let texel = |u: f64, v: f64| {
+        let raw = u32::from(TEXELS[usize::from(v >= 0.5)][usize::from(u >= 0.5)]);
+        let [r, g, b] = [raw >> 11, (raw >> 5) & 63, raw & 31].map(f64::from);
+        [r / 31.0, g / 63.0, b / 31.0]
+    };
+    let shader = Textured::new(&CHECKS).lit(surface);
+    let (picture, _, _) =
+        whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| scene.draw_with(BOTH, mesh, &Projective::IDENTITY, &shader));
+    let mut errors = Errors::default();
+    let (width, height) = (f64::from(SCREEN.0), f64::from(SCREEN.1));
+    for (k, pixel) in picture.iter().enumerate() {
+        let (column, row) = ((k % usize::from(SCREEN.0)) as f64 + 0.5, (k / usize::from(SCREEN.0)) as f64 + 0.5);
+        let (u, v) = (column / width, 1.0 - row / height);
+        let (corners, weights) =
+            if v < u { ([0, 1, 2], [1.0 - u, u - v, v]) } else { ([0, 2, 3], [1.0 - v, u, v - u]) };
+        if (u - v).abs() < 1e-9 || (u - 0.5).abs() < 0.02 || (v - 0.5).abs() < 0.02 {
+            continue;
+        }
+        let (light, texel) = (interpolated(corners, weights, &exact), texel(u, 1.0 - v));
+        errors.add(pixel.map(f64::from), [light[0] * texel[0], light[1] * texel[1], light[2] * texel[2]]);
+    }
+    errors.check(what, 2.5, 0.8);
+}
+
+#[test]
+fn textures_are_multiplied_by_material_vertex_colours_and_light() {
+    let normals = normals();
+    let (zero, one) = (Scalar::ZERO, Scalar::ONE);
+    let uvs = [[zero, one], [one, one], [one, zero], [zero, zero]];
+    let mesh = Mesh::new(MeshData { uvs: Some(&uvs), ..*square(&normals, &COLORS).data() }).expect("a mesh");
+    let normal = |k: usize| normals[k].map(|c| f64::from(c) / 16_384.0);
+    let color = [200, 230, 90];
+
+    // Any lights: highlights are in the product.
+    for (shininess, vertex_colors) in [(0, true), (0, false), (16, true)] {
+        let paint = Paint { ambient: color, diffuse: color, specular: [90; 3], shininess, vertex_colors };
+        let lit = lighting().on(paint.material(), &Affine::IDENTITY, mesh.bounds());
+        let exact = |k: usize| reference(&lighting(), &paint, normal(k), float(CORNERS[k]), COLORS[k]).0;
+        compare_textured(&format!("lamp, shininess {shininess}, {vertex_colors}"), lit, &mesh, exact);
+    }
+
+    // The sun: Lambert's sum of levels, in which 255 is 256 / 256.
+    let (sky, shade) = ([210, 200, 170], [40, 45, 60]);
+    let direction = Vec3::from_milli(400, 700, 900);
+    let sun = Sun::new(direction, rgb(sky), rgb(shade));
+    for vertex_colors in [true, false] {
+        let matte = if vertex_colors { Matte::new(rgb(color)).vertex_colors() } else { Matte::new(rgb(color)) };
+        let exact = |k: usize| {
+            let facing = dot(normal(k), unit(float(direction))).max(0.0);
+            let channel = |c: usize| {
+                let level = |light: [u8; 3]| f64::from(light[c]) / 255.0;
+                let vertex = if vertex_colors { level(COLORS[k]) } else { 1.0 };
+                (255.0 * level(color) * vertex * (level(shade) + level(sky) * facing)).min(255.0)
+            };
+            [channel(0), channel(1), channel(2)]
+        };
+        compare_textured(&format!("sun, {vertex_colors}"), sun.on(&matte, &Affine::IDENTITY), &mesh, exact);
+    }
+
+    // No light: colours that are baked into the vertices.
+    compare_textured("unlit", Unlit::vertex_colors(), &mesh, |k| COLORS[k].map(f64::from));
+    compare_textured("unlit, one colour", Unlit::new(rgb(color)), &mesh, |_| color.map(f64::from));
+    // Surfaces of which the compiler does not know the type are surfaces too.
+    let surface: &dyn Surface = &Unlit::vertex_colors();
+    compare_textured("unlit, behind a reference", surface, &mesh, |k| COLORS[k].map(f64::from));
+}
+
+#[test]
+fn two_sided_surfaces_light_textures_on_both_sides() {
+    let front = normals();
+    let back = front.map(|n| n.map(|c| -c));
+    let one = Material::from(Material::matte(Rgb888::new(200, 120, 60)));
+    let (zero, unit) = (Scalar::ZERO, Scalar::ONE);
+    let uvs = [[zero, unit], [unit, unit], [unit, zero], [zero, zero]];
+    static WHITE: Tile<'static, 1, 1> = Tile::new(&[[0xFFFF]]);
+    let picture = |normals: &[[i16; 3]; 4], material: Material| {
+        let mesh = Mesh::new(MeshData { uvs: Some(&uvs), ..*square(normals, &COLORS).data() }).expect("a mesh");
+        let shader = Textured::new(&WHITE).lit(lighting().on(material, &Affine::IDENTITY, mesh.bounds()));
+        whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| scene.draw_with(BOTH, &mesh, &Projective::IDENTITY, &shader)).0
+    };
+    let off = |a: &[[u8; 3]], b: &[[u8; 3]]| {
+        let channels = a.iter().flatten().zip(b.iter().flatten());
+        channels.map(|(a, b)| a.abs_diff(*b)).max().unwrap_or(255)
+    };
+    let lit = picture(&front, one);
+    assert!(off(&lit, &picture(&back, one.two_sided())) <= 1);
+    assert!(off(&lit, &picture(&back, one)) > 50);
+}
+
+#[test]
+fn a_surface_without_faces_has_those_of_its_provoking_vertices() {
+    /// The number of a vertex as a colour.
+    struct Numbered;
+
+    impl Surface for Numbered {
+        fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
+            // Beyond the range: clamped.
+            LitColor::new([-5, 1 << 20, (vertex.index() as i32 + 1) << 8])
+        }
+    }
+
+    let (normals, corners) = (normals(), [2, 0, 1]);
+    let mesh = Mesh::new(MeshData {
+        topology: Topology::Triangles,
+        indices: Some(&corners),
+        ..*square(&normals, &COLORS).data()
+    })
+    .expect("a mesh");
+    let shader = Flat::new(Numbered);
+    let (picture, _, _) =
+        whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| scene.draw_with(BOTH, &mesh, &Projective::IDENTITY, &shader));
+    assert!(picture.contains(&[0, 255, 3]) && picture.iter().all(|pixel| [[0; 3], [0, 255, 3]].contains(pixel)));
 }

@@ -16,7 +16,7 @@ use scenes::{polygons, soup, torus};
 use support::{apply, matrix, position, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
-use zstrip::light::{Light, NORMAL_ONE};
+use zstrip::light::{Matte, NORMAL_ONE, Sun};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
@@ -458,7 +458,8 @@ fn sphere_error(around: u16, across: u16) -> (usize, f64) {
     })
     .expect("a mesh");
     let grey = |level: u8| Rgb888::new(level, level, level);
-    let shader = Gouraud::new(Light::new(Vec3::from_ints(1, 2, 2), grey(204), grey(51)), Rgb888::WHITE);
+    let shader =
+        Gouraud::new(Sun::new(Vec3::from_ints(1, 2, 2), grey(204), grey(51)).on(&Matte::WHITE, &Affine::IDENTITY));
     let (picture, depths, _) =
         whole::<Rgb888>((128, 128), Rgb888::BLACK, |scene| scene.draw(&mesh, &Projective::IDENTITY, &shader));
     let (mut silhouette, mut sum, mut both) = (0, 0.0, 0);

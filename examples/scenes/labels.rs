@@ -6,6 +6,7 @@ use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle};
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBuilder};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::light::Material;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
@@ -57,11 +58,11 @@ pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Ang
         * Affine::rotation_y(turn + Angle16::from_degrees(35));
     let mvp = camera(scene.screen(), Scalar::ONE, Scalar::ONE * 12) * model;
 
-    scene.draw(&torus::MESH, &mvp, &Gouraud::new(LIGHT.to_object(&model), TORUS_COLOR));
+    scene.draw(&torus::MESH, &mvp, &Gouraud::new(LIGHT.on(&Material::matte(TORUS_COLOR), &model)));
     let grow = Affine::scale(Scalar::from_bits((LENGTH << 16) / 1000));
     for (_, _, rotation, color) in axes() {
         let local = rotation * grow;
-        scene.draw(&ARROW, &(mvp * local), &Flat::new(LIGHT.to_object(&(model * local)), color));
+        scene.draw(&ARROW, &(mvp * local), &Flat::new(LIGHT.on(&Material::matte(color), &(model * local))));
     }
 
     let middle = TextStyleBuilder::new().alignment(Alignment::Center).baseline(Baseline::Middle).build();

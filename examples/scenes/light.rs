@@ -5,12 +5,11 @@ use super::{UNLIT, landscape, pot, tiles};
 use zstrip::color::{PixelFormat, Rgba8888};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
-use zstrip::light::{DirectionalLight, Light, Lighting, LitMaterial, Material, PointLight, Viewer};
+use zstrip::light::{DirectionalLight, Lighting, LitMaterial, Material, Matte, PointLight, Sun, Sunlit, Viewer};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology, sort_back_to_front, view_depth};
 use zstrip::shader::{
-    AddAlpha, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity, PerFace, PerFragment,
-    PerFragmentNear, PerVertex, Shaded,
+    AddAlpha, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity, Phong, PhongNear,
 };
 use zstrip::span::{DepthState, Fragment, Shader};
 use zstrip::vertex::{VertexRef, VertexShader};
@@ -89,13 +88,13 @@ pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, shading: S
     draw_backdrop(scene, &NIGHT);
     table(scene, &BY_NIGHT, || {
         let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
-        night(turn).on(&of_tiles(wood), &table_model(&BY_NIGHT), tiles::MESH.bounds())
+        night(turn).on(&wood.vertex_colors(), &table_model(&BY_NIGHT), tiles::MESH.bounds())
     });
     match shading {
-        Shading::PerFace => pot(scene, turn, || Shaded::new(PerFace, glaze(turn))),
-        Shading::PerVertex => pot(scene, turn, || Shaded::new(PerVertex, glaze(turn))),
-        Shading::PerFragment => pot(scene, turn, || Shaded::new(PerFragment, sunlit_glaze(turn))),
-        Shading::PerFragmentNear => pot(scene, turn, || Shaded::new(PerFragmentNear, glaze(turn))),
+        Shading::PerFace => pot(scene, turn, || Flat::new(glaze(turn))),
+        Shading::PerVertex => pot(scene, turn, || Gouraud::new(glaze(turn))),
+        Shading::PerFragment => pot(scene, turn, || Phong::new(sunlit_glaze(turn))),
+        Shading::PerFragmentNear => pot(scene, turn, || PhongNear::new(glaze(turn))),
         Shading::Matcap => pot(scene, turn, || Matcap::<Rgb888, 64>::new(ball(), &pot_model(turn))),
     }
 }
@@ -107,7 +106,7 @@ fn night(turn: Angle16) -> Lighting<1, 2> {
     };
     let moon = BY_NIGHT.transform_vector(Vec3::from_ints(-3, 5, 4));
     Lighting {
-        ambient: [34, 34, 52],
+        ambient: Rgb888::new(34, 34, 52),
         directional: [DirectionalLight::new(moon, Rgb888::new(120, 130, 165))],
         points: [
             lamp(turn + Angle16::from_degrees(50), 1900, 900, Rgb888::new(255, 150, 50), 5),
@@ -124,7 +123,7 @@ fn pot_model(turn: Angle16) -> Affine {
 
 /// What the pot is covered with.
 fn glazed() -> Material {
-    Material { two_sided: true, ..Material::glossy(Rgb888::new(200, 60, 50), Rgb888::new(230, 220, 210), 64) }
+    Material::glossy(Rgb888::new(200, 60, 50), Rgb888::new(230, 220, 210), 64).two_sided()
 }
 
 /// The glaze under the night's lights.
@@ -135,7 +134,7 @@ fn glaze(turn: Angle16) -> LitMaterial<1, 2> {
 /// The glaze under a sun where the moon is.
 fn sunlit_glaze(turn: Angle16) -> LitMaterial<1, 0> {
     let Lighting { ambient, directional: [moon], .. } = night(turn);
-    let sun = DirectionalLight { color: [235, 225, 210], ..moon };
+    let sun = DirectionalLight { color: Rgb888::new(235, 225, 210), ..moon };
     let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
     lighting.on(&glazed(), &pot_model(turn), pot::mesh().bounds())
 }
@@ -216,8 +215,9 @@ const fn mist(curve: FogCurve) -> FogTable {
 /// The colour of the fog.
 const MORNING: Rgb888 = Rgb888::new(214, 196, 188);
 
-/// The sun behind it.
-const SUN: Light = Light::from_channels(Vec3::from_milli(-800, 420, 300), [250, 205, 160], [78, 84, 108]);
+/// The sun behind it, on vertex colours.
+const SUN: Sunlit = Sun::from_channels(Vec3::from_milli(-800, 420, 300), [250, 205, 160], [78, 84, 108])
+    .on(&Matte::WHITE.vertex_colors(), &Affine::IDENTITY);
 
 /// A hilly landscape with a lake in the morning fog, seen from a bird's round flight.
 pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, mist: Mist) {
@@ -242,12 +242,12 @@ fn flight(turn: Angle16) -> Affine {
 #[inline(never)]
 fn hills<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
     let mvp = kept(|| lens.seen(|| *view));
-    scene.draw(landscape::ground(), &mvp, &*kept(|| Fogged::new(Gouraud::colors(SUN), fog, MORNING)));
+    scene.draw(landscape::ground(), &mvp, &*kept(|| Fogged::new(Gouraud::new(SUN), fog, MORNING)));
 }
 
 #[inline(never)]
 fn pines<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
-    let shader = kept(|| Fogged::new(Flat::colors(SUN), fog, MORNING));
+    let shader = kept(|| Fogged::new(Flat::new(SUN), fog, MORNING));
     for tree in landscape::trees() {
         let mvp = kept(|| lens.seen(|| *view).compose_affine(&Affine::translation(*tree)));
         scene.draw(&landscape::PINE, &mvp, &*shader);
@@ -321,7 +321,7 @@ pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     draw_backdrop(scene, &STUDIO);
     table(scene, &BY_DAY, || {
         let cloth = Material::matte(Rgb888::new(215, 210, 200));
-        day().on(&of_tiles(cloth), &table_model(&BY_DAY), tiles::MESH.bounds())
+        day().on(&cloth.vertex_colors(), &table_model(&BY_DAY), tiles::MESH.bounds())
     });
     // 2. What is transparent, from back to front.
     for k in back_to_front(scene.screen(), turn) {
@@ -341,7 +341,7 @@ pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 fn day() -> Lighting<1, 1> {
     let (sky, lamp) = (Rgb888::new(90, 95, 115), Rgb888::new(255, 200, 120));
     Lighting {
-        ambient: [46, 46, 66],
+        ambient: Rgb888::new(46, 46, 66),
         directional: [DirectionalLight::new(BY_DAY.transform_vector(Vec3::from_ints(-3, 5, 4)), sky)],
         points: [PointLight::new(BY_DAY * Vec3::from_milli(0, 1300, 0), lamp, Scalar::from_bits(5 << 16))],
         viewer: Viewer::At(Vec3::ZERO),
@@ -353,11 +353,6 @@ fn table_model(view: &Affine) -> Affine {
     *view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0))
 }
 
-/// A material whose colours are the tiles' own.
-fn of_tiles(material: Material) -> Material {
-    Material { vertex_colors: true, ..material }
-}
-
 /// The table, of a material under its lights.
 #[inline(never)]
 fn table<F: Framebuffer, const P: usize>(
@@ -366,7 +361,7 @@ fn table<F: Framebuffer, const P: usize>(
     wood: impl FnOnce() -> LitMaterial<1, P>,
 ) {
     let mvp = kept(|| Lens::close(scene.screen()).seen(|| table_model(view)));
-    scene.draw(&tiles::MESH, &mvp, &*kept(|| Shaded::new(PerFragmentNear, wood())));
+    scene.draw(&tiles::MESH, &mvp, &*kept(|| PhongNear::new(wood())));
 }
 
 /// Where a pane is, or the pot, the last number, in eye space.
@@ -405,7 +400,7 @@ fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 }
 
 /// The pot, of a material under the day's lights.
-fn lit_pot(turn: Angle16, material: &Material) -> LitMaterial<1, 1> {
+fn lit_pot(turn: Angle16, material: impl Into<Material>) -> LitMaterial<1, 1> {
     day().on(material, &glass_model(turn, PANES.len() as u16), pot::mesh().bounds())
 }
 
@@ -420,8 +415,8 @@ fn pot_seen(screen: (u16, u16), turn: Angle16) -> Projective {
 fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| pot_seen(scene.screen(), turn));
     let shader = kept(|| {
-        let body = Material { two_sided: true, ..Material::matte(Rgb888::new(150, 205, 200)) };
-        Blend::new(Shaded::new(PerVertex, lit_pot(turn, &body)), Opacity(70))
+        let body = Material::matte(Rgb888::new(150, 205, 200)).two_sided();
+        Blend::new(Gouraud::new(lit_pot(turn, &body)), Opacity(70))
     });
     for cull in [Cull::Front, Cull::Back] {
         scene.draw_with(State { cull, ..GLASS }, pot::mesh(), &mvp, &*shader);
@@ -433,12 +428,8 @@ fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let mvp = kept(|| pot_seen(scene.screen(), turn));
     let shader = kept(|| {
-        let gloss = Material {
-            ambient: [0; 3],
-            diffuse: [0; 3],
-            ..Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48)
-        };
-        Blend::new(Shaded::new(PerFragmentNear, lit_pot(turn, &gloss)), zstrip::shader::Add)
+        let gloss = Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48);
+        Blend::new(PhongNear::new(lit_pot(turn, &gloss)), zstrip::shader::Add)
     });
     scene.draw_with(State { cull: Cull::Back, ..GLASS }, pot::mesh(), &mvp, &*shader);
 }

@@ -26,7 +26,7 @@ use kept::kept;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::frame::Renderer;
-use zstrip::light::Light;
+use zstrip::light::{Material, Matte, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::Shader;
@@ -117,10 +117,13 @@ fn seen(screen: (u16, u16), times: impl FnOnce(Projective) -> Projective) -> Pro
 }
 
 /// White light from the upper right, behind the viewer, beside a dim ambient one; in eye space.
-pub const LIGHT: Light = Light::from_channels(Vec3::from_milli(400, 700, 600), [217; 3], [38; 3]);
+pub const LIGHT: Sun = Sun::from_channels(Vec3::from_milli(400, 700, 600), [217; 3], [38; 3]);
+
+/// Colours of the vertices under [`LIGHT`].
+pub const LIT_COLORS: Sunlit = LIGHT.on(&Matte::WHITE.vertex_colors(), &Affine::IDENTITY);
 
 /// Colours of the mesh under [`LIGHT`], as they are in flat triangles, and without any light.
-static LIT: Flat = Flat::colors(LIGHT);
+static LIT: Flat<Sunlit> = Flat::new(LIT_COLORS);
 static UNLIT: Gouraud = Gouraud::vertex_colors();
 
 /// Where the torus is: tumbling, since a turn about its axis would not show.
@@ -131,25 +134,26 @@ pub fn torus_model(turn: Angle16) -> Affine {
         * Affine::rotation_z(turn)
 }
 
-/// Draws the torus with a shader made for its light, which is given in its object space.
+/// Draws the torus with a shader made for its surface, of a colour under [`LIGHT`].
 pub fn torus_with<F: Framebuffer, S: Shader<F::Format>>(
     scene: &mut Scene<'_, F>,
     turn: Angle16,
-    shader: impl FnOnce(Light) -> S,
+    color: Rgb888,
+    shader: impl FnOnce(Sunlit) -> S,
 ) {
     let mvp = kept(|| seen(scene.screen(), |camera| camera * torus_model(turn)));
-    scene.draw(&torus::MESH, &mvp, &in_place(|| shader(LIGHT.to_object(&torus_model(turn)))));
+    scene.draw(&torus::MESH, &mvp, &in_place(|| shader(LIGHT.on(&Material::matte(color), &torus_model(turn)))));
 }
 
 /// Orange.
 pub const TORUS_COLOR: Rgb888 = Rgb888::new(255, 160, 64);
 
 pub fn torus_flat<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    torus_with(scene, turn, |light| Flat::new(light, TORUS_COLOR));
+    torus_with(scene, turn, TORUS_COLOR, Flat::new);
 }
 
 pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    torus_with(scene, turn, |light| Gouraud::new(light, TORUS_COLOR));
+    torus_with(scene, turn, TORUS_COLOR, Gouraud::new);
 }
 
 /// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view. It
@@ -192,7 +196,7 @@ fn pillar<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 fn ring<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
     let model = || Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
     let mvp = kept(|| in_room(scene.screen(), turn, || model() * Affine::scale(Scalar::from_bits(1 << 15))));
-    let shader = kept(|| Gouraud::new(LIGHT.to_object(&model()), Rgb888::new(90, 200, 120)));
+    let shader = kept(|| Gouraud::new(LIGHT.on(&Material::matte(Rgb888::new(90, 200, 120)), &model())));
     scene.draw(&torus::MESH, &mvp, &*shader);
 }
 

@@ -44,7 +44,7 @@ impl<C: PixelColor> Drawable for Marker<C> {
 /// Draws a turning torus with markers around it, some of them behind it, and a ramp of colours below.
 pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16) {
     markers(scene, turn, 0..13);
-    torus_with(scene, turn, |light| Gouraud::new(light, Rgb888::new(200, 90, 160)));
+    torus_with(scene, turn, Rgb888::new(200, 90, 160), Gouraud::new);
     markers(scene, turn, 13..24);
     ramp(scene);
 }

@@ -2,7 +2,7 @@
 
 use super::kept::kept;
 use super::{LIGHT, camera};
-use zstrip::light::NORMAL_ONE;
+use zstrip::light::{Matte, NORMAL_ONE};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Textured;
@@ -262,7 +262,7 @@ fn crate_model(turn: Angle16, [x, y, z, degrees]: [i32; 4]) -> Affine {
 
 #[inline(never)]
 fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16, place: [i32; 4], filter: G) {
-    let wood = kept(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.to_object(&crate_model(turn, place))));
+    let wood = kept(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.on(&Matte::WHITE, &crate_model(turn, place))));
     scene.draw(&CRATE, &kept(|| crate_seen(scene.screen(), turn, place)), &*wood);
 }
 

@@ -3,6 +3,7 @@
 use super::kept::kept;
 use super::{LIGHT, camera, textured};
 use zstrip::color::PixelFormat;
+use zstrip::light::Matte;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Textured;
@@ -136,6 +137,6 @@ fn crate_seen(screen: (u16, u16), water: Water) -> Projective {
 
 #[inline(never)]
 fn floating<F: Framebuffer>(scene: &mut Scene<'_, F>, water: Water) {
-    let wood = kept(|| Textured::new(&textured::WOODEN).lit(LIGHT.to_object(&crate_model(water))));
+    let wood = kept(|| Textured::new(&textured::WOODEN).lit(LIGHT.on(&Matte::WHITE, &crate_model(water))));
     scene.draw(&textured::CRATE, &kept(|| crate_seen(scene.screen(), water)), &*wood);
 }

@@ -16,7 +16,7 @@ use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::frame::{Renderer, RendererError};
-use zstrip::light::Light;
+use zstrip::light::{Matte, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud, Textured};
@@ -151,21 +151,21 @@ pub fn textured_quad(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stat
 
 #[inline(never)]
 pub fn flat_torus(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
-    let shader = Flat::new(TORUS_LIGHT, torus_color());
+    let shader = Flat::new(TORUS_SURFACE);
     frame(buffers, &mut sink, &mut |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
 /// The same by a renderer that knows no records.
 #[inline(never)]
 pub fn flat_torus_without_records(color: &mut [u16], depth: &mut [u16], sink: impl FnMut(&[u16])) {
-    let shader = Flat::new(TORUS_LIGHT, torus_color());
+    let shader = Flat::new(TORUS_SURFACE);
     let renderer = Renderer::new(SCREEN).and_then(|renderer| renderer.with_depth(depth));
     frame_by(renderer, color, sink, |scene| scene.draw(&TORUS, &OF_TORUS, &shader));
 }
 
 #[inline(never)]
 pub fn gouraud_torus(buffers: Buffers<'_>, mut sink: impl FnMut(&[u16])) -> Stats {
-    let shader = Gouraud::new(TORUS_LIGHT, torus_color());
+    let shader = Gouraud::new(TORUS_SURFACE);
     frame(buffers, &mut sink, &mut |scene| scene.draw(&TORUS, &OF_TORUS, &shader))
 }
 
@@ -187,11 +187,11 @@ const CAMERA: Projective = {
 const IN_VIEW: Projective = CAMERA.compose_affine(&MIRROR);
 const OF_TORUS: Projective = CAMERA.compose_affine(&MODEL);
 
-/// The light as the torus sees it.
-const TORUS_LIGHT: Light = {
+/// The torus under its light.
+const TORUS_SURFACE: Sunlit = {
     let [ambient, diffuse] = [nearest(AMBIENT * 255.0) as u8, nearest(DIFFUSE * 255.0) as u8];
     let direction = vector([LIGHT[0], LIGHT[1], -LIGHT[2]]);
-    Light::from_channels(direction, [diffuse; 3], [ambient; 3]).to_object(&MODEL)
+    Sun::from_channels(direction, [diffuse; 3], [ambient; 3]).on(&Matte::from_channels(TORUS_COLOR), &MODEL)
 };
 
 fn torus_color() -> Rgb888 {

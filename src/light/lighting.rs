@@ -1,56 +1,61 @@
 //! Lights of all kinds: ambient, directional, point lights that fade with distance, and where they are seen from.
 //!
-//! All of it is given in eye space, or in any other that a model matrix leads to, and is taken to a mesh's own space once a
-//! draw by [`Lighting::on`], because normals and positions are given there.
+//! All of it is given in eye space, or in any other space that a model matrix leads to. [`Lighting::on`] takes it to a mesh's
+//! own space once per draw, because the normals and positions of vertices are given there.
 
 use super::lit_material::{LitColors, LitDirection, LitMaterial, LitPoint, LitViewer, short};
 use super::local_space::ToLocal;
 use super::material::Material;
+use crate::color::channels;
 use crate::math::{Affine, Scalar, Vec3, unit_vector};
 use crate::mesh::Bounds;
-use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
+use embedded_graphics_core::pixelcolor::Rgb888;
 
-/// Light from far away: the same direction everywhere.
+/// A light from far away: its direction is one for all of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DirectionalLight {
-    /// Towards the light, of any length; a zero vector gives no light.
+    /// Vector towards the light, of any length; a zero vector gives no light.
     pub direction: Vec3,
-    /// Its colour: red, green, blue.
-    pub color: [u8; 3],
+    /// Colour of the light.
+    pub color: Rgb888,
 }
 
 impl DirectionalLight {
-    /// From a direction that points *towards* the light and a colour.
+    /// Returns the light of a colour from a direction that points *towards* the light.
+    #[must_use]
     pub fn new(direction: Vec3, color: impl Into<Rgb888>) -> Self {
-        Self { direction, color: channels(color.into()) }
+        Self { direction, color: color.into() }
     }
 }
 
-/// Light from a point, which fades: by (1 - d² / range²)² at distance d, which is 1 at the light, has no corner, and is 0
-/// from `range` on, where nothing has to be computed any more.
+/// A light at a point, which fades with distance.
+///
+/// At distance d it has (1 - d² / range²)² of its brightness: 1 at the light, 0 from `range` on. The curve has no corner
+/// there, and surfaces beyond `range` cost nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PointLight {
-    /// Where it is.
+    /// Position of the light.
     pub position: Vec3,
-    /// Its colour: red, green, blue.
-    pub color: [u8; 3],
-    /// How far it reaches.
+    /// Colour of the light.
+    pub color: Rgb888,
+    /// Distance from which on it gives no light.
     pub range: Scalar,
 }
 
 impl PointLight {
-    /// From its place, a colour, and how far it reaches.
+    /// Returns the light of a colour at a position, which reaches as far as `range`.
+    #[must_use]
     pub fn new(position: Vec3, color: impl Into<Rgb888>, range: Scalar) -> Self {
-        Self { position, color: channels(color.into()), range }
+        Self { position, color: color.into(), range }
     }
 }
 
-/// Where highlights are seen from.
+/// The place that highlights are seen from.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Viewer {
-    /// From far away in a direction, for all of a mesh: the cheap way.
+    /// Far away in a direction, which is one for all of a mesh: the cheap way.
     Toward(Vec3),
-    /// From a point.
+    /// At a point.
     At(Vec3),
 }
 
@@ -61,7 +66,7 @@ pub enum Viewer {
 /// use zstrip::light::{DirectionalLight, Lighting, PointLight, Viewer};
 /// use zstrip::math::{Scalar, Vec3};
 /// let lighting = Lighting {
-///     ambient: [30, 30, 40],
+///     ambient: Rgb888::new(30, 30, 40),
 ///     directional: [DirectionalLight::new(Vec3::from_ints(4, 7, 6), Rgb888::new(220, 220, 210))],
 ///     points: [PointLight::new(Vec3::from_ints(0, 1, -3), Rgb888::new(255, 80, 20), Scalar::from_num(5))],
 ///     viewer: Viewer::At(Vec3::ZERO), // the eye, in eye space
@@ -70,8 +75,8 @@ pub enum Viewer {
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Lighting<const D: usize, const P: usize> {
-    /// Light from everywhere: red, green, blue.
-    pub ambient: [u8; 3],
+    /// Colour of the light from everywhere.
+    pub ambient: Rgb888,
     /// Lights far away.
     pub directional: [DirectionalLight; D],
     /// Lights close by.
@@ -81,38 +86,38 @@ pub struct Lighting<const D: usize, const P: usize> {
 }
 
 impl<const D: usize> Lighting<D, 0> {
-    /// Directional lights, seen from along the z axis: in eye space, from far in front of the screen.
+    /// Returns directional lights with a viewer far away on the z axis: in eye space, far in front of the screen.
+    #[must_use]
     pub fn directional(ambient: impl Into<Rgb888>, directional: [DirectionalLight; D]) -> Self {
-        Self { ambient: channels(ambient.into()), directional, points: [], viewer: Viewer::Toward(Vec3::Z) }
+        Self { ambient: ambient.into(), directional, points: [], viewer: Viewer::Toward(Vec3::Z) }
     }
 }
 
-/// Red, green, blue.
-fn channels(color: Rgb888) -> [u8; 3] {
-    [color.r(), color.g(), color.b()]
-}
-
-/// The product of two colours, 8.8, cut: 255 · 255 becomes 255.
+/// Multiplies two colours, 8.8, cut: 255 · 255 becomes 255.
 fn product(a: [u8; 3], b: [u8; 3]) -> [u16; 3] {
     let channel = |a: u8, b: u8| (u32::from(a) * u32::from(b) * 256 / 255) as u16;
     [channel(a[0], b[0]), channel(a[1], b[1]), channel(a[2], b[2])]
 }
 
 impl<const D: usize, const P: usize> Lighting<D, P> {
-    /// The lights on a material, as a mesh sees them that `model` brings into the lights' space and whose positions are in
+    /// Puts the lights on a material of a mesh that `model` brings into the lights' space, and whose positions are in
     /// `bounds` ([`Mesh::bounds`](crate::mesh::Mesh::bounds)).
     ///
-    /// `model` may rotate, move and scale evenly. Some thousand instructions: where a frame's closure runs often, make it
-    /// outside.
+    /// `model` may rotate, move and scale evenly. This takes some thousand instructions: call it outside of the closure that
+    /// draws a frame, which runs once per strip where there are no records.
     ///
     /// # Format
     /// Directions within 2⁻¹⁴; positions of lights within 2⁻¹⁵ of the extent of the mesh, and at most 16,384 extents away.
     #[must_use]
-    pub fn on(&self, material: &Material, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
+    pub fn on(&self, material: impl Into<Material>, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
+        self.put_on(&material.into(), model, bounds)
+    }
+
+    fn put_on(&self, material: &Material, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
         let space = ToLocal::new(model, bounds);
-        let colors = |light: [u8; 3]| LitColors {
-            diffuse: product(material.diffuse, light),
-            specular: product(material.specular, light),
+        let colors = |light: Rgb888| LitColors {
+            diffuse: product(material.matte.diffuse, channels(light)),
+            specular: product(material.specular, channels(light)),
         };
         let (toward, viewer) = match self.viewer {
             Viewer::Toward(direction) => {
@@ -128,7 +133,7 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
             }
         };
         LitMaterial {
-            ambient: product(material.ambient, self.ambient),
+            ambient: product(material.matte.ambient, channels(self.ambient)),
             directional: self.directional.map(|light| {
                 let direction = space.direction(light.direction);
                 let [l, v] = [direction, toward];
@@ -144,13 +149,13 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
             viewer,
             shininess: if material.specular == [0; 3] { 0 } else { material.shininess },
             two_sided: material.two_sided,
-            vertex_colors: material.vertex_colors,
+            vertex_colors: material.matte.vertex_colors,
             space: space.local(),
         }
     }
 }
 
-/// A word as wide as the widest magnitude.
+/// Returns a word that has as many bits as the widest magnitude.
 fn widest(v: [i32; 3]) -> u32 {
     v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs()
 }

@@ -10,15 +10,16 @@
 //!   ----------------     each channel at most 255
 //! ```
 
-use super::light::NORMAL_ONE;
+use super::lit_color::{LitColor, WHITE};
 use super::local_space::LocalSpace;
+use super::normal::{ONE, cosine, long};
 use crate::math::{Vec3, unit_vector};
 
 /// A [`Material`](crate::light::Material) under a [`Lighting`](crate::light::Lighting), in a mesh's own space; made by
 /// [`Lighting::on`](crate::light::Lighting::on).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LitMaterial<const D: usize, const P: usize> {
-    /// Light from everywhere on the material, 8.8 a channel.
+    /// Light from everywhere on the material, 8.8 per channel.
     pub(super) ambient: [u16; 3],
     pub(super) directional: [LitDirection; D],
     pub(super) points: [LitPoint; P],
@@ -33,15 +34,9 @@ pub struct LitMaterial<const D: usize, const P: usize> {
 /// A vector in 2.14.
 type Short = [i16; 3];
 
-/// A vector in 2.14, of length 1 or little more.
+/// Converts a vector in 2.14, of length 1 or little more, to 16 bits.
 pub(super) const fn short([x, y, z]: [i32; 3]) -> Short {
     [x as i16, y as i16, z as i16]
-}
-
-/// The same in words.
-#[inline(always)]
-fn long([x, y, z]: Short) -> [i32; 3] {
-    [i32::from(x), i32::from(y), i32::from(z)]
 }
 
 /// A light's colours on a material, 8.8.
@@ -60,7 +55,8 @@ pub(super) struct LitDirection {
     pub(super) colors: LitColors,
 }
 
-/// Where highlights are seen from: 2.14, or local units to be shifted so that the difference to any position has 15 bits.
+/// The viewer: a direction in 2.14, or a position in local units. Its difference to any position of the mesh has 15 bits
+/// after the shift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LitViewer {
     Toward(Short),
@@ -70,23 +66,17 @@ pub(super) enum LitViewer {
 /// A point light on a material.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct LitPoint {
-    /// Local units, below 2²⁹, and the range in them.
+    /// Position and range in local units, below 2²⁹.
     position: [i32; 3],
     range: i32,
     /// 2³⁰ / (the shifted range squared / 2¹⁴).
     inverse: u32,
-    /// The shifted range, and shifts, one of them 0, that make it 2¹⁴ to 2¹⁵.
+    /// The shifted range, 2¹⁴ to 2¹⁵, and the shifts that make it so: one of them is 0.
     scaled: u16,
     left: u8,
     right: u8,
     colors: LitColors,
 }
-
-/// The number 1 in 2.14.
-const ONE: i32 = NORMAL_ONE as i32;
-
-/// The brightest channel value, 255 in 8.8.
-const WHITE: i32 = 255 << 8;
 
 impl LitPoint {
     pub(super) fn new(position: [i32; 3], range: i32, colors: LitColors) -> Self {
@@ -98,12 +88,13 @@ impl LitPoint {
         Self { position, range, inverse, scaled: scaled as u16, left: left as u8, right: right as u8, colors }
     }
 
-    /// Puts the unit vector from `p` to the light into `direction`, 2.14; how much of it is left there, 2.14. 0 out of its range.
+    /// Returns the fraction of the light that reaches the point `p`, 2.14, and 0 out of its range. Puts the unit vector from
+    /// `p` to the light into `direction`, 2.14.
     ///
     /// # Format
-    /// `p` in local units, below 2¹⁶. What is left is within 2⁻¹² of the exact value for the rounded positions.
+    /// `p` in local units, below 2¹⁶. The fraction is within 2⁻¹² of the exact value for the rounded positions.
     #[inline(never)]
-    fn from(&self, p: &[i32; 3], direction: &mut [i32; 3]) -> i32 {
+    fn fade_at(&self, p: &[i32; 3], direction: &mut [i32; 3]) -> i32 {
         let [x, y, z] = self.position;
         let [x, y, z] = [x.wrapping_sub(p[0]), y.wrapping_sub(p[1]), z.wrapping_sub(p[2])];
         let range = self.range;
@@ -123,11 +114,10 @@ impl LitPoint {
     }
 }
 
-/// `x` to the power of `n`, both numbers 2.14 in 0..=1.
+/// Raises `x` to the power of `n`; `x` and the result are 2.14 in 0..=1.
 ///
 /// # Format
-/// By squaring and multiplying 0.16, rounded: off by at most (n + 2) 2⁻¹⁶ beside what `x` itself is off, which counts n
-/// times.
+/// Squares and multiplies numbers of 0.16, rounded: off by at most (n + 2) 2⁻¹⁶. The error of `x` itself counts n times.
 #[inline]
 pub(super) fn power(x: i32, n: u8) -> i32 {
     let mut base = ((x as u32) << 2).min(0xFFFF);
@@ -145,15 +135,9 @@ pub(super) fn power(x: i32, n: u8) -> i32 {
     }
 }
 
-/// n · l of vectors in 2.14, cut to 2.14, between 0 and 1.
-#[inline(always)]
-fn cosine(n: &[i32; 3], l: [i32; 3]) -> i32 {
-    let dot = n[0].wrapping_mul(l[0]).wrapping_add(n[1].wrapping_mul(l[1])).wrapping_add(n[2].wrapping_mul(l[2]));
-    (dot >> 14).clamp(0, ONE)
-}
-
-/// A point of a surface that is looked at, and the sum of its light: what the surface's colour takes part in, and highlights.
-/// Vectors 2.14, light 8.8.
+/// A point of a surface that is looked at, and the sums of its light. Vectors 2.14, light 8.8.
+///
+/// `body` is multiplied by the colour of a vertex; `shine` has the highlights, which are not.
 struct Look<'n> {
     normal: &'n [i32; 3],
     viewer: [i32; 3],
@@ -161,7 +145,7 @@ struct Look<'n> {
     shine: [i32; 3],
 }
 
-/// `sum += color · factor`, 2.14.
+/// Adds `color` · `factor`, 2.14, to `sum`.
 #[inline(always)]
 fn add(sum: &mut [i32; 3], color: &[u16; 3], factor: i32) {
     sum[0] += (i32::from(color[0]) * factor) >> 14;
@@ -170,36 +154,34 @@ fn add(sum: &mut [i32; 3], color: &[u16; 3], factor: i32) {
 }
 
 impl<const D: usize, const P: usize> LitMaterial<D, P> {
-    /// Whether the mesh's colours take part.
+    /// Returns whether the colours of the mesh's vertices take part.
     #[inline]
-    #[must_use]
-    pub const fn vertex_colors(&self) -> bool {
+    pub(crate) const fn has_vertex_colors(&self) -> bool {
         self.vertex_colors
     }
 
-    /// Whether normals of faces that show their back are turned round.
+    /// Returns whether normals of faces that show their back are turned.
     #[inline]
-    #[must_use]
-    pub const fn is_two_sided(&self) -> bool {
+    pub(crate) const fn is_two_sided(&self) -> bool {
         self.two_sided
     }
 
-    /// The space of [`near`](Self::near)'s positions.
+    /// Returns a position of the mesh in 2⁻¹⁴ local units: below 2²⁹.
     #[inline]
-    #[must_use]
-    pub const fn space(&self) -> &LocalSpace {
-        &self.space
+    pub(crate) fn fine_position(&self, position: Vec3) -> [i32; 3] {
+        self.space.fine(position)
     }
 
-    /// The normal that is turned towards the viewer, seen from the point `p` (local units) of the surface: where a vertex
-    /// belongs to faces on both sides.
-    pub fn towards_viewer(&self, normal: [i32; 3], p: [i32; 3]) -> [i32; 3] {
+    /// Turns a normal towards the viewer, seen from the point `p` (local units) of the surface: for a vertex that belongs to
+    /// faces on both sides.
+    pub(crate) fn towards_viewer(&self, normal: [i32; 3], p: [i32; 3]) -> [i32; 3] {
         let [x, y, z] = self.viewer(&p);
         let dot =
             normal[0].wrapping_mul(x).wrapping_add(normal[1].wrapping_mul(y)).wrapping_add(normal[2].wrapping_mul(z));
         if dot < 0 { normal.map(i32::wrapping_neg) } else { normal }
     }
 
+    /// Returns the unit vector from a point to the viewer, 2.14.
     #[inline(never)]
     fn viewer(&self, p: &[i32; 3]) -> [i32; 3] {
         match self.viewer {
@@ -211,52 +193,62 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
         }
     }
 
-    /// Nothing but the ambient light.
+    /// Begins the sum of a point with the ambient light.
     #[inline(always)]
     fn look<'n>(&self, normal: &'n [i32; 3]) -> Look<'n> {
         let [r, g, b] = self.ambient;
         Look { normal, viewer: [0; 3], body: [i32::from(r), i32::from(g), i32::from(b)], shine: [0; 3] }
     }
 
-    /// Red, green, blue under the ambient and the directional lights, seen from far away, whatever the viewer is.
+    /// Returns the colour under the ambient and the directional lights, seen from far away. A [`Viewer::At`] looks from the
+    /// direction in which it is from the middle of the mesh's box.
+    ///
+    /// `color` is that of the vertex, red first; it counts if the material has
+    /// [`vertex_colors`](crate::light::Material::vertex_colors).
     ///
     /// # Format
-    /// `normal` 2.14, of length 1; result 8.8, at most 255. `color` is that of the vertex, or white.
+    /// `normal` in object space, 2.14, of length 1.
+    ///
+    /// [`Viewer::At`]: crate::light::Viewer::At
     #[inline]
     #[must_use]
-    pub fn far(&self, normal: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
+    pub fn shade_distant(&self, normal: &[i32; 3], color: [u8; 3]) -> LitColor {
         let mut look = self.look(normal);
         for light in &self.directional {
-            self.add_far(&mut look, light);
+            self.add_distant(&mut look, light);
         }
         self.total(&look, color)
     }
 
+    /// Adds a directional light, seen from far away.
     #[inline(always)]
-    fn add_far(&self, look: &mut Look<'_>, light: &LitDirection) {
-        let facing = cosine(look.normal, long(light.direction));
+    fn add_distant(&self, look: &mut Look<'_>, light: &LitDirection) {
+        let facing = cosine(*look.normal, long(light.direction));
         if facing > 0 {
             add(&mut look.body, &light.colors.diffuse, facing);
             if self.shininess != 0 {
-                let shine = power(cosine(look.normal, long(light.half)), self.shininess);
+                let shine = power(cosine(*look.normal, long(light.half)), self.shininess);
                 add(&mut look.shine, &light.colors.specular, shine);
             }
         }
     }
 
-    /// Red, green, blue under all lights at the point `p` of the mesh, in units of [`space`](Self::space).
+    /// Returns the colour under all lights at the point `p` of the mesh, in [`local`](Self::local) units.
+    ///
+    /// `color` is that of the vertex, red first; it counts if the material has
+    /// [`vertex_colors`](crate::light::Material::vertex_colors).
     ///
     /// # Format
-    /// As [`far`](Self::far).
+    /// `normal` in object space, 2.14, of length 1.
     #[inline(never)]
     #[must_use]
-    pub fn near(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
-        self.near_here(normal, p, color)
+    pub fn shade_at(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> LitColor {
+        self.shade_at_inlined(normal, p, color)
     }
 
-    /// The same in the function that asks for it.
+    /// Returns the colour as [`shade_at`](Self::shade_at) does; inlined, for the loop over a span's fragments.
     #[inline(always)]
-    pub(crate) fn near_here(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> [i32; 3] {
+    pub(crate) fn shade_at_inlined(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> LitColor {
         let mut look = self.look(normal);
         let seen_from_afar = matches!(self.viewer, LitViewer::Toward(_));
         if self.shininess != 0 {
@@ -264,24 +256,25 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
         }
         for light in &self.directional {
             if seen_from_afar {
-                self.add_far(&mut look, light);
+                self.add_distant(&mut look, light);
             } else {
-                self.add_near(&mut look, &long(light.direction), ONE, &light.colors);
+                self.add_from(&mut look, &long(light.direction), ONE, &light.colors);
             }
         }
         for light in &self.points {
             let mut direction = [0; 3];
-            let fade = light.from(p, &mut direction);
+            let fade = light.fade_at(p, &mut direction);
             if fade > 0 {
-                self.add_near(&mut look, &direction, fade, &light.colors);
+                self.add_from(&mut look, &direction, fade, &light.colors);
             }
         }
         self.total(&look, color)
     }
 
+    /// Adds a light in any direction, of which `fade` is left; highlights are seen from `look.viewer`.
     #[inline(never)]
-    fn add_near(&self, look: &mut Look<'_>, direction: &[i32; 3], fade: i32, colors: &LitColors) {
-        let facing = cosine(look.normal, *direction);
+    fn add_from(&self, look: &mut Look<'_>, direction: &[i32; 3], fade: i32, colors: &LitColors) {
+        let facing = cosine(*look.normal, *direction);
         if facing > 0 {
             add(&mut look.body, &colors.diffuse, (facing * fade) >> 14);
             if self.shininess != 0 {
@@ -289,14 +282,15 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
                 // Below 2¹⁵ even where both are the same.
                 let half = |k: usize| l[k] + v[k] - ((l[k] + v[k]) >> 6);
                 let half = unit_vector([half(0), half(1), half(2)]);
-                let shine = power(cosine(look.normal, half), self.shininess);
+                let shine = power(cosine(*look.normal, half), self.shininess);
                 add(&mut look.shine, &colors.specular, (shine * fade) >> 14);
             }
         }
     }
 
+    /// Sums up the light of a point whose vertex has a colour.
     #[inline(always)]
-    fn total(&self, look: &Look<'_>, color: [u8; 3]) -> [i32; 3] {
+    fn total(&self, look: &Look<'_>, color: [u8; 3]) -> LitColor {
         let Look { body, shine, .. } = look;
         let [r, g, b] = if self.vertex_colors {
             let times = |light: i32, c: u8| {
@@ -308,14 +302,14 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
         } else {
             *body
         };
-        [(r + shine[0]).min(WHITE), (g + shine[1]).min(WHITE), (b + shine[2]).min(WHITE)]
+        LitColor::from_bits([(r + shine[0]).min(WHITE), (g + shine[1]).min(WHITE), (b + shine[2]).min(WHITE)])
     }
 
-    /// A position of the mesh in local units.
+    /// Returns a position of the mesh in local units, as [`shade_at`](Self::shade_at) takes it.
     #[inline]
     #[must_use]
     pub fn local(&self, position: Vec3) -> [i32; 3] {
-        let [x, y, z] = self.space.fine(position);
+        let [x, y, z] = self.fine_position(position);
         [x >> 14, y >> 14, z >> 14]
     }
 }

@@ -3,25 +3,26 @@
 use crate::math::{Affine, Scalar, Vec3};
 use crate::mesh::Bounds;
 
-/// Object space, centred in the mesh's box, in units of which its longest half side has 2¹⁴ to 2¹⁵.
+/// Object space, centred in the mesh's box. The longest half side of the box has 2¹⁴ to 2¹⁵ units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct LocalSpace {
+pub(super) struct LocalSpace {
     center: [i32; 3],
-    /// Shift that makes 2²⁸ to 2²⁹ of the longest half side in 16.16.
+    /// Shift that makes the longest half side, 16.16, 2²⁸ to 2²⁹.
     shift: i8,
 }
 
-/// The way from the lights' space to a [`LocalSpace`].
+/// The transform from the lights' space to a [`LocalSpace`].
 pub(super) struct ToLocal {
     local: LocalSpace,
-    /// The columns of the model matrix at length 1, 16.16, and what the model scales by, 16.16 and `extra` bits.
+    /// The columns of the model matrix, made unit vectors, 16.16.
     columns: [[i32; 3]; 3],
+    /// Factor by which the model scales, 16.16 and `extra` bits.
     scale: i64,
     extra: u32,
     translation: [i32; 3],
 }
 
-/// `value` times 2^`shift`, which is in -32..32; cut, and saturated at ±2²⁹.
+/// Multiplies by 2^`shift`, which is in -32..32; cut, and saturated at ±2²⁹.
 fn shifted(value: i64, shift: i32) -> i32 {
     let limit = 1 << 29;
     let moved = if shift >= 0 {
@@ -38,10 +39,9 @@ impl LocalSpace {
         self.shift as i32
     }
 
-    /// A position of the mesh, 2¹⁴ local units: below 2²⁹.
+    /// Returns a position of the mesh in 2⁻¹⁴ local units: below 2²⁹.
     #[inline]
-    #[must_use]
-    pub fn fine(&self, position: Vec3) -> [i32; 3] {
+    pub(super) fn fine(&self, position: Vec3) -> [i32; 3] {
         let p = position.to_bits();
         let along = |k: usize| shifted(i64::from(p[k]) - i64::from(self.center[k]), self.shift());
         [along(0), along(1), along(2)]
@@ -49,14 +49,14 @@ impl LocalSpace {
 }
 
 impl ToLocal {
-    /// Of a mesh in `bounds`, for lights in the space that `model` leads to.
+    /// Makes the transform for a mesh in `bounds`, and lights in the space that `model` leads to.
     pub(super) fn new(model: &Affine, bounds: &Bounds) -> Self {
         let [x, y, z] = bounds.half.to_bits();
         let reach = (x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs()).max(1);
         let [[xx, xy, xz, tx], [yx, yy, yz, ty], [zx, zy, zz, tz]] = model.to_rows();
         let columns = [[xx, yx, zx], [xy, yy, zy], [xz, yz, zz]];
         let widest = columns.iter().flatten().fold(1, |all, c| all | c.unsigned_abs());
-        // Columns of small scales are made longer, by up to 2¹², so that their length has some bits.
+        // Columns of small scales are made longer, by up to 2¹²: their length would have few bits otherwise.
         let extra = (widest.leading_zeros().saturating_sub(15)).min(12);
         let longer = columns.map(|c| Vec3::from_bits([c[0] << extra, c[1] << extra, c[2] << extra]));
         Self {
@@ -68,17 +68,17 @@ impl ToLocal {
         }
     }
 
-    /// Where it leads.
+    /// Returns the space that the transform leads to.
     pub(super) const fn local(&self) -> LocalSpace {
         self.local
     }
 
-    /// Sums of products of the columns and a vector, 32.32.
+    /// Multiplies the columns by a vector: 32.32.
     fn rotated(&self, v: [i64; 3]) -> [i64; 3] {
         self.columns.map(|c| i64::from(c[0]) * v[0] + i64::from(c[1]) * v[1] + i64::from(c[2]) * v[2])
     }
 
-    /// A direction from the lights' space: 2.14, of length 1 or zero.
+    /// Transforms a direction: 2.14, of length 1 or zero.
     pub(super) fn direction(&self, direction: Vec3) -> [i32; 3] {
         let Some(unit) = direction.normalized() else { return [0; 3] };
         let rotated = self.rotated(unit.to_bits().map(i64::from)).map(|c| (c >> 16) as i32);
@@ -88,19 +88,19 @@ impl ToLocal {
         }
     }
 
-    /// A length in the lights' space, in local units.
+    /// Converts a length in the lights' space to local units.
     pub(super) fn length(&self, length: Scalar) -> i32 {
         self.scaled(i64::from(length.to_bits()) << 16)
     }
 
-    /// 32.32 of the lights' space in local units.
+    /// Converts 32.32 of the lights' space to local units.
     fn scaled(&self, value: i64) -> i32 {
         // 32.32 by 16.16 and `extra` bits: below 2⁶³ for |value| < 2⁵¹.
         let quotient = (value << self.extra).checked_div(self.scale).unwrap_or(0);
         shifted(quotient, self.local.shift() - 14)
     }
 
-    /// A point of the lights' space in local units, saturated at ±2²⁹.
+    /// Transforms a point to local units, saturated at ±2²⁹.
     pub(super) fn position(&self, point: Vec3) -> [i32; 3] {
         let p = point.to_bits();
         let [tx, ty, tz] = self.translation.map(i64::from);

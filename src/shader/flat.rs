@@ -1,47 +1,52 @@
 //! One colour per face.
 
-use crate::color::{PixelFormat, channels, packed, unpacked};
-use crate::light::Light;
+use super::surface::Surface;
+use crate::color::{PixelFormat, unpacked};
+use crate::light::Unlit;
 use crate::span::{DepthTest, Fragment, Shader, SpanOf, flat_span};
 use crate::vertex::{Face, VertexRef, VertexShader};
+use embedded_graphics_core::pixelcolor::{IntoStorage, Rgb888};
 
-/// Flat shading: each triangle in one colour, lit by its face normal.
+/// Flat shading: each triangle has one colour, that of the [`Surface`] at the face.
 ///
-/// The colour is the shader's, or that of the provoking vertex.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Flat {
-    /// Red, green and blue in a word, blue lowest; otherwise the provoking vertices'.
-    color: Option<u32>,
-    light: Option<Light>,
+/// ```
+/// use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, WebColors};
+/// use zstrip::light::{Material, Sun};
+/// use zstrip::math::{Affine, Vec3};
+/// use zstrip::shader::Flat;
+/// let sun = Sun::new(Vec3::from_ints(4, 7, 6), Rgb888::CSS_LIGHT_GRAY, Rgb888::CSS_DIM_GRAY);
+/// let lit = Flat::new(sun.on(&Material::matte(Rgb888::CSS_CORAL), &Affine::IDENTITY));
+/// let plain = Flat::unlit(Rgb888::CSS_CORAL);
+/// # let _ = (lit, plain);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Flat<S = Unlit> {
+    surface: S,
+}
+
+impl<S: Surface> Flat<S> {
+    /// Returns the shader of a surface.
+    #[must_use]
+    pub const fn new(surface: S) -> Self {
+        Self { surface }
+    }
 }
 
 impl Flat {
-    /// Creates a shader of one colour under a light (given in object space, see [`Light::to_object`]).
+    /// Returns the shader of a colour without light.
     #[must_use]
-    pub fn new(light: Light, color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { color: Some(packed(channels(color.into()))), light: Some(light) }
+    pub fn unlit(color: impl Into<Rgb888>) -> Self {
+        Self { surface: Unlit::new(color) }
     }
 
-    /// Creates a shader of one colour without light.
-    #[must_use]
-    pub fn unlit(color: impl Into<embedded_graphics_core::pixelcolor::Rgb888>) -> Self {
-        Self { color: Some(packed(channels(color.into()))), light: None }
-    }
-
-    /// Creates a shader of the vertices' colours as they are: each triangle takes that of its provoking vertex.
+    /// Returns the shader of the mesh's colours without light: a triangle has the colour of its provoking vertex.
     #[must_use]
     pub const fn vertex_colors() -> Self {
-        Self { color: None, light: None }
-    }
-
-    /// Creates a shader of the vertices' colours under a light: each triangle takes that of its provoking vertex.
-    #[must_use]
-    pub const fn colors(light: Light) -> Self {
-        Self { color: None, light: Some(light) }
+        Self { surface: Unlit::vertex_colors() }
     }
 }
 
-impl VertexShader for Flat {
+impl<S: Surface> VertexShader for Flat<S> {
     type Varyings = [i32; 0];
 
     fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
@@ -51,18 +56,11 @@ impl VertexShader for Flat {
     /// Returns the colour, 8 bits per channel, blue lowest.
     #[inline]
     fn face(&self, face: &Face<'_>) -> u32 {
-        let color = match self.color {
-            Some(color) => color,
-            None => packed(face.provoking().color()),
-        };
-        match &self.light {
-            Some(light) => light.shade(color, face.normal()),
-            None => color,
-        }
+        self.surface.face(face).into_storage()
     }
 }
 
-impl<P: PixelFormat> Shader<P> for Flat {
+impl<P: PixelFormat, S: Surface> Shader<P> for Flat<S> {
     type Setup = ();
 
     #[inline]

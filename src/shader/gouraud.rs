@@ -1,58 +1,60 @@
 //! Colours per vertex, interpolated over the triangle.
 
+use super::surface::Surface;
 use super::vertex_colors::VertexColors;
-use crate::color::{channels, load, squeeze, store};
-use crate::light::{Light, Lit};
+use crate::color::{load, squeeze, store};
+use crate::light::{LitColor, Unlit};
 use crate::vertex::{VertexRef, VertexShader};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
-/// Gouraud shading: lit at the vertices, by the mesh's normals, and interpolated linearly on the screen. A mesh without
-/// normals shows the ambient light only.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Gouraud {
-    colors: Colors,
+/// Gouraud shading: colours of the [`Surface`] at the vertices, interpolated linearly on the screen.
+///
+/// ```
+/// use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, WebColors};
+/// use zstrip::light::{Material, Sun};
+/// use zstrip::math::{Affine, Vec3};
+/// use zstrip::shader::Gouraud;
+/// let sun = Sun::new(Vec3::from_ints(4, 7, 6), Rgb888::CSS_LIGHT_GRAY, Rgb888::CSS_DIM_GRAY);
+/// let lit = Gouraud::new(sun.on(&Material::matte(Rgb888::CSS_CORAL), &Affine::IDENTITY));
+/// let plain = Gouraud::vertex_colors();
+/// # let _ = (lit, plain);
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Gouraud<S = Unlit> {
+    surface: S,
 }
 
-/// Source of the colours of vertices.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Colors {
-    /// One for the whole mesh, lit.
-    One(Lit),
-    /// The mesh's, lit.
-    Lit(Light),
-    /// The mesh's, as they are.
-    Unlit,
+impl<S: Surface> Gouraud<S> {
+    /// Returns the shader of a surface.
+    #[must_use]
+    pub const fn new(surface: S) -> Self {
+        Self { surface }
+    }
 }
 
 impl Gouraud {
-    /// Creates a shader of one colour under a light (given in object space, see [`Light::to_object`]).
-    #[must_use]
-    pub fn new(light: Light, color: impl Into<Rgb888>) -> Self {
-        Self { colors: Colors::One(light.on(channels(color.into()))) }
-    }
-
-    /// Creates a shader of the vertices' colours under a light.
-    #[must_use]
-    pub const fn colors(light: Light) -> Self {
-        Self { colors: Colors::Lit(light) }
-    }
-
-    /// Returns the varyings of a vertex that has this colour.
-    #[must_use]
-    #[inline]
-    pub fn varyings(color: Rgb888) -> [i32; 3] {
-        let [r, g, b] = channels(color);
-        [squeeze(i32::from(r) << 8), squeeze(i32::from(g) << 8), squeeze(i32::from(b) << 8)]
-    }
-
-    /// Creates a shader of the vertices' colours as they are.
+    /// Returns the shader of the mesh's colours without light.
     #[must_use]
     pub const fn vertex_colors() -> Self {
-        Self { colors: Colors::Unlit }
+        Self { surface: Unlit::vertex_colors() }
+    }
+
+    /// Returns the varyings of a vertex of a colour.
+    #[inline]
+    pub fn varyings(color: Rgb888) -> [i32; 3] {
+        squeezed(LitColor::from(color))
     }
 }
 
-impl VertexShader for Gouraud {
+/// Makes varyings of a colour.
+#[inline(always)]
+fn squeezed(color: LitColor) -> [i32; 3] {
+    // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
+    let [r, g, b] = color.to_bits();
+    [squeeze(r), squeeze(g), squeeze(b)]
+}
+
+impl<S: Surface> VertexShader for Gouraud<S> {
     /// Red, green, blue in 8.16, squeezed to 0.5..=254.5.
     type Varyings = [i32; 3];
 
@@ -63,16 +65,7 @@ impl VertexShader for Gouraud {
 
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 3] {
-        // Spelled out: at `opt-level = "s"`, `map` is a loop through memory.
-        let [r, g, b] = match &self.colors {
-            Colors::One(lit) => lit.shade(vertex.normal()),
-            Colors::Lit(light) => light.on(vertex.color()).shade(vertex.normal()),
-            Colors::Unlit => {
-                let [r, g, b] = vertex.color();
-                [i32::from(r) << 8, i32::from(g) << 8, i32::from(b) << 8]
-            }
-        };
-        [squeeze(r), squeeze(g), squeeze(b)]
+        squeezed(self.surface.vertex(vertex))
     }
 
     #[inline]
@@ -86,4 +79,4 @@ impl VertexShader for Gouraud {
     }
 }
 
-impl VertexColors for Gouraud {}
+impl<S: Surface> VertexColors for Gouraud<S> {}

@@ -2,23 +2,25 @@
 //!
 //! | | |
 //! |---|---|
-//! | [`Flat`], [`Gouraud`] | a colour a face or a vertex, under one light or none |
-//! | [`Shaded`] | a [`Material`](crate::light::Material) under any lights, per face, vertex or fragment |
-//! | [`Textured`], [`Textured::lit`] | images, perspective-correct |
+//! | [`Flat`], [`Gouraud`] | the colour of a [`Surface`] under any light, per face or per vertex |
+//! | [`Phong`], [`PhongNear`] | a [`LitMaterial`](crate::light::LitMaterial), lit per fragment |
+//! | [`Textured`], [`Textured::lit`] | images, perspective-correct; on a [`Surface`] under any light |
 //! | [`Matcap`] | the colour of the normal, from a picture |
 //! | [`DepthOnly`] | no colour |
-//! | [`Fogged`] | around any of them: fog |
-//! | [`Blend`], [`AlphaTest`], [`ScreenDoor`] | around any of these: transparency |
+//! | [`Fogged`] | around any shader: fog |
+//! | [`Blend`], [`AlphaTest`], [`ScreenDoor`] | around any shader: transparency |
 //!
-//! # What a pixel costs
+//! [`light`](crate::light) says which light suits which shader.
 //!
-//! Instructions, on a screen of 320 × 240 in RGB565 that two triangles fill, depth test and set-up included; `ci/costs` counts
-//! them.
+//! # Cost per pixel
 //!
-//! | instructions a pixel | Cortex-M0+ | Cortex-M4 |
+//! Instructions, on a screen of 320 × 240 in RGB565 that two triangles fill, depth test and set-up included; `ci/costs`
+//! counts them. Light per face or per vertex costs nothing per pixel.
+//!
+//! | instructions per pixel | Cortex-M0+ | Cortex-M4 |
 //! |---|--:|--:|
-//! | `Flat`; `Shaded` per face | 9 | 10 |
-//! | `Gouraud`; `Shaded` per vertex | 18 | 14 |
+//! | `Flat` | 9 | 10 |
+//! | `Gouraud` | 18 | 14 |
 //! | `Matcap` | 46 | 25 |
 //! | `Textured`, nearest, repeated, w constant | 22 | 17 |
 //! | the same in perspective | 24 | 18 |
@@ -31,11 +33,11 @@
 //! | nearest, lit | 195 | 125 |
 //! | bilinear, lit | 399 | 237 |
 //! | `Blend` of it, nearest, `Opacity` | 105 | 66 |
-//! | `Shaded` per fragment, 1 directional light, matte | 193 | 127 |
+//! | `Phong`, 1 directional light, matte | 193 | 127 |
 //! | the same, 2 directional lights | 275 | 179 |
 //! | 1 directional light, glossy, shininess 32 | 269 | 212 |
 //! | the same, shininess 255 | 304 | 232 |
-//! | `Shaded` per fragment, near, 1 point light, matte | 457 | 343 |
+//! | `PhongNear`, 1 point light, matte | 457 | 343 |
 //! | the same, glossy, shininess 32 | 634 | 489 |
 //! | the same, viewer near | 732 | 560 |
 //! | `Blend` of `Flat`, `Opacity` | 39 | 28 |
@@ -56,7 +58,8 @@ mod flat;
 mod fog;
 mod gouraud;
 mod matcap;
-mod shaded;
+mod phong;
+mod surface;
 mod textured;
 mod vertex_colors;
 
@@ -67,6 +70,7 @@ pub use flat::Flat;
 pub use fog::{FogCurve, FogTable, Fogged};
 pub use gouraud::Gouraud;
 pub use matcap::Matcap;
-pub use shaded::{PerFace, PerFragment, PerFragmentNear, PerVertex, Shaded};
+pub use phong::{Phong, PhongNear};
+pub use surface::Surface;
 pub use textured::{LitTexture, Textured};
 pub use vertex_colors::VertexColors;

@@ -1,7 +1,7 @@
-//! Textures as shaders: as they are, and under a light.
+//! Textures as shaders: as they are, and on a surface under light.
 
+use super::surface::Surface;
 use crate::color::PixelFormat;
-use crate::light::{Light, Lit};
 use crate::span::{DepthTest, Fragment, STEP, Shader, SpanOf, TriangleSetup, draw_fragments, texture_span};
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
 use crate::vertex::{Perspective, PerspectiveClass, PerspectiveSetup, VertexRef, VertexShader};
@@ -66,11 +66,15 @@ impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
         Textured { levels: self.levels, how: PhantomData }
     }
 
-    /// Returns the shader under a light (given in object space, see [`Light::to_object`]): lit at the vertices by the mesh's
-    /// normals.
+    /// Multiplies the texels by the colours of a [`Surface`] at the vertices: texture × material × vertex colours × light.
+    ///
+    /// Any surface will do: [`Unlit::vertex_colors`](crate::light::Unlit::vertex_colors) shows light that is baked into the
+    /// mesh, `sun.on(&Matte::WHITE, &model)` the light of a sun. Highlights are multiplied by the texels too.
+    ///
+    /// Colours of the surface are interpolated linearly on the screen.
     #[must_use]
-    pub fn lit(self, light: Light) -> LitTexture<'a, T, W, F> {
-        LitTexture { texture: self, light: light.on([255; 3]) }
+    pub const fn lit<S: Surface>(self, surface: S) -> LitTexture<'a, T, S, W, F> {
+        LitTexture { texture: self, surface }
     }
 
     /// Returns a level by its number; there is always one.
@@ -149,18 +153,17 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
     }
 }
 
-/// [`Textured`] under a light: see [`Textured::lit`].
+/// A texture on a [`Surface`] under light: see [`Textured::lit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LitTexture<'a, T, W = Repeat, F = Nearest> {
+pub struct LitTexture<'a, T, S, W = Repeat, F = Nearest> {
     texture: Textured<'a, T, W, F>,
-    /// The light on white.
-    light: Lit,
+    surface: S,
 }
 
-/// Texture coordinates 16.16; red, green and blue of the light, 8.16, linear on the screen.
+/// Texture coordinates 16.16; red, green and blue of the surface, 8.16, linear on the screen.
 type LitVaryings = Perspective<2, 6>;
 
-impl<T, W, F> VertexShader for LitTexture<'_, T, W, F> {
+impl<T, S: Surface, W, F> VertexShader for LitTexture<'_, T, S, W, F> {
     type Varyings = LitVaryings;
 
     /// u, v, the light in 10 bits a channel, 1 / w.
@@ -168,7 +171,7 @@ impl<T, W, F> VertexShader for LitTexture<'_, T, W, F> {
 
     #[inline]
     fn vertex(&self, corner: &VertexRef<'_>) -> LitVaryings {
-        let [r, g, b] = self.light.shade(corner.normal());
+        let [r, g, b] = self.surface.vertex(corner).to_bits();
         Perspective::new(corner.uv().map(|c| c.to_bits()), [r << 8, g << 8, b << 8])
     }
 
@@ -190,13 +193,13 @@ impl<T, W, F> VertexShader for LitTexture<'_, T, W, F> {
     }
 }
 
-/// The pixel of a texel, unless that is transparent and the format cannot say so.
+/// Returns the pixel of a texel; `None` if the texel is transparent and the format has no alpha.
 #[inline(always)]
 fn visible<P: PixelFormat>(rgba: [u8; 4], position: (i32, i32)) -> Option<P::Raw> {
     if P::ALPHA || rgba[3] >= OPAQUE { Some(P::pack_rgba(rgba, position)) } else { None }
 }
 
-/// A channel under light of 8.16, 255.0 leaving it as it is.
+/// Multiplies a channel by one of the surface, 8.16; 255.0 leaves it as it is.
 #[inline(always)]
 fn under(channel: u8, light: i32) -> u8 {
     // 0..=256; a plane may leave the range of its vertices by 1/8.
@@ -204,7 +207,7 @@ fn under(channel: u8, light: i32) -> u8 {
     ((i32::from(channel) * light) >> 8) as u8
 }
 
-impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for LitTexture<'_, T, W, F> {
+impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter> Shader<P> for LitTexture<'_, T, S, W, F> {
     const STEP: usize = STEP;
 
     /// Number of the level.

@@ -6,7 +6,7 @@ use zstrip::Framebuffer;
 use zstrip::Scene;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, WebColors};
-use zstrip::light::Light;
+use zstrip::light::{Material, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
@@ -26,7 +26,7 @@ pub const TURN: u16 = 1024;
 /// would make them anew each time.
 pub struct View {
     mvp: Projective,
-    shader: Gouraud,
+    shader: Gouraud<Sunlit>,
 }
 
 impl View {
@@ -40,8 +40,8 @@ impl View {
         let angle = Angle16::from_degrees(60);
         let camera = Projective::perspective(angle, SIZE, Scalar::from_num(0.5), Scalar::from_num(12));
         let camera = camera.expect("the far plane is behind the near plane");
-        let light = Light::new(Vec3::from_milli(400, 700, 600), Rgb888::CSS_LIGHT_GRAY, Rgb888::new(38, 38, 38));
-        Self { mvp: camera * model, shader: Gouraud::new(light.to_object(&model), Rgb888::CSS_ORANGE) }
+        let sun = Sun::new(Vec3::from_milli(400, 700, 600), Rgb888::CSS_LIGHT_GRAY, Rgb888::new(38, 38, 38));
+        Self { mvp: camera * model, shader: Gouraud::new(sun.on(&Material::matte(Rgb888::CSS_ORANGE), &model)) }
     }
 
     /// Draws it.

@@ -1,0 +1,132 @@
+//! Surfaces under light: the colours that shaders ask for, per face or per vertex.
+
+use crate::light::{LitColor, LitMaterial, Sunlit, Unlit, long};
+use crate::vertex::{Face, Side, VertexRef};
+use embedded_graphics_core::pixelcolor::{Rgb888, raw::RawU24};
+
+/// A surface that has a colour at each face and at each vertex of a mesh: a material under light, in object space.
+///
+/// A surface says which colours there are. A shader says how often they are computed, and for which pixels:
+/// [`Flat`](crate::shader::Flat) asks once per face, [`Gouraud`](crate::shader::Gouraud) once per vertex, and
+/// [`Textured::lit`](crate::shader::Textured::lit) multiplies its texels by the colours of the vertices.
+///
+/// [`Unlit`], [`Sunlit`] and [`LitMaterial`] are surfaces. A surface of one's own takes one function. This one is brighter
+/// where it looks up, as under an overcast sky:
+///
+/// ```
+/// use zstrip::light::LitColor;
+/// use zstrip::shader::{Gouraud, Surface};
+/// use zstrip::vertex::VertexRef;
+///
+/// struct Overcast;
+///
+/// impl Surface for Overcast {
+///     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
+///         let [_, y, _] = vertex.normal(); // 2.14
+///         let level = (i32::from(y) + 16_384) >> 7; // 0..=256
+///         LitColor::new(vertex.color().map(|channel| i32::from(channel) * level))
+///     }
+/// }
+///
+/// let shader = Gouraud::new(Overcast);
+/// # let _ = shader;
+/// ```
+///
+/// A shader is compiled for each type of surface that it is used with. Where a program has several, and size matters more
+/// than speed, `&dyn Surface` makes them one type.
+pub trait Surface {
+    /// Returns the colour at a vertex.
+    fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor;
+
+    /// Returns the colour of a face; by default that of its provoking vertex, lit by the normal of that vertex.
+    #[inline]
+    fn face(&self, face: &Face<'_>) -> Rgb888 {
+        self.vertex(&face.provoking()).into()
+    }
+}
+
+impl<S: Surface + ?Sized> Surface for &S {
+    #[inline]
+    fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
+        S::vertex(self, vertex)
+    }
+
+    #[inline]
+    fn face(&self, face: &Face<'_>) -> Rgb888 {
+        S::face(self, face)
+    }
+}
+
+/// Converts red, green and blue to a colour.
+#[inline(always)]
+const fn rgb([r, g, b]: [u8; 3]) -> Rgb888 {
+    Rgb888::new(r, g, b)
+}
+
+impl Surface for Unlit {
+    #[inline]
+    fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
+        let color = match self.color() {
+            Some(color) => color,
+            None => vertex.color(),
+        };
+        LitColor::from_channels(color)
+    }
+
+    #[inline]
+    fn face(&self, face: &Face<'_>) -> Rgb888 {
+        match self.color() {
+            Some(color) => rgb(color),
+            None => rgb(face.provoking().color()),
+        }
+    }
+}
+
+/// Lit by the normals of vertices or of faces. A mesh without normals shows only the ambient light at its vertices.
+impl Surface for Sunlit {
+    #[inline]
+    fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
+        if self.has_vertex_colors() {
+            self.colored(vertex.color()).shade(vertex.normal())
+        } else {
+            self.shade(vertex.normal())
+        }
+    }
+
+    #[inline]
+    fn face(&self, face: &Face<'_>) -> Rgb888 {
+        let word = if self.has_vertex_colors() {
+            self.colored(face.provoking().color()).shade_word(face.normal())
+        } else {
+            self.shade_word(face.normal())
+        };
+        Rgb888::from(RawU24::new(word))
+    }
+}
+
+/// Lit by the normals of vertices, or by the normal of a face at its middle. A mesh without normals shows only the ambient
+/// light at its vertices.
+///
+/// Two-sided materials turn the normal of a face that shows its back, and turn the normal of a vertex towards the viewer,
+/// because the vertex may belong to faces of both sides.
+impl<const D: usize, const P: usize> Surface for LitMaterial<D, P> {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
+        let p = self.local(vertex.position());
+        let mut normal = long(vertex.normal());
+        if self.is_two_sided() {
+            normal = self.towards_viewer(normal, p);
+        }
+        self.shade_at(&normal, &p, vertex.color())
+    }
+
+    fn face(&self, face: &Face<'_>) -> Rgb888 {
+        let mut normal = long(face.normal());
+        if self.is_two_sided() && face.side() == Side::Back {
+            normal = normal.map(|c| -c);
+        }
+        let [a, b, c] = face.corners().map(|corner| self.local(corner.position()));
+        // Thirds, near enough: 21,845 / 2¹⁶, of sums below 2¹⁷ / 2³.
+        let third = |k: usize| (((a[k] + b[k] + c[k]) >> 3) * 21_845) >> 13;
+        self.shade_at(&normal, &[third(0), third(1), third(2)], face.provoking().color()).into()
+    }
+}
