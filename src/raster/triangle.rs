@@ -90,7 +90,7 @@ pub struct Spans<'v> {
 }
 
 impl<'v> Spans<'v> {
-    /// Begins in front of the first span in the rows of `clip`. Other parameters are those of [`spans`].
+    /// Starts ahead of the first span in the rows of `clip`. Other parameters are those of [`spans`].
     #[inline]
     pub fn new(v: &'v [ScreenVertex; 3], area: i64, clip: &Range<i32>) -> Self {
         let outline = Outline::new(v, area, clip);

@@ -1,5 +1,5 @@
-//! Stages 2 to 7 of [the pipeline](crate#the-pipeline), as far as they depend on shaders: a mesh's triangles become triangles on
-//! the screen, drawn or recorded. What is alike for all shaders is in `scan`.
+//! Stages 2 to 7 of [the pipeline](crate#the-pipeline), as far as they depend on shaders: a mesh's triangles come in,
+//! and go out as triangles on the screen, drawn or recorded. The part that is the same for all shaders is in `scan`.
 
 use super::painter::RasterHooks;
 use super::scan::{PendingFace, Scan, ScanEvent, ScreenTriangle};
@@ -18,38 +18,39 @@ use core::ops::Range;
 use heapless::deque::Deque;
 use heapless::vec::{Vec, VecView};
 
-/// A corner of a clipped polygon on the screen. Its varyings are made when it is drawn, or recorded.
+/// A corner of a clipped polygon on the screen. Its varyings are computed when it is drawn or recorded.
 struct FanCorner {
     vertex: PackedVertex,
-    /// Parts of the triangle's corners in it, see [`ClipCorner`].
+    /// Weights of the triangle's three corners, see [`ClipCorner`].
     weights: [i32; 3],
-    /// See [`inverse_w`]; 0 where nothing is perspective-correct.
+    /// See [`inverse_w`]; 0 if no varying is perspective-correct.
     inverse_w: u32,
 }
 
-type Beyond<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut ScreenTriangle, Outcode);
+type ClampedSlabs<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut ScreenTriangle, Outcode);
 
-/// What a draw does only by some states, as functions chosen where the state is known: a program links what its states ask for.
+/// Work that a draw does only in some states, as function pointers that are set where the state is known. So a program
+/// links only the functions that its states need.
 pub struct AssemblyHooks<F: Framebuffer, S: Shader<F::Format>> {
     /// Hooks of stages 8 and 9, set-up and spans.
     pub(super) raster: RasterHooks<F, S>,
     pub(super) depth_scale: Option<fn(&mut Transform, DepthScale)>,
-    /// Stage 4, clipping: draws the parts of a triangle in front of the near and beyond the far plane.
-    beyond: Option<Beyond<F, S>>,
+    /// Stage 4, clipping: draws the parts of a triangle in front of the near plane and beyond the far plane.
+    clamped_slabs: Option<ClampedSlabs<F, S>>,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> AssemblyHooks<F, S> {
-    /// For [`State::DEFAULT`].
-    pub(super) const DEFAULT: Self = Self { raster: RasterHooks::DEFAULT, depth_scale: None, beyond: None };
+    /// Hooks for [`State::DEFAULT`].
+    pub(super) const DEFAULT: Self = Self { raster: RasterHooks::DEFAULT, depth_scale: None, clamped_slabs: None };
 
-    /// For any state.
+    /// Hooks for any state.
     pub(super) const ANY: Self = Self {
         raster: RasterHooks::ANY,
         depth_scale: Some(Transform::set_depth_scale),
-        beyond: Some(|assembly, triangle, codes| assembly.beyond(triangle, codes)),
+        clamped_slabs: Some(|assembly, triangle, codes| assembly.clip_clamped_slabs(triangle, codes)),
     };
 
-    /// For a state.
+    /// Returns the hooks that a state needs.
     #[inline(always)]
     pub(super) fn of(state: &State) -> Self {
         Self {
@@ -58,15 +59,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> AssemblyHooks<F, S> {
                 DepthScale::Perspective => None,
                 DepthScale::Uniform { .. } => Self::ANY.depth_scale,
             },
-            beyond: match state.range {
+            clamped_slabs: match state.range {
                 DepthRange::Clip => None,
-                DepthRange::ClampFar | DepthRange::Clamp => Self::ANY.beyond,
+                DepthRange::ClampFar | DepthRange::Clamp => Self::ANY.clamped_slabs,
             },
         }
     }
 }
 
-/// One draw.
+/// The assembly of one draw.
 pub(super) struct Assembly<'s, 'a, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) scene: &'s mut Scene<'a, F>,
     pub(super) state: &'s State,
@@ -74,20 +75,20 @@ pub(super) struct Assembly<'s, 'a, F: Framebuffer, S: Shader<F::Format>> {
     pub(super) mesh: &'s Mesh<'s>,
     pub(super) shader: &'s S,
     pub(super) transform: &'s Transform,
-    /// Which faces are left out.
+    /// The faces that are left out.
     pub(super) culling: Culling,
-    /// Pixels that can be drawn in this phase.
+    /// The pixels that can be drawn in this phase.
     pub(super) clip: PixelRect,
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
-    /// Takes the parts of a mesh that can be seen.
-    pub(super) fn parts(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
+    /// Handles the triangles of those nodes of a mesh's hierarchy that may be visible.
+    pub(super) fn hierarchy(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
         let mut next = 0;
         while next < nodes.len() {
-            let some = nodes.iter().skip(next);
+            let tested = nodes.iter().skip(next);
             let mut visible = self.scene.visible_nodes(self.state, nodes, mvp, &mut next);
-            for node in some.take(32) {
+            for node in tested.take(32) {
                 if visible & 1 != 0 {
                     let first = usize::from(node.first_triangle);
                     self.triangles(first..first + usize::from(node.triangles));
@@ -97,7 +98,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Takes triangles one by one.
+    /// Handles the triangles with these numbers.
     #[inline(never)]
     pub(super) fn triangles(&mut self, numbers: Range<usize>) {
         if S::CULL_DISTANCES > 0 || !self.scene.keeps_vertices() {
@@ -107,7 +108,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Where vertices are kept: scans the triangles, and handles each that the scan stops at.
+    /// Scans the triangles of a draw that keeps its vertices, and handles each triangle that the scan stops at.
     #[inline(never)]
     fn scan(&mut self, numbers: Range<usize>) {
         let mut scan = Scan::new(self.mesh, numbers, self.culling, self.scene.is_recording());
@@ -139,7 +140,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Where there is nothing to scan, because vertices are not kept or cull distances come first: takes each triangle.
+    /// Handles every triangle, without a scan: for draws that do not keep their vertices or have cull distances.
     #[inline(never)]
     fn each_triangle(&mut self, numbers: Range<usize>) {
         let mut triangle = ScreenTriangle::NONE;
@@ -166,19 +167,19 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             // Stage 4, clipping.
             ScanEvent::NeedsClip(codes) => {
                 self.clip(triangle, codes, DepthSlab::Inside);
-                if let Some(beyond) = self.hooks.beyond {
-                    beyond(self, triangle, codes);
+                if let Some(clip) = self.hooks.clamped_slabs {
+                    clip(self, triangle, codes);
                 }
             }
             ScanEvent::NeedsVertices | ScanEvent::Done => {}
         }
     }
 
-    /// Shades the vertices of a triangle that needs them, and tells what the triangle is then: [`ScanEvent::Done`] if it cannot be
-    /// seen.
+    /// Shades the vertices of a triangle that needs them, and returns what has to be done with the triangle:
+    /// [`ScanEvent::Done`] if it cannot be visible.
     #[inline(never)]
     fn shade_corners(&mut self, triangle: &mut ScreenTriangle) -> ScanEvent {
-        // Stage 2, vertices: once per vertex where the results are kept.
+        // Stage 2, vertices: once per vertex if the results are kept.
         let mut visible = true;
         let (mut common, mut all) = (!self.state.range.clamped().0, 0);
         for (v, index) in triangle.v.iter_mut().zip(&triangle.corners) {
@@ -203,7 +204,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Stage 7, faces, of a single triangle on the screen: it is recorded, or drawn.
+    /// Stage 7, faces, of a single triangle on the screen. Records or draws the triangle.
     #[inline(never)]
     fn shade_face(&mut self, triangle: &ScreenTriangle) {
         let word = self.face(triangle);
@@ -225,7 +226,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         ))
     }
 
-    /// The vertex stage's result for a vertex, from the records if it is there.
+    /// Returns the vertex stage's result for a vertex: from the records, if it is there.
     #[inline]
     fn packed_vertex(&mut self, index: u16) -> PackedVertex {
         if !self.scene.keeps_vertices() {
@@ -235,7 +236,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         if packed.is_unshaded() { self.shade(index.into()) } else { packed }
     }
 
-    /// Stage 2, vertices: shades all of them, where there is room to keep the results.
+    /// Stage 2, vertices: shades all vertices of a draw that keeps them.
     #[inline(never)]
     pub(super) fn shade_all(&mut self) {
         let Self { scene, mesh, shader, transform, .. } = self;
@@ -251,7 +252,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// The vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
+    /// Returns the vertex stage's result for a vertex: transformed, projected and snapped, or its outcode.
     #[inline(never)]
     pub(super) fn shade(&mut self, index: usize) -> PackedVertex {
         self.scene.stats.vertices = self.scene.stats.vertices.wrapping_add(1);
@@ -273,14 +274,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         self.stage().transformed(index)
     }
 
-    /// Draws or records the parts of a triangle that have their depth clamped.
-    pub(super) fn beyond(&mut self, triangle: &mut ScreenTriangle, codes: Outcode) {
+    /// Draws or records the parts of a triangle whose depth is clamped.
+    pub(super) fn clip_clamped_slabs(&mut self, triangle: &mut ScreenTriangle, codes: Outcode) {
         for slab in self.state.range.clamped_slabs(codes) {
             self.clip(triangle, codes, slab);
         }
     }
 
-    /// Clips a triangle, and draws or records what is left of it in one slab of depth.
+    /// Clips a triangle, and draws or records the part that lies in one slab of depth.
     #[inline]
     fn clip(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, slab: DepthSlab) {
         if S::CLIP_DISTANCES > 0 {
@@ -290,7 +291,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Clips a triangle, which has up to `N` corners then, and draws or records a fan of triangles about the first corner.
+    /// Clips a triangle to a polygon of up to `N` corners, and draws or records it as a fan of triangles about its
+    /// first corner.
     #[inline(never)]
     fn clip_to_fan<const N: usize>(&mut self, triangle: &mut ScreenTriangle, codes: Outcode, slab: DepthSlab) {
         let mut corners = Vec::<FanCorner, N>::new();
@@ -309,13 +311,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                     self.draw_corners(triangle, [first, previous, corner]);
                 }
             }
-            // The first corner stays; the last one is the next triangle's second.
+            // The first corner stays. The last corner becomes the second one of the next triangle.
             let place = usize::from(k > 0);
             (triangle.v[place], indices[place]) = (triangle.v[2], indices[2]);
         }
     }
 
-    /// Puts a corner of a clipped triangle into the records.
+    /// Stores a corner of a clipped triangle in the records, and returns its index.
     #[inline(never)]
     fn store_corner(&mut self, corners: [u16; 3], corner: &FanCorner) -> u16 {
         let index = self.scene.records.push_vertex();
@@ -324,7 +326,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         index
     }
 
-    /// Draws a triangle of a fan.
+    /// Draws one triangle of a fan.
     #[inline(never)]
     fn draw_corners(&mut self, triangle: &ScreenTriangle, [a, b, c]: [&FanCorner; 3]) {
         let varyings = |corner| self.corner_varyings(triangle.corners, corner);
@@ -335,11 +337,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     /// Returns the varyings at a corner of a clipped triangle.
     fn corner_varyings(&self, corners: [u16; 3], corner: &FanCorner) -> S::Varyings {
         let varyings = self.weighted_varyings(corners, &corner.weights, corner.inverse_w);
-        // Without records they are rounded as the records would, so that the picture is the same.
+        // Without records, varyings are rounded as records would round them, so that the picture is equal.
         if self.scene.is_recording() { varyings } else { rounded::<S>(&varyings) }
     }
 
-    /// Returns the varyings at a point that the clipper made, before they are packed.
+    /// Returns the varyings at a corner that the clipper made, before they are packed.
     #[inline(never)]
     fn weighted_varyings(&self, corners: [u16; 3], weights: &[i32; 3], inverse_w: u32) -> S::Varyings {
         let vertex = |index: u16| self.shader.vertex(&VertexRef::new(self.mesh, usize::from(index)));
@@ -356,7 +358,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         rounded::<S>(&self.weighted_varyings([i, j, j], &end.weights, inverse_w(&end.vertex)))
     }
 
-    /// Whether one of the cull distances is negative at all corners.
+    /// Returns whether one of the cull distances is negative at all three corners.
     #[inline]
     fn is_culled_by_distance(&self, corners: [u16; 3]) -> bool {
         let [a, b, c] = corners.map(|k| self.shader.distances(&VertexRef::new(self.mesh, usize::from(k))));
@@ -364,8 +366,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         all.skip(S::CLIP_DISTANCES).take(S::CULL_DISTANCES).any(|sign| sign < 0)
     }
 
-    /// Clips a triangle and projects the corners of what is left. In a function of its own, so that the polygon in clip space
-    /// has left the stack when the fan is drawn.
+    /// Clips a triangle and projects the corners of the remaining polygon. Not inlined, so that the polygon in clip
+    /// space is no longer on the stack when the fan is drawn.
     #[inline(never)]
     fn clipped<const N: usize>(
         &self,
@@ -390,13 +392,13 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         project_corners(&clipping, self.transform, S::Varyings::PERSPECTIVE > 0, fan);
     }
 
-    /// The varyings of a vertex, with 1 / w if they take it.
+    /// Returns the varyings of a vertex, with 1 / w if any of them is perspective-correct.
     #[inline]
     fn vertex(&self, index: usize) -> S::Varyings {
         self.stage().varyings(index)
     }
 
-    /// Returns the varyings of a vertex, as the records give them back.
+    /// Returns the varyings of a vertex, rounded as the records round them.
     pub(super) fn varyings(&self, index: u16) -> S::Varyings {
         if self.scene.keeps_vertices() {
             return self.scene.records.varyings::<S>(index);
@@ -426,7 +428,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
 #[inline(never)]
 fn project_corners(clipping: &Clipping<'_>, transform: &Transform, perspective: bool, fan: &mut VecView<FanCorner>) {
     for ClipCorner { vertex, weights } in clipping.corners() {
-        // All of them can be projected, as nothing behind the eye is left.
+        // All corners can be projected, because clipping has left no corner behind the eye.
         let projected = transform.project(vertex).unwrap_or_default();
         let inverse_w = if perspective { inverse_w(vertex) } else { 0 };
         let vertex = PackedVertex::new(&Projected::OnScreen(projected));
@@ -434,7 +436,7 @@ fn project_corners(clipping: &Clipping<'_>, transform: &Transform, perspective: 
     }
 }
 
-/// The varyings as the records would give them back.
+/// Rounds varyings as the records would round them, by packing and unpacking.
 #[inline(never)]
 fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let mut words = S::Varyings::ZERO;
@@ -444,16 +446,17 @@ fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     S::load(words)
 }
 
-/// Where all vertices of a mesh are, by the short path.
+/// Stage 2, vertices, of a whole mesh by the short path: projects all positions.
 #[inline(never)]
 fn project_all(transform: &Transform, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
     for (place, point) in places.iter_mut().zip(points) {
-        // Read again each time: to keep all of it at hand there are too few registers.
+        // `black_box` makes the compiler read the transform again per vertex: there are too few registers to hold all
+        // of it.
         *place = PackedVertex::new(&core::hint::black_box(transform).project_quantized(*point).0).words();
     }
 }
 
-/// What the vertex stage works with.
+/// The inputs of the vertex stage.
 struct VertexStage<'s, S> {
     mesh: &'s Mesh<'s>,
     shader: &'s S,
@@ -461,7 +464,7 @@ struct VertexStage<'s, S> {
 }
 
 impl<S: VertexShader> VertexStage<'_, S> {
-    /// Where a vertex is: transformed, projected and snapped, or its outcode.
+    /// Transforms, projects and snaps a vertex, or finds its outcode.
     #[inline(always)]
     fn project(&self, index: usize) -> PackedVertex {
         let projected = if S::DISPLACES {
@@ -471,7 +474,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
         };
         let packed = PackedVertex::new(&projected);
         if S::CLIP_DISTANCES > 0 && self.distances(index).iter().any(|distance| *distance < 0) {
-            // Off the screen, but not by the planes that outcodes know.
+            // The vertex counts as off the screen, because of a distance and not of a plane that outcodes know.
             return PackedVertex::new(&Projected::NeedsClip(Outcode(packed.outcode())));
         }
         packed
@@ -503,7 +506,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
         }
     }
 
-    /// The clip distances of a vertex; those that the shader does not have are 0.
+    /// Returns the clip distances of a vertex. Distances that the shader does not have are 0.
     #[inline]
     fn distances(&self, index: usize) -> [i32; MAX_DISTANCES] {
         let mut distances = self.shader.distances(&VertexRef::new(self.mesh, index));
@@ -511,7 +514,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
         distances
     }
 
-    /// The varyings of a vertex, with 1 / w if they take it.
+    /// Returns the varyings of a vertex, with 1 / w if any of them is perspective-correct.
     #[inline]
     fn varyings(&self, index: usize) -> S::Varyings {
         let mut varyings = self.shader.vertex(&VertexRef::new(self.mesh, index));

@@ -1,4 +1,5 @@
-//! Drawing on the screen's plane: the primitives of the pipeline, from where they are on the screen.
+//! Drawing on the screen's plane: shapes come in by their positions on the screen, and go through the pipeline's set-up
+//! and spans at once. Nothing is recorded.
 
 use super::painter::RasterHooks;
 use super::scene::Scene;
@@ -27,19 +28,19 @@ use embedded_graphics_core::primitives::Rectangle;
 /// ```
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct ScreenPoint {
-    // Raw 24.8 px.
+    // Both coordinates are raw 24.8 px.
     x: i32,
     y: i32,
 }
 
 impl ScreenPoint {
-    /// From coordinates; those beyond ±32,767 px stop there.
+    /// Makes a point from coordinates. Coordinates beyond ±32,767 px are clamped.
     #[must_use]
     pub const fn new(x: Pixels, y: Pixels) -> Self {
         Self::from_raw(x.to_bits(), y.to_bits())
     }
 
-    /// From raw 24.8 bits, clamped alike.
+    /// Makes a point from raw 24.8 bits, clamped as in [`new`](Self::new).
     const fn from_raw(x: i32, y: i32) -> Self {
         const fn stop(c: i32) -> i32 {
             const LIMIT: i32 = (1 << 23) - 1;
@@ -54,32 +55,32 @@ impl ScreenPoint {
         Self { x: stop(x), y: stop(y) }
     }
 
-    /// The top left corner of pixel (x, y): where a shape of whole pixels begins or ends.
+    /// Returns the top left corner of pixel (x, y): the place where a shape of whole pixels begins or ends.
     #[must_use]
     pub const fn corner(x: i16, y: i16) -> Self {
         Self::from_raw(256 * x as i32, 256 * y as i32)
     }
 
-    /// The centre of pixel (x, y): where a line begins or ends.
+    /// Returns the centre of pixel (x, y): the place where a line begins or ends.
     #[must_use]
     pub const fn center(x: i16, y: i16) -> Self {
         Self::from_raw(256 * x as i32 + 128, 256 * y as i32 + 128)
     }
 
-    /// Distance from the left edge of the screen.
+    /// Returns the distance from the left edge of the screen.
     #[must_use]
     pub const fn x(self) -> Pixels {
         Pixels::from_bits(self.x)
     }
 
-    /// Distance from the top edge of the screen.
+    /// Returns the distance from the top edge of the screen.
     #[must_use]
     pub const fn y(self) -> Pixels {
         Pixels::from_bits(self.y)
     }
 }
 
-/// The centre of a pixel; coordinates beyond ±32,767 px stop there.
+/// Takes the centre of a pixel. Coordinates beyond ±32,767 px are clamped.
 impl From<Point> for ScreenPoint {
     fn from(pixel: Point) -> Self {
         let center = |c: i32| c.clamp(-(1 << 15), 1 << 15) * 256 + 128;
@@ -87,14 +88,14 @@ impl From<Point> for ScreenPoint {
     }
 }
 
-/// The place of a vertex, for shapes that are drawn about it.
+/// Takes the position of a vertex, for shapes that are drawn about it.
 impl From<ScreenVertex> for ScreenPoint {
     fn from(vertex: ScreenVertex) -> Self {
         Self::from_raw(vertex.x, vertex.y)
     }
 }
 
-/// The pixel that a point lies in.
+/// Takes the pixel that a point lies in.
 impl From<ScreenPoint> for Point {
     fn from(point: ScreenPoint) -> Self {
         Self::new(point.x >> 8, point.y >> 8)
@@ -108,26 +109,27 @@ impl defmt::Format for ScreenPoint {
     }
 }
 
-/// Draws shapes on the screen's plane, see [`Scene::canvas`].
+/// A drawing surface on the screen's plane, see [`Scene::canvas`].
 ///
-/// Coverage follows the same rules as in space: shapes that share an edge leave no gap and draw no pixel twice. Nothing is
-/// kept in the records; shapes are drawn when they are called, in each strip, and rejected by their rows.
+/// Coverage follows the rules that hold in space: shapes that share an edge leave no gap and draw no pixel twice.
+/// Nothing is kept in the records: each call draws its shape, in each strip anew, and rejects it by its rows if it lies
+/// outside of the strip.
 #[derive(Debug)]
 pub struct Canvas<'c, 'a, F> {
     scene: &'c mut Scene<'a, F>,
-    /// Pixels that may be drawn, in the strip; none while a band is recorded.
+    /// Pixels of the strip that may be drawn; none while a band is recorded.
     clip: PixelRect,
-    /// All that may be drawn without a scissor.
+    /// Pixels that may be drawn without a scissor.
     all: PixelRect,
     state: State,
     z: u16,
 }
 
-/// Neither depth nor winding matter.
+/// State in which neither depth nor winding matters.
 const PAINTED: State = State { cull: Cull::None, depth: DepthState::OFF, ..State::DEFAULT };
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
-    /// The screen's plane, to draw shapes on, over what was drawn before them.
+    /// Returns a canvas to draw shapes on, over everything that was drawn before.
     ///
     /// ```
     /// # use embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
@@ -149,14 +151,15 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         self.canvas_with(0, DepthState::OFF)
     }
 
-    /// The screen's plane at a depth: shapes are drawn where that is nearer than what is there, and leave it.
+    /// Returns a canvas at a depth. A shape is drawn where this depth is nearer than the depth buffer's, and stores it
+    /// there.
     ///
-    /// [`project`](Self::project) tells the depth of a point. Without a depth buffer this is [`canvas`](Self::canvas).
+    /// [`project`](Self::project) tells the depth of a point. Without a depth buffer, this is [`canvas`](Self::canvas).
     pub fn canvas_at(&mut self, z: u16) -> Canvas<'_, 'a, F> {
         self.canvas_with(z, DepthState::LESS)
     }
 
-    /// The screen's plane at a depth, with a depth test of one's own.
+    /// Returns a canvas at a depth, with any depth test.
     pub fn canvas_with(&mut self, z: u16, depth: DepthState) -> Canvas<'_, 'a, F> {
         let rows = if self.is_recording() { 0..0 } else { self.target.rows.clone() };
         let clip = self.clip_rect(&rows);
@@ -165,13 +168,13 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 }
 
 impl<F: Framebuffer> Canvas<'_, '_, F> {
-    /// Draws at another depth from here on, by a depth test of one's own; the scissor stays.
+    /// Sets another depth and another depth test for all that follows. The scissor stays.
     pub const fn set_depth(&mut self, z: u16, depth: DepthState) {
         self.z = z;
         self.state.depth = depth;
     }
 
-    /// Draws inside of this rectangle only from here on, or anywhere.
+    /// Limits all that follows to a rectangle, or removes the limit.
     pub fn set_scissor(&mut self, area: Option<&Rectangle>) {
         self.clip = area.map_or(self.all.clone(), |area| self.all.intersection(&pixels(area)));
     }
@@ -181,7 +184,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         self.block(&pixels(area), color.into());
     }
 
-    /// Draws a square with sides of `size`: a marker.
+    /// Draws a square with sides of `size`, as a marker.
     pub fn point(&mut self, center: ScreenPoint, size: Pixels, color: impl Into<Rgb888>) {
         self.block(&square((center.x, center.y), size.to_bits().max(0) as u32), color.into());
     }
@@ -201,19 +204,20 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         );
     }
 
-    /// Fills a convex polygon; its corners may go round either way.
+    /// Fills a convex polygon, whose corners may go round either way.
     pub fn polygon(&mut self, corners: &[ScreenPoint], color: impl Into<Rgb888>) {
         let color = color.into();
         self.fan(corners, |corner| (*corner, []), &Flat::unlit(color), packed(channels(color)));
     }
 
-    /// Fills a convex polygon with the colours of its corners: with more than three, as a fan of triangles about the first.
+    /// Fills a convex polygon with the colours of its corners. A polygon with more than three corners is drawn as a fan
+    /// of triangles about the first corner.
     pub fn gradient(&mut self, corners: &[(ScreenPoint, Rgb888)]) {
         self.fan(corners, |(corner, color)| (*corner, Gouraud::varyings(*color)), &Gouraud::vertex_colors(), 0);
     }
 
-    /// Fills a convex polygon with a shader, whose varyings are given at the corners, and which gets `face` as its face's
-    /// word. Its vertex stage is not called.
+    /// Fills a convex polygon with a shader. The shader's varyings are given at the corners, and its face word is
+    /// `face`: its vertex stage is not called.
     pub fn polygon_with<S: Shader<F::Format>>(
         &mut self,
         corners: &[(ScreenPoint, S::Varyings)],
@@ -255,7 +259,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         self.line_with(a, b, color, &Thin);
     }
 
-    /// Draws a line with a stroke of one's choice.
+    /// Draws a line with any stroke.
     pub fn line_with(&mut self, a: ScreenPoint, b: ScreenPoint, color: impl Into<Rgb888>, stroke: &impl Stroke) {
         let color = color.into();
         self.segment(&[(a, []), (b, [])], &Flat::unlit(color), packed(channels(color)), stroke);
@@ -267,7 +271,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         self.segment(&ends, &Gouraud::vertex_colors(), 0, stroke);
     }
 
-    /// Draws lines from point to point; thin ones draw each pixel of a joint once.
+    /// Draws lines from point to point. Thin lines draw the pixel of each joint once.
     pub fn polyline(&mut self, points: &[ScreenPoint], color: impl Into<Rgb888>, stroke: &impl Stroke) {
         let color = color.into();
         for (a, b) in points.iter().zip(points.get(1..).unwrap_or_default()) {
@@ -275,7 +279,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         }
     }
 
-    /// Draws lines from point to point, and from the last to the first.
+    /// Draws lines from point to point, and one from the last point to the first.
     pub fn outline(&mut self, points: &[ScreenPoint], color: impl Into<Rgb888>, stroke: &impl Stroke) {
         let color = color.into();
         self.polyline(points, color, stroke);
@@ -307,7 +311,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
     }
 }
 
-/// A rectangle of embedded-graphics; what lies beyond the largest screen does not matter.
+/// Converts a rectangle of embedded-graphics. Parts beyond the largest possible screen are cut off.
 fn pixels(area: &Rectangle) -> PixelRect {
     let side = |start: i32, size: u32| {
         let start = start.clamp(-65_536, 65_536);

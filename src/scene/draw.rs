@@ -1,5 +1,5 @@
-//! The calls that draw meshes: [the pipeline](crate#the-pipeline) from top to bottom, stages 1 to 7 in `assemble`, stages 8 to
-//! 11 in `replay`.
+//! The calls that draw meshes: a mesh, a matrix and a shader come in, and go through [the pipeline](crate#the-pipeline)
+//! from top to bottom. Stages 1 to 7 are in `assemble`, stages 8 to 11 in `replay`.
 
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::Painter;
@@ -12,16 +12,18 @@ use crate::target::{Framebuffer, TriangleRecord, Triangles};
 use crate::vertex::{Transform, Varyings};
 
 impl<F: Framebuffer> Scene<'_, F> {
-    /// Draws a mesh: back faces culled, nearer fragments win, clipped at the near and the far plane.
+    /// Draws a mesh with the default state: back faces are culled, nearer fragments win, and triangles are clipped at
+    /// the near and the far plane.
     ///
     /// `mvp` takes object space to clip space: camera · view · model.
     pub fn draw<S: Shader<F::Format>>(&mut self, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
         self.draw_by(&State::DEFAULT, &const { AssemblyHooks::DEFAULT }, mesh, mvp, shader);
     }
 
-    /// Draws a mesh by other rules.
+    /// Draws a mesh by the rules of `state`.
     ///
-    /// A program links the loops for the depth tests that may be asked for: where the state is a constant, its own.
+    /// A program links the loops for all depth tests that `state` may ask for. If `state` is a constant, it links only
+    /// one.
     #[inline]
     pub fn draw_with<S: Shader<F::Format>>(&mut self, state: State, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
         self.draw_by(&state, &AssemblyHooks::of(&state), mesh, mvp, shader);
@@ -60,14 +62,14 @@ impl<F: Framebuffer> Scene<'_, F> {
         let culling = state.culling();
         let mut assembly = Assembly { scene: self, state, hooks, mesh, shader, transform: &transform, culling, clip };
         match mesh.data().hierarchy {
-            // Stages 2 to 7, for each part of the mesh that may be seen: vertices are shaded when triangles ask for them.
-            Some(nodes) if !S::DISPLACES => assembly.parts(nodes, draw.mvp),
+            // Stages 2 to 7, per part of the mesh that may be visible. Vertices are shaded when triangles ask for them.
+            Some(nodes) if !S::DISPLACES => assembly.hierarchy(nodes, draw.mvp),
             _ => {
-                // Stage 2, vertices: all at once, where their results are kept.
+                // Stage 2, vertices: all at once, if their results are kept.
                 if F::RECORDS {
                     assembly.shade_all();
                 }
-                // Stages 3 to 7, from triangle to triangle: assembly, clipping, culling, recording, faces.
+                // Stages 3 to 7, triangle by triangle: assembly, clipping, culling, recording, faces.
                 assembly.triangles(0..mesh.triangle_count());
             }
         }
@@ -89,7 +91,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         let mut varyings = [S::Varyings::ZERO; 3];
         while triangles.replay(last, end, &mut triangle) {
             let [i, j, k] = triangle.corners();
-            // In place: arrays of them are copied.
+            // Loaded in place, because arrays of varyings would be copied when they are returned.
             let [a, b, c] = &mut varyings;
             triangles.varyings::<S>(i, a);
             triangles.varyings::<S>(j, b);

@@ -1,8 +1,9 @@
-//! Lines and points in space.
+//! Lines and points in space: lines or points, a matrix and a shader come in, and pixels of the current strip go out.
 //!
-//! They begin as meshes do, with stage 1 of [the pipeline](crate#the-pipeline), bounds. Their vertices are in the records as those
-//! of meshes are, but no list says which strip they touch: each strip looks at all of them, which takes some 80 instructions
-//! for one that lies elsewhere, and no memory. A vertex is shaded, stage 2, when the first strip meets it.
+//! Draws of lines and points begin as those of meshes do, with stage 1 of [the pipeline](crate#the-pipeline), bounds.
+//! Their vertices are in the records like those of meshes. But no list says which strip a line or point touches: each
+//! strip looks at all of them. This takes some 80 instructions per line that lies elsewhere, and no memory. A vertex is
+//! shaded, stage 2, in the first strip that needs it.
 
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::{Painter, RasterHooks};
@@ -17,11 +18,11 @@ use crate::target::{Framebuffer, PackedVertex};
 use crate::vertex::{DepthSlab, Face, Outcode, ScreenMatrix, ScreenVertex, Side, Transform, clip_line};
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
-    /// Draws lines with a stroke: nearer fragments win, clipped at the near and the far plane.
+    /// Draws lines with a stroke: nearer fragments win, and lines are clipped at the near and the far plane.
     ///
-    /// `mvp` takes object space to clip space: camera · view · model. To the shader, a line is a face without a normal that
-    /// shows its front; its first end is the provoking vertex. Varyings are interpolated along the line, linearly on the
-    /// screen.
+    /// `mvp` takes object space to clip space: camera · view · model. A shader sees a line as a face without a normal
+    /// that shows its front. The line's first end is the provoking vertex. Varyings are interpolated along the line,
+    /// linearly on the screen.
     ///
     /// ```
     /// # use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
@@ -43,9 +44,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Draws lines with a stroke, by the rules of `state`.
     ///
-    /// **Lines on a surface.** A line has the depth of its own points; the surface it outlines has that of its pixels' centres,
-    /// up to half a pixel away in x and in y. So push the surface back, by one step and once its slope, and nothing of its
-    /// own hides a line on it, while what lies nearer still does:
+    /// **Lines on a surface.** A line has the depth of its own points. The surface that it outlines has the depth of
+    /// the centres of its pixels, up to half a pixel away in x and in y. So push the surface back, by one step plus
+    /// once its slope. Then the surface never hides a line that lies on it, and nearer surfaces still hide the line:
     ///
     /// ```
     /// # use zstrip::State;
@@ -53,8 +54,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// # use zstrip::math::Scalar;
     /// const SURFACE: State = State { bias: DepthBias { constant: 1, slope: Scalar::ONE }, ..State::DEFAULT };
     /// ```
-    /// Where surfaces must keep their depths, pull lines forward instead, by a bias of `constant: -1` and more the steeper
-    /// the surface is. For a wireframe with hidden lines removed, draw the surface with
+    /// If surfaces must keep their depths, pull lines forward instead, by a bias of `constant: -1`, or by more for
+    /// steeper surfaces. For a wireframe with hidden lines removed, draw the surface with
     /// [`DepthOnly`](crate::shader::DepthOnly) first.
     pub fn draw_lines_with<S: Shader<F::Format>, K: Stroke>(
         &mut self,
@@ -73,8 +74,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     /// Draws points as squares with sides of `size`: nearer fragments win.
     ///
-    /// A square lies about its vertex and has the vertex's depth. To the shader, a point is a face as a line is. A point in
-    /// front of the near plane or beyond the far plane is not drawn.
+    /// The centre of a square is its vertex, and its depth is the vertex's depth. A shader sees a point as a face, as
+    /// it sees a line. A point in front of the near plane or beyond the far plane is not drawn.
     ///
     /// ```
     /// # use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
@@ -111,8 +112,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         }
     }
 
-    /// Begins a draw of lines or points, and returns whether any of them may be drawn in this strip. While a band is recorded,
-    /// they only get room for their vertices.
+    /// Begins a draw of lines or points, and returns whether any of them may be drawn in this strip. While a band is
+    /// recorded, it only reserves room for their vertices.
     #[inline(never)]
     fn begin_lines(&mut self, draw: &Draw<'_>) -> bool {
         if F::RECORDS && self.phase == Phase::Replay {
@@ -129,14 +130,14 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 }
 
-/// The lines or points of a draw, in a strip.
+/// The lines or points of a draw, in one strip.
 struct LineDraw<'s, 'a, F, S> {
     scene: &'s mut Scene<'a, F>,
     draw: &'s Draw<'s>,
     shader: &'s S,
     /// Pixels of the strip that may be drawn.
     clip: PixelRect,
-    /// Made when a vertex has to be shaded, or a line to be clipped.
+    /// Transform of the vertex stage, made when the first vertex has to be shaded or the first line has to be clipped.
     transform: Option<Transform>,
 }
 
@@ -149,7 +150,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
     #[inline(never)]
     fn lines<K: Stroke>(&mut self, lines: &Lines<'_>, stroke: &K) {
         let reach = stroke.reach();
-        // What a line has to touch, in 24.8.
+        // Borders of the region that a line has to touch, in 24.8.
         let (left, right) = (256 * (self.clip.x.start - reach), 256 * (self.clip.x.end + reach));
         let (top, bottom) = (256 * (self.clip.y.start - reach), 256 * (self.clip.y.end + reach));
         self.scene.stats.lines = self.scene.stats.lines.wrapping_add(lines.count() as u32);
@@ -173,12 +174,13 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
         }
     }
 
-    /// The next line from `number` on that may have pixels in these rows: all others have both of their ends above, or both
-    /// below them. Many lines are passed over in each strip, so this is a loop of its own.
+    /// Returns the next line, from `number` on, that may have pixels in the rows from `top` to `bottom`. The lines that
+    /// it passes over have both ends above or both ends below these rows. Each strip passes over many lines, so this is
+    /// a loop of its own.
     #[inline(never)]
     fn next_near(&self, lines: &Lines<'_>, mut number: usize, top: i32, bottom: i32) -> Option<(usize, [u16; 2])> {
         let positions = self.scene.records.positions();
-        // Coordinates have 24 bits; those of vertices that are not on the screen are the least there are.
+        // Coordinates have 24 bits. Vertices that are not on the screen have the least possible coordinates.
         let (top, bottom) = (top.max(-(1 << 23)) << 8, (bottom.min((1 << 23) - 1) << 8) | 0xFF);
         loop {
             let [i, j] = lines.line(number)?;
@@ -219,14 +221,14 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
         }
     }
 
-    /// The vertex stage's result for a vertex.
+    /// Returns the vertex stage's result for a vertex.
     #[inline]
     fn packed_vertex(&mut self, index: usize) -> PackedVertex {
         let packed = self.scene.records.packed_vertex(index);
         if packed.is_unshaded() { self.assembly().shade(index) } else { packed }
     }
 
-    /// The vertex stage.
+    /// Returns the vertex stage, and makes the transform if there is none yet.
     #[inline(never)]
     fn assembly(&mut self) -> Assembly<'_, 'a, F, S> {
         let Self { scene, draw, shader, clip, transform } = self;
@@ -251,7 +253,7 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
     /// Returns the varyings of a vertex.
     fn varyings(&mut self, index: u16) -> S::Varyings {
         if self.scene.keeps_vertices() {
-            // The transform may not have been made, nor is it wanted.
+            // The transform is not needed, and may not have been made.
             return self.scene.records.varyings::<S>(index);
         }
         self.assembly().varyings(index)
@@ -277,7 +279,8 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
         stroke.draw(&mut self.painter(), ends, face);
     }
 
-    /// A line with an end outside: cut anew in each strip, which keeps the records as they are.
+    /// Draws a line with an end outside of the planes. It is cut anew in each strip, so that the records stay as they
+    /// are.
     #[inline(never)]
     fn clip<K: Stroke>(&mut self, codes: [u8; 2], corners: [u16; 2], number: usize, stroke: &K) {
         if codes[0] & codes[1] & !self.draw.state.range.clamped().0 != 0 {
@@ -286,20 +289,20 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
         }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1]);
-        for part in [DepthSlab::Inside].into_iter().chain(self.draw.state.range.clamped_slabs(all)) {
-            if let Some(ends) = self.cut(corners, all, part) {
+        for slab in [DepthSlab::Inside].into_iter().chain(self.draw.state.range.clamped_slabs(all)) {
+            if let Some(ends) = self.cut(corners, all, slab) {
                 self.draw(&ends, corners, number, stroke);
             }
         }
     }
 
-    /// What is left of a part of a line, on the screen. In a function of its own, so that its ends in clip space have left
-    /// the stack when it is drawn.
+    /// Cuts a line to one slab of depth, and returns the ends of the remaining part on the screen. Not inlined, so that
+    /// the ends in clip space are no longer on the stack when the line is drawn.
     #[inline(never)]
-    fn cut(&mut self, corners: [u16; 2], codes: Outcode, part: DepthSlab) -> Option<[(ScreenVertex, S::Varyings); 2]> {
+    fn cut(&mut self, corners: [u16; 2], codes: Outcode, slab: DepthSlab) -> Option<[(ScreenVertex, S::Varyings); 2]> {
         let assembly = self.assembly();
         let [i, j] = corners.map(usize::from);
-        let [a, b] = clip_line([assembly.transformed(i), assembly.transformed(j)], codes, part)?;
+        let [a, b] = clip_line([assembly.transformed(i), assembly.transformed(j)], codes, slab)?;
         let (from, to) = (assembly.transform.project(&a.vertex)?, assembly.transform.project(&b.vertex)?);
         Some([(from, assembly.end_varyings(corners, &a)), (to, assembly.end_varyings(corners, &b))])
     }

@@ -1,5 +1,7 @@
-//! The one place that calls every stage of [the pipeline](crate#the-pipeline), in order: meshes in `draw`, lines and points in
-//! `lines`, shapes on the screen in `canvas`.
+//! The one place that calls every stage of [the pipeline](crate#the-pipeline), in order. Meshes, lines, points and
+//! shapes come in, and pixels of the current strip, or records for the strips of a band, go out.
+//!
+//! Meshes are drawn in `draw`, lines and points in `lines`, and shapes on the screen in `canvas`.
 
 mod assembly;
 mod canvas;

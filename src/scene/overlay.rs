@@ -1,4 +1,5 @@
-//! 2-D drawing among the 3-D by embedded-graphics: targets over the strip at hand, and where on the screen a point of the world is.
+//! 2-D drawing among 3-D: embedded-graphics targets over the current strip, and conversions between points in space and
+//! positions on the screen.
 
 use super::canvas::ScreenPoint;
 use super::scene::Scene;
@@ -9,27 +10,29 @@ use crate::span::{DepthDyn, DepthLess, DepthOff, DepthState, DepthTest};
 use crate::target::{Framebuffer, Overlay};
 use crate::vertex::{Projected, ScreenVertex, Transform};
 
-/// What a transform of 16.16 positions is made for.
+/// A mesh without vertices, for transforms of 16.16 positions.
 static POINTS: Mesh<'static> = Mesh::constant(MeshData::new(Positions::Exact(&[])));
 
 impl<F: Framebuffer> Scene<'_, F> {
-    /// An embedded-graphics target for the whole screen: what is drawn on it covers what has been drawn before, whatever
-    /// the depth is, and leaves depths as they are.
+    /// Returns an embedded-graphics target for the whole screen. Drawings on it cover everything that was drawn before,
+    /// whatever its depth is, and leave depths unchanged.
     ///
-    /// Drawing on it takes its turn among the draws of meshes. Like them it must be the same each time the closure is called,
-    /// though nothing checks that; it is not counted in [`Stats`](crate::target::Stats).
+    /// Drawing on the target takes its turn among the draws of meshes. Like them, it must be identical each time the
+    /// closure is called, though nothing checks this. It is not counted in [`Stats`](crate::target::Stats).
     pub fn overlay(&mut self) -> Overlay<'_, F, DepthOff> {
         self.target_at(0, DepthOff)
     }
 
-    /// The same at a depth: pixels are drawn where that is nearer than what is there, and leave it.
+    /// Returns an embedded-graphics target at a depth. A pixel is drawn where this depth is nearer than the depth
+    /// buffer's, and stores it there.
     ///
-    /// [`project`](Self::project) tells the depth of a point. Without a depth buffer this is an overlay.
+    /// [`project`](Self::project) tells the depth of a point. Without a depth buffer, this is
+    /// [`overlay`](Self::overlay).
     pub fn at_depth(&mut self, z: u16) -> Overlay<'_, F, DepthLess> {
         self.target_at(z, DepthLess)
     }
 
-    /// The same with a depth test of one's own.
+    /// Returns an embedded-graphics target at a depth, with any depth test.
     pub fn at_depth_with(&mut self, z: u16, state: DepthState) -> Overlay<'_, F, DepthDyn> {
         self.target_at(z, DepthDyn::new(state))
     }
@@ -41,16 +44,18 @@ impl<F: Framebuffer> Scene<'_, F> {
         Overlay::new(target, self.screen, z, test)
     }
 
-    /// Where a point is on the screen, bit for bit where a vertex there would be, with its depth; `None` if it is in front of
-    /// the near plane, beyond the far plane or farther off the screen than 32,767 px.
+    /// Returns the position of a point on the screen and its depth: bit for bit the position of a vertex at this point.
+    /// `None` if the point is in front of the near plane, beyond the far plane or farther off the screen than 32,767
+    /// px.
     ///
-    /// The answer is the same each time the closure is called.
+    /// The result is the same each time the closure is called.
     #[must_use]
     pub fn project(&self, point: Vec3, mvp: &Projective) -> Option<ScreenVertex> {
         self.project_with(State::DEFAULT, point, mvp)
     }
 
-    /// The same with the depth that [`State::depth_scale`] leads to. Neither [`State::range`] nor [`State::bias`] counts.
+    /// Returns the position of a point on the screen, with the depth that [`State::depth_scale`] leads to.
+    /// [`State::range`] and [`State::bias`] have no effect.
     #[inline(never)]
     #[must_use]
     pub fn project_with(&self, state: State, point: Vec3, mvp: &Projective) -> Option<ScreenVertex> {
@@ -62,26 +67,28 @@ impl<F: Framebuffer> Scene<'_, F> {
         }
     }
 
-    /// Returns the point of object space that is drawn at a place on the screen and at a depth, as [`project`](Self::project)
-    /// tells both of a point: what lies under a finger. `None` if `mvp` has no inverse, or the point is out of range.
+    /// Returns the point of object space that is drawn at a position on the screen and at a depth: for example, the
+    /// point under a finger. This inverts [`project`](Self::project). `None` if `mvp` has no inverse, or the point is
+    /// out of range.
     ///
-    /// A depth stands for all points that are rounded to it: `DepthPrecision` tells how far apart they are.
+    /// A depth stands for all points that are rounded to it. [`DepthPrecision`](crate::math::DepthPrecision) tells how
+    /// far apart they are.
     ///
     /// # Format
     /// Clip coordinates are computed in 32.32, and rounded down; the sums have 128 bits.
     #[inline(never)]
     pub fn unproject(&self, at: ScreenPoint, z: u16, mvp: &Projective) -> Option<Vec3> {
         let inverse = mvp.inverse()?;
-        // Places in 24.8: x of clip space is 2 (X - left) / width - 1.
+        // Positions are in 24.8. x of clip space is 2 (X - left) / width - 1.
         let across = |at: Pixels, start: i16, size: u16| {
             let from_start = i64::from(at.to_bits()) - 256 * i64::from(start);
-            ((from_start << 25).checked_div(size.into())).map(|part| i128::from(part - (1 << 32)))
+            ((from_start << 25).checked_div(size.into())).map(|fraction| i128::from(fraction - (1 << 32)))
         };
         let x = across(at.x(), self.viewport.x(), self.viewport.width())?;
         let y = -across(at.y(), self.viewport.y(), self.viewport.height())?;
         let z = (i128::from(z) << 32) / 65_535;
         let sum = |[a, b, c, d]: &[i64; 4]| {
-            // 64 by less than 48 bits each.
+            // Products of 64 bits and fewer than 48 bits.
             (i128::from(*a) * x + i128::from(*b) * y + i128::from(*c) * z + (i128::from(*d) << 32)) >> 32
         };
         let [rx, ry, rz, rw] = inverse.rows();

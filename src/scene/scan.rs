@@ -1,5 +1,5 @@
-//! Stages 3, 5 and 6 of [the pipeline](crate#the-pipeline): assembles a mesh's triangles one after the other, culls those that
-//! cannot be seen, and records the others. One code for all shaders.
+//! Stages 3, 5 and 6 of [the pipeline](crate#the-pipeline): assembles a mesh's triangles one after the other, culls the
+//! ones that cannot be visible, and records the others. This code is compiled once, for all shaders.
 
 use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
@@ -8,10 +8,10 @@ use crate::target::{PackedVertex, Records, Stats, StripRows};
 use crate::vertex::{Outcode, ScreenVertex, signed_area, small};
 use core::ops::Range;
 
-/// A pass over the triangles of a mesh: where it is, and the triangle that it stopped at.
+/// A pass over the triangles of a mesh: its position, and the triangle that it stopped at.
 pub(super) struct Scan<'m> {
     mesh: &'m Mesh<'m>,
-    /// Those to come, if the mesh is an indexed list.
+    /// Indices of the triangles to come, if the mesh is an indexed list.
     list: &'m [u16],
     next: usize,
     end: usize,
@@ -20,8 +20,8 @@ pub(super) struct Scan<'m> {
     pub(super) triangle: ScreenTriangle,
 }
 
-/// Placeholder for a recorded triangle's face word, until `shade_faces` fills it: the number of the next triangle of the mesh,
-/// and below it the sign of the triangle's area.
+/// Placeholder for a recorded triangle's face word, until `shade_faces` fills it. The upper bits hold the number of the
+/// mesh's next triangle, and the lowest bit the sign of this triangle's area.
 #[derive(Clone, Copy)]
 pub(super) struct PendingFace(pub(super) u32);
 
@@ -31,46 +31,46 @@ impl PendingFace {
         Self((next as u32) << 1 | area as u32 >> 31)
     }
 
-    /// The triangle's number, and an area of the same sign as its.
+    /// Returns the triangle's number, and an area with the sign of the triangle's area.
     #[inline]
     pub(super) const fn parts(self) -> (usize, i64) {
         ((self.0 as usize >> 1).wrapping_sub(1), if self.0 & 1 == 0 { 1 } else { -1 })
     }
 }
 
-/// A triangle of the mesh on the screen, as far as it is known: the one a scan stopped at, or a triangle of a fan.
+/// A triangle of the mesh on the screen: the one that a scan stopped at, or a triangle of a fan.
 pub(super) struct ScreenTriangle {
-    /// Its number in the mesh, and its vertices.
+    /// The triangle's number in the mesh, and its vertices.
     pub(super) number: u16,
     pub(super) corners: [u16; 3],
-    /// Where it is; a part of it, if it has to be clipped.
+    /// Vertices on the screen; those of one triangle of the fan, if the triangle is clipped.
     pub(super) v: [ScreenVertex; 3],
-    /// Twice the signed area; not 0.
+    /// Twice the signed area; never 0 once the triangle has passed culling.
     pub(super) area: i64,
-    /// The first row it can have a pixel in.
+    /// The first row that the triangle can have a pixel in.
     pub(super) row: i32,
 }
 
 /// Reasons why a scan stops.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum ScanEvent {
-    /// At a triangle on the screen that may be seen, to be drawn.
+    /// The scan stopped at a triangle on the screen that may be visible, to be drawn.
     Visible,
-    /// At a triangle with vertices that are not on the screen, or not shaded yet.
+    /// The scan stopped at a triangle with vertices that are off the screen or not shaded yet.
     NeedsVertices,
-    /// At a triangle to be clipped, by these planes and by clip distances.
+    /// A triangle has to be clipped, by these planes and by clip distances.
     NeedsClip(Outcode),
-    /// There are no more triangles, or the triangle at hand cannot be seen.
+    /// There are no more triangles, or the current triangle cannot be visible.
     Done,
 }
 
 impl ScreenTriangle {
-    /// Nothing yet.
+    /// A placeholder, until a scan stops at a triangle.
     pub(super) const NONE: Self =
         Self { number: 0, corners: [0; 3], v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
 
-    /// Stage 5, culling: returns whether the triangle at `v` shows the right side and may cover a pixel of `clip`. Finds its area
-    /// and its first row.
+    /// Stage 5, culling: returns whether the triangle at `v` shows the right side and may cover a pixel of `clip`.
+    /// Computes its area and its first row.
     #[inline(never)]
     pub(super) fn passes_culling(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
         let [a, b, c] = &self.v;
@@ -96,12 +96,12 @@ impl ScreenTriangle {
     }
 }
 
-/// Returns the sides from the first vertex to the second and to the third, x and y of each in 24.8, from words of
+/// Returns the edge vectors b − a and c − a, x and y of each in 24.8, from words of
 /// [`PackedVertex`](crate::target::PackedVertex)s. `None` unless all components fit 16 bits and all vertices lie within
 /// 16,511 px of the screen's corner.
 ///
 /// # Format
-/// A vertex off the screen has x = -2²³, and no y: that is no small difference from any other below 2²².
+/// A vertex off the screen has x = -2²³, and no y. Its difference from any x below 2²² is not small.
 #[inline(always)]
 fn small_sides(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
     let (ax, ay) = (a[0] >> 8, a[1] >> 8);
@@ -110,11 +110,11 @@ fn small_sides(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
     if far >= 0 && small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
 }
 
-/// A rectangle that is to the right of all triangles.
+/// A rectangle to the right of all triangles.
 const NOWHERE: PixelRect = PixelRect { x: i32::MAX..i32::MAX, y: 0..0 };
 
 impl<'m> Scan<'m> {
-    /// Of some triangles of a mesh.
+    /// Begins a scan of the triangles with these numbers.
     pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling, recording: bool) -> Self {
         let indices = match mesh.data() {
             data if data.topology == Topology::Triangles => data.indices,
@@ -132,8 +132,9 @@ impl<'m> Scan<'m> {
         }
     }
 
-    /// Goes on to the next triangle that may be seen, or that has to be looked at. Those before that are recorded, with [`PendingFace`]s for
-    /// words of their faces, and when triangles are recorded, the next is one that has to be looked at.
+    /// Goes on to the next triangle that the caller has to handle. Visible triangles that precede it are recorded, with
+    /// [`PendingFace`]s as their face words. While triangles are recorded, the scan stops only at triangles that need
+    /// their vertices. Otherwise it stops at visible triangles, too.
     pub(super) fn next(
         &mut self,
         records: &mut Records<'_>,
@@ -153,15 +154,15 @@ impl<'m> Scan<'m> {
                 if !self.recording {
                     return ScanEvent::Visible;
                 }
-                let mark = PendingFace::new(self.next, (self.triangle.area >> 32) as i32);
-                records.push_triangle(self.triangle.corners, mark.0, strips.of((self.triangle.row - band) as u32));
+                let pending = PendingFace::new(self.next, (self.triangle.area >> 32) as i32);
+                records.push_triangle(self.triangle.corners, pending.0, strips.of((self.triangle.row - band) as u32));
             }
         }
     }
 
-    /// Records small triangles, on the screen or not far off it: nearly all. Stops at any other, and, where nothing is
-    /// recorded, at the first that may be seen. Returns whether there is such a triangle, for the exact test of
-    /// [`ScreenTriangle::passes_culling`].
+    /// Records triangles until one needs the exact test of [`ScreenTriangle::passes_culling`]. Nearly all triangles
+    /// pass here: they are small, and on the screen or not far off it. If nothing is recorded, stops at the first
+    /// triangle that may be visible, too. Returns whether it stopped at a triangle.
     #[inline(never)]
     fn scan_small(
         &mut self,
@@ -173,12 +174,12 @@ impl<'m> Scan<'m> {
     ) -> bool {
         let mut triangles = records.triangles();
         let first = triangles.count();
-        // Where nothing is recorded, a list without room ends the loop at the first visible triangle, at no cost per triangle: a
-        // test of `recording` there takes 4 % of the scan.
+        // If nothing is recorded, a list without room ends the loop at the first visible triangle, at no cost per
+        // triangle. A test of `recording` there would take 4 % of the scan.
         if !self.recording {
             triangles.leave_no_room();
         }
-        // In an empty rectangle is nothing: nor in one that is far away, which takes no test of its own.
+        // No triangle is inside an empty rectangle. A rectangle far away has this effect without a test per triangle.
         let clip = if clip.is_empty() { &NOWHERE } else { clip };
         let strips = *strips;
         let culling = self.culling;
@@ -186,7 +187,7 @@ impl<'m> Scan<'m> {
         let mut list = self.list;
         let mut number = self.next;
         let found = loop {
-            // Stage 3, primitive assembly: the usual meshes by the shortest way.
+            // Stage 3, primitive assembly: the most common meshes take the shortest way.
             let (corners, positions) = match list.split_first_chunk() {
                 Some((corners, rest)) => {
                     list = rest;
@@ -200,7 +201,7 @@ impl<'m> Scan<'m> {
                 },
             };
             number += 1;
-            // Stage 5, culling: by winding, as early as can be, and of triangles that cover no pixel.
+            // Stage 5, culling: first by winding, as early as possible, and then of triangles that cover no pixel.
             let [i, j, k] = corners;
             let [a, b, c] = positions;
             let Some([bx, by, cx, cy]) = small_sides(a, b, c) else {
@@ -212,7 +213,7 @@ impl<'m> Scan<'m> {
                 *count = count.wrapping_add(1);
                 continue;
             }
-            // As `pixel_rect` has it, of words, which are in the same order as coordinates.
+            // As in `pixel_rect`, but from packed words, which compare as their coordinates do.
             let centre = |word: i32| (word + (127 << 8)) >> 16;
             let y = centre(a[1].min(b[1]).min(c[1]))..centre(a[1].max(b[1]).max(c[1]));
             let x = centre(a[0].min(b[0]).min(c[0]))..centre(a[0].max(b[0]).max(c[0]));
@@ -224,7 +225,7 @@ impl<'m> Scan<'m> {
                 stats.outside = stats.outside.wrapping_add(1);
                 continue;
             }
-            // Stage 6, recording: into the list of the strip it begins in.
+            // Stage 6, recording: into the list of the strip that the triangle begins in.
             let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
             if !triangles.push(u32::from(i) | u32::from(j) << 16, k, PendingFace::new(number, area).0, strip) {
                 if !self.recording {
@@ -270,7 +271,8 @@ mod tests {
             self.0.below(end as u64) as i32
         }
 
-        /// Three vertices: tiny, small, large or huge, some of them not there.
+        /// Returns three vertices of a tiny, small, large or huge triangle. Some of them are not shaded, or off the
+        /// screen.
         fn positions(&mut self) -> [[u32; 2]; 3] {
             let size = [300, 3000, 1 << 15, 1 << 17, 1 << 22][self.below(5) as usize];
             let at = [[self.below(1 << 17), self.below(1 << 16)], [(1 << 23) - 1 - size, -(1 << 23) + 1]];
@@ -287,7 +289,7 @@ mod tests {
         }
     }
 
-    /// A scan records and counts what [`ScreenTriangle::passes_culling`] says of each triangle.
+    /// A scan records and counts the results of [`ScreenTriangle::passes_culling`] for each triangle.
     #[test]
     fn scans_find_what_is_found_one_by_one() {
         let mut random = Random(Rng::new(1));

@@ -1,4 +1,5 @@
-//! The scene: what the stages of a frame share; phases, draws and stage 1 of [the pipeline](crate#the-pipeline), bounds.
+//! The scene: the data that all stages of a frame share, its phases and draws, and stage 1 of [the
+//! pipeline](crate#the-pipeline), bounds.
 
 use super::state::State;
 use crate::math::Projective;
@@ -8,32 +9,33 @@ use crate::target::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::vertex::{DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, Varyings, VertexShader, Viewport};
 use core::ops::Range;
 
-/// Phases of a frame's closure: what one call of it does, see [the pipeline](crate#the-pipeline).
+/// Phases of a frame: the work that one call of the frame's closure does, see [the pipeline](crate#the-pipeline).
 ///
-/// Three things are close to each other and not the same. [`Direct`](Self::Direct) is a phase. While it lasts, a draw may
-/// still keep its vertices, see `Scene::keeps_vertices`. And a framebuffer type with `RECORDS = false` has no other
-/// phase, so that code for records is not linked.
+/// Three things are close to each other and must not be confused:
+/// - [`Direct`](Self::Direct) is a phase.
+/// - While it lasts, a draw may still keep its vertices, see `Scene::keeps_vertices`.
+/// - A framebuffer type with `RECORDS = false` has no other phase, so that code for records is not linked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Phase {
-    /// Stages 1 to 7 for the strips of a band, into the records.
+    /// Runs stages 1 to 7 for the strips of a band, and writes the records.
     Record,
-    /// Stages 8 to 11 for one strip, from the records.
+    /// Runs stages 8 to 11 for one strip, from the records.
     Replay,
-    /// Stages 1 to 11 for one strip, without records of triangles.
+    /// Runs stages 1 to 11 for one strip, without records of triangles.
     Direct,
 }
 
-/// Where pixels go while a strip is drawn.
+/// The destination of pixels while a strip is drawn.
 #[derive(Debug)]
 pub(crate) struct Target<'a, F> {
     pub(crate) framebuffer: &'a mut F,
     /// Depths of the strip's rows, one after the other.
     pub(crate) depth: &'a mut [u16],
-    /// Rows of the strip.
+    /// Rows of the screen that the strip covers.
     pub(crate) rows: Range<i32>,
 }
 
-/// What a frame is drawn through; see [`Renderer::frame`](crate::frame::Renderer::frame).
+/// The object that a frame is drawn through; see [`Renderer::frame`](crate::frame::Renderer::frame).
 #[derive(Debug)]
 pub struct Scene<'a, F> {
     pub(crate) screen: (u16, u16),
@@ -41,21 +43,21 @@ pub struct Scene<'a, F> {
     pub(crate) phase: Phase,
     pub(crate) records: Records<'a>,
     pub(crate) strips: &'a StripRows,
-    /// Rows of the band that is recorded, replayed or drawn.
+    /// Rows of the band that is being recorded, replayed or drawn.
     pub(crate) band: Range<i32>,
     pub(crate) target: Target<'a, F>,
     pub(crate) stats: &'a mut Stats,
-    /// Number of the next draw, and the first that differed from what was recorded.
+    /// Number of the next draw, and number of the first draw that differed from its record.
     pub(crate) draws: u16,
     pub(crate) changed: Option<u16>,
 }
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
-    /// Whether something with these bounds may be seen in the part of the screen that is being drawn; what is not can be
-    /// left out, with everything inside of it: a hierarchy of objects.
+    /// Returns whether an object with these bounds may be visible in the part of the screen that is being drawn. An
+    /// object that is not can be left out with everything inside of it. A tree of objects is culled this way.
     ///
-    /// The answer is the same in all calls of the closure that must draw the same. It counts near and far plane as borders,
-    /// whatever [`State::range`] says of what lies beyond them.
+    /// The result is the same in all calls of the closure that must draw the same. The near and the far plane count as
+    /// borders, whatever [`State::range`] says about geometry outside of them.
     #[inline(never)]
     #[must_use]
     pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
@@ -64,19 +66,19 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         self.sees(&screen, bounds, 0, DepthRange::Clip)
     }
 
-    /// Maps clip space to a part of the screen from here on; nothing outside of it is touched. Each call of the closure
-    /// starts with the whole screen.
+    /// Maps clip space to a part of the screen from here on. Pixels outside of it are not changed. Each call of the
+    /// closure starts with the whole screen.
     pub const fn set_viewport(&mut self, viewport: Viewport) {
         self.viewport = viewport;
     }
 
-    /// Width and height of the screen.
+    /// Returns the width and the height of the screen.
     #[must_use]
     pub const fn screen(&self) -> (u16, u16) {
         self.screen
     }
 
-    /// The pixels that may be drawn, in `rows` of the screen.
+    /// Returns the pixels that may be drawn in `rows` of the screen.
     #[inline(never)]
     pub(super) fn clip_rect(&self, rows: &Range<i32>) -> PixelRect {
         let (x, y) = (i32::from(self.viewport.x()), i32::from(self.viewport.y()));
@@ -85,15 +87,16 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         viewport.intersection(&PixelRect { x: 0..i32::from(self.screen.0), y: rows.clone() })
     }
 
-    /// Returns whether something may be seen in the band, or up to `reach` px away from it.
+    /// Returns whether bounds may be visible in the band, or up to `reach` px away from it.
     fn sees(&self, screen: &ScreenMatrix, bounds: &Bounds, reach: i32, range: DepthRange) -> bool {
         let PixelRect { x, y } = self.clip_rect(&self.band);
         let (x, y) = (x.start - reach..x.end + reach, y.start - reach..y.end + reach);
         screen.sees(bounds, &x, &y, range.clamped())
     }
 
-    /// Which of 32 nodes of a hierarchy can be seen, from `next` on, a bit each, the lowest for the first; `next` moves on behind
-    /// them. In a function of its own, so that what it takes has left the stack when they are drawn.
+    /// Tests up to 32 nodes of a hierarchy, from `next` on, and moves `next` past them. Returns one bit per node, the
+    /// lowest one for the first node, set if the node may be visible. Not inlined, so that the matrix is no longer on
+    /// the stack when the nodes are drawn.
     #[inline(never)]
     pub(super) fn visible_nodes(
         &mut self,
@@ -117,10 +120,10 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         visible
     }
 
-    /// Stage 1, bounds, of a draw of any kind: enters it into the records, or prepares to draw it directly, unless its bounds are out
-    /// of view. Returns whether there is anything to do.
+    /// Stage 1, bounds, of a draw of any kind: enters it into the records, or prepares to draw it directly, unless its
+    /// bounds are out of view. Returns whether there is anything to draw.
     ///
-    /// Makes the transform of the vertex stage in `transform`, where one is wanted.
+    /// Makes the transform of the vertex stage in `transform`, if one is given.
     #[inline(never)]
     pub(super) fn begin_draw(&mut self, draw: &Draw<'_>, transform: Option<&mut Transform>) -> bool {
         self.count_draw();
@@ -163,19 +166,20 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         F::RECORDS && self.phase == Phase::Record
     }
 
-    /// Whether the records are full, so that a walk is in vain.
+    /// Returns whether the records are full, so that recording more is in vain.
     pub(crate) fn overflowed(&self) -> bool {
         F::RECORDS && self.records.overflowed()
     }
 
-    /// Returns whether the results of the vertex stage are kept for the time of the current draw: in the records of a band, or,
-    /// in a strip that is drawn directly, in the words that are lent for records, if all vertices of the draw fit.
+    /// Returns whether the results of the vertex stage are kept during the current draw. While a band is recorded or
+    /// replayed, they are in its records. While a strip is drawn directly, they are in the words that are lent for
+    /// records, if all vertices of the draw fit.
     pub(super) fn keeps_vertices(&self) -> bool {
         F::RECORDS && self.records.keeps_vertices()
     }
 
-    /// Finds the records of a draw in the strip that is replayed. Returns `false` if the records are those of another draw:
-    /// then the closure has drawn two different things.
+    /// Finds the records of a draw in the strip that is replayed. Returns `false` if the records are those of a
+    /// different draw: then the closure has drawn two different things.
     #[inline(never)]
     pub(super) fn find_draw(&mut self, draw: &Draw<'_>) -> bool {
         let print = fingerprint(draw, &self.viewport);
@@ -195,13 +199,13 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 }
 
-/// Kinds of primitives, and what else tells draws of one mesh apart.
+/// Kinds of primitives, with the numbers that tell draws of one mesh apart.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Primitives {
     Triangles,
     Lines {
         count: usize,
-        /// How many pixels around a line its stroke may cover.
+        /// Largest distance from a line, in pixels, that its stroke may cover.
         reach: i32,
     },
     Points {
@@ -209,29 +213,30 @@ pub(super) enum Primitives {
     },
 }
 
-/// A draw as stages 1 and 2 see it: one description for triangles, lines and points, whatever the shader.
+/// A draw as stages 1 and 2 see it: one description for triangles, lines and points, whatever the shader is.
 #[derive(Debug)]
 pub(super) struct Draw<'d> {
     pub(super) state: &'d State,
-    /// The mesh; of lines and points, their vertices as a mesh without triangles.
+    /// The mesh, or the vertices of lines or points as a mesh without triangles.
     pub(super) mesh: &'d Mesh<'d>,
     pub(super) mvp: &'d Projective,
     primitives: Primitives,
-    /// Words of a vertex in the records.
+    /// Number of words per vertex in the records.
     stride: usize,
-    /// How many varyings the shader has.
+    /// Number of varyings of the shader.
     varyings: usize,
-    /// Whether the shader moves vertices.
+    /// Set if the shader moves vertices.
     displaced: bool,
-    /// Sets the depth scale of the state, unless the state is known not to have one.
+    /// Sets the depth scale of the state. `None` if it is known at compile time that the state has no depth scale to
+    /// set.
     depth_scale: Option<fn(&mut Transform, DepthScale)>,
 }
 
-/// Mesh vertices up to which it is not worth a test of the bounds, which takes as long as a few vertices do.
+/// Number of vertices up to which a mesh's bounds are not tested, because the test takes as long as a few vertices.
 const FEW_VERTICES: usize = 4;
 
 impl<'d> Draw<'d> {
-    /// Describes a draw. All draw calls come through here, so that no shader misses these checks.
+    /// Describes a draw. All draw calls come through here, so that these checks apply to every shader.
     #[inline(always)]
     pub(super) fn new<S: VertexShader>(
         state: &'d State,
@@ -251,14 +256,14 @@ impl<'d> Draw<'d> {
         Self { state, mesh, mvp, primitives, stride, varyings, displaced: S::DISPLACES, depth_scale }
     }
 
-    /// Returns whether the mesh's bounds say where it is drawn, and are worth a test.
+    /// Returns whether the mesh's bounds tell where it is drawn, and are worth a test.
     fn is_bounded(&self) -> bool {
         self.mesh.vertex_count() > FEW_VERTICES
             && !self.displaced
             && !matches!(self.mesh.data().positions, Positions::Homogeneous(_))
     }
 
-    /// Returns how many pixels around its vertices a primitive may cover.
+    /// Returns the largest distance from its vertices, in pixels, that a primitive may cover.
     fn reach(&self) -> i32 {
         match self.primitives {
             Primitives::Triangles => 0,
@@ -266,7 +271,7 @@ impl<'d> Draw<'d> {
         }
     }
 
-    /// Makes the transform of the vertex stage, depth scale and all.
+    /// Makes the transform of the vertex stage, with the depth scale.
     pub(super) fn set_transform(&self, screen: &ScreenMatrix, transform: &mut Transform) {
         transform.set_from(screen, self.mesh, self.displaced);
         if let Some(scale) = self.depth_scale {
@@ -275,7 +280,7 @@ impl<'d> Draw<'d> {
     }
 }
 
-/// Returns a word that differs, almost surely, between draws that would not leave the same records.
+/// Returns a word that differs, almost surely, between draws that would not leave equal records.
 #[inline(never)]
 fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
     let Draw { state, mesh, mvp, primitives, stride, varyings, .. } = draw;
@@ -304,7 +309,7 @@ fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
             DepthScale::Uniform { far } => far.to_bits() as u32,
         },
     ];
-    // FNV-1a over words instead of bytes, two of them at once where there are many.
+    // FNV-1a over words instead of bytes, with two words per step where there are many.
     let step = |hash: u32, word: u32| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(11);
     let entries = mvp.rows().as_flattened().iter();
     let hash = entries.fold(0x811C_9DC5, |hash, entry| step(step(hash, *entry as u32), (*entry >> 32) as u32));

@@ -1,51 +1,52 @@
-//! How a draw is drawn.
+//! The state of a draw: culling, depth test, depth range, bias and depth scale.
 
 use crate::span::{DepthBias, DepthState};
 use crate::vertex::{DepthRange, DepthScale, Side};
 
-/// Which faces are not drawn.
+/// Faces that are not drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Cull {
-    /// Those that show their back.
+    /// Faces that show their back are not drawn.
     #[default]
     Back,
-    /// Those that show their front.
+    /// Faces that show their front are not drawn.
     Front,
     /// Every face is drawn.
     None,
 }
 
-/// Which way the corners of a front face go round on the screen, with y up.
+/// Direction in which the corners of a front face go round on the screen, with y up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Winding {
     /// Against the clock.
     #[default]
     CounterClockwise,
-    /// With the clock: for meshes made that way, and for mirrored models.
+    /// With the clock: for meshes that are built this way, and for mirrored models.
     Clockwise,
 }
 
-/// How a draw is drawn.
+/// Rules that a mesh, lines or points are drawn by.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct State {
-    /// Which faces are left out.
+    /// Faces that are left out.
     pub cull: Cull,
-    /// Which faces are front faces.
+    /// Winding of front faces.
     pub front: Winding,
     /// The depth test.
     pub depth: DepthState,
-    /// What happens before the near and beyond the far plane.
+    /// Treatment of geometry in front of the near plane and beyond the far plane.
     pub range: DepthRange,
-    /// What is added to depth.
+    /// Offset that is added to depth.
     pub bias: DepthBias,
-    /// How depth grows with distance.
+    /// Growth of depth with distance.
     pub depth_scale: DepthScale,
 }
 
 impl State {
-    /// The default, for constants: back faces culled, nearer fragments win, clipped at the near and the far plane.
+    /// The default state as a constant: back faces are culled, nearer fragments win, and geometry is clipped at the
+    /// near and the far plane.
     pub const DEFAULT: Self = Self {
         cull: Cull::Back,
         front: Winding::CounterClockwise,
@@ -56,24 +57,24 @@ impl State {
     };
 }
 
-/// Which faces are left out.
+/// Faces that are left out, as masks for the signs of areas.
 #[derive(Clone, Copy)]
 pub(super) struct Culling {
-    /// What the sign of an area is changed by, so that faces that are left out have none.
+    /// XORed with an area, so that faces that are left out become not negative: 0 or -1.
     flip: i8,
-    /// Negative if none are left out.
+    /// ORed to an area, so that no face is left out: -1 if all faces are drawn, otherwise 0.
     keep: i8,
 }
 
 impl State {
-    /// The side that a triangle of this signed area, which is not 0, shows.
+    /// Returns the side that a triangle of this signed area, which is not 0, shows.
     #[inline]
     pub(super) fn side(&self, area: i64) -> Side {
-        // y points down here: a positive area goes with the clock.
+        // y points down on the screen: a positive area goes with the clock.
         if (area > 0) == (self.front == Winding::CounterClockwise) { Side::Back } else { Side::Front }
     }
 
-    /// Which faces are left out.
+    /// Returns the faces that are left out.
     pub(super) fn culling(&self) -> Culling {
         let counter_clockwise = self.front == Winding::CounterClockwise;
         Culling {
@@ -84,7 +85,8 @@ impl State {
 }
 
 impl Culling {
-    /// Whether a face of this area, or of the upper half of it, is left out; the area is not 0.
+    /// Returns whether a face of this area is left out. The upper half of an area has the area's sign, and is enough.
+    /// The area is not 0.
     #[inline]
     pub(super) fn leaves_out(self, area: i32) -> bool {
         (area ^ i32::from(self.flip)) | i32::from(self.keep) >= 0

@@ -57,7 +57,7 @@ fn swap(triangles: &mut [SortScratch], a: usize, b: usize) {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SortScratch {
     corners: [u16; 3],
-    /// Set once the triangle has been moved in front of another one, which happens at most once.
+    /// Set once the triangle has been moved ahead of others in the list, which happens at most once.
     moved: bool,
     v: [ScreenVertex; 3],
 }
