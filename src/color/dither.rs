@@ -173,11 +173,11 @@ pub trait Levels: PixelColor {
     /// Table that places a grey between two levels; `()` if there are only two levels.
     type Tones: Copy + core::fmt::Debug;
 
-    /// [`Dither::NEAREST`].
+    /// Value of [`Dither::NEAREST`].
     const NEAREST: Dither<Self>;
-    /// [`Dither::BAYER_4`].
+    /// Value of [`Dither::BAYER_4`].
     const BAYER_4: Dither<Self>;
-    /// [`Dither::BAYER_8`].
+    /// Value of [`Dither::BAYER_8`].
     const BAYER_8: Dither<Self>;
 
     /// Returns the level, below 2^`BITS`, of a grey at a pixel for which the matrix holds `entry`.

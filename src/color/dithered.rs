@@ -8,6 +8,7 @@ use core::marker::PhantomData;
 /// Addends of an 8×8 matrix. Each row is repeated once, so that the eight addends from any column on are contiguous.
 pub type DitherWords = [[u32; 16]; 8];
 
+/// Makes the addends for a format that keeps these bits.
 const fn words(bits: [u32; 3]) -> DitherWords {
     let mut words = [[0; 16]; 8];
     let mut k = 0;

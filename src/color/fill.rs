@@ -59,8 +59,8 @@ fn clear_by_fives<R: Pod>(pixels: &mut [R], value: R) {
     let [first, ..] = &mut *pixels else { return };
     *first = value;
     let (_, words, _) = bytemuck::pod_align_to_mut::<R, u32>(pixels);
-    // A fifth of the number of words, rounded down. That is exact for 65,535 words, more than the RAM of such a core
-    // holds. In a longer buffer fewer words are stored by fives, and the loop over pixels at the end does the rest.
+    // A fifth of the number of words, rounded down. That is exact up to 65,535 words, 256 KB. In a longer buffer, fewer
+    // words are stored by fives, and the loop over pixels at the end does the rest.
     let fives = ((words.len() & 0xFFFF) * 0xCCCD) >> 18;
     let Some(words) = words.get_mut(..5 * fives) else { return };
     let Ok(blocks) = bytemuck::try_cast_slice_mut(words) else { return };

@@ -1,4 +1,5 @@
-//! The trait of pixel formats.
+//! The trait of pixel formats: from channels, 8 bits each or packed in one word, to pixels in memory, and back. Packing
+//! an unpacked pixel gives that pixel again.
 
 use super::luma::luma;
 use super::packed::packed_channels;
@@ -98,7 +99,8 @@ pub trait PixelFormat {
         &[0; 8]
     }
 
-    /// Set if [`from_packed`](Self::from_packed) is the fastest way to a pixel: in formats of 5 or 6 bits per channel.
+    /// Set if [`from_packed`](Self::from_packed) is the fastest way to a pixel, as in formats of 16 bits: then Gouraud
+    /// shading steps all three channels in one word.
     const PACKED: bool = false;
 
     /// Returns the mask that [`from_packed`](Self::from_packed) expects. A caller computes it once and keeps it in a

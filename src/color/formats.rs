@@ -1,4 +1,4 @@
-//! The pixel formats of the crate.
+//! The pixel formats of the crate: 16 bits, 8 bits, three bytes, and grey.
 
 use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
 use super::format::PixelFormat;

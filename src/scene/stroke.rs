@@ -178,8 +178,8 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
         (z.wrapping_add(bias), if DASHED { pattern.rotate_right(skipped & 31) } else { pattern });
     let mut on = skipped.wrapping_sub(along.origin()) as i32;
     if skipped < along.origin() {
-        // The first pixel may lie in front of the pixel `origin`, for which values are given. It has the values of the
-        // line's start.
+        // The first pixel precedes the pixel `origin`, the first one that values are computed for. It gets the values
+        // of the line's start.
         let first = primitive(*from, S::Varyings::ZERO, S::Varyings::ZERO);
         let z = (u32::from(a.z) << 16).wrapping_add(bias);
         let pixel = LinePixels { left: 1, ..pixels };
@@ -324,9 +324,8 @@ fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, 
     // A product of 2.30 and 24.8, rounded.
     let times = |c: i32, length: u32| (crate::math::mul_high_signed(c, length << 3) + 1) >> 1;
     let (along, aside) = ((times(u, more), times(v, more)), (times(-v, half), times(u, half)));
-    // An end whose corners would be out of range is moved inward, by four times the distance of a corner from it. A
-    // line that comes from there to the screen does so at an angle for which that is enough, and it is far longer than
-    // that.
+    // An end whose corners would be out of range is moved inward, by four times `half + more`. A line that comes from
+    // there to the screen does so at an angle for which that is enough, and it is far longer than that.
     const LIMIT: i32 = (1 << 23) - 1;
     let room = LIMIT - (half + more) as i32;
     let inward = (times(u, 4 * (half + more)), times(v, 4 * (half + more)));

@@ -1,4 +1,6 @@
-//! The depth test, and the loops that test the depths of a run before its pixels are coloured.
+//! The depth test, and the loops that test the depths of a run before its pixels are coloured. Each loop takes the
+//! stored depths and the depth at the first pixel. It stores the depths that pass, and returns how many do, or how many
+//! are left.
 //!
 //! The plain loop:
 //!
@@ -260,7 +262,8 @@ fn count_passing_prefix_inlined<D: DepthTest>(test: D, depths: &mut [D::Depth; R
     RUN
 }
 
-/// Does as [`count_passing_prefix`] for at most a run, but returns the number of depths that are not tested yet.
+/// Does as [`count_passing_prefix`] for at most a run, but returns the number of depths that are left, beginning with
+/// the first one that does not pass.
 #[inline(always)]
 pub(crate) fn untested_tail<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
     match <&mut [D::Depth; RUN]>::try_from(&mut *depths) {

@@ -22,8 +22,8 @@ use crate::color::PixelFormat;
 ///
 /// # Format
 /// The planes of the channels are exact modulo 2³², except for the rounding of their gradients, and so is their
-/// weighted sum. The luma is therefore as close to the exact one as the channels are to theirs, within 2⁻³ of 255
-/// levels, and is then rounded to nearest.
+/// weighted sum. The luma is therefore as close to its exact value as the channels are to theirs: within 2⁻³, on the
+/// scale of 0..=255. It is then rounded to nearest.
 #[inline(never)]
 pub(crate) fn luma_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 3], ColorSetup, D::Depth>, test: D) {
     let mut luma = weighted(span.varyings());

@@ -1,4 +1,4 @@
-//! Spans whose three channels are interpolated linearly, in formats of 5 or 6 bits per channel.
+//! Spans whose three channels are interpolated linearly, in formats of at most 6 bits per channel.
 //!
 //! The plain loop, over channels in 8.16:
 //!
@@ -65,7 +65,7 @@ const UNITS: u32 = 1 << 21 | 1 << 10 | 1;
 /// the 8 columns after which dithering repeats.
 const LONG: usize = 512;
 
-/// Draws a span with one addition per pixel for all three channels, in formats of 5 or 6 bits per channel.
+/// Draws a span with one addition per pixel for all three channels, in formats of at most 6 bits per channel.
 ///
 /// ```text
 /// pixels      0 1 2 3   4 5 6 7   8 9 ..    12 ..     16 ..

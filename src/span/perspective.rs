@@ -5,9 +5,9 @@
 //! divided ●               ●               ●               ●     ●      linear in between
 //!         first pixel     + STEP          + 2 STEP        ..    last pixel
 //! ```
-//! Both ends of a span are pixels of the triangle, so no value is ever divided by a q = 1 / w from outside of it. At
-//! the ends varyings are exact, and so they are on both sides of an edge that two triangles share. No step makes a
-//! seam.
+//! Both ends of a span are pixels of the triangle, so no value is ever divided by a q = 1 / w from outside of the
+//! triangle. At the ends varyings are exact, and so they are on both sides of an edge that two triangles share. So no
+//! choice of `STEP` makes a seam.
 
 use super::span::Primitive;
 use crate::math::{Divisor, mul_high_signed};
@@ -67,8 +67,8 @@ pub(super) fn correct_at<V: Varyings>(perspective: &V::PerspectiveSetup, positio
     }
 }
 
-/// Replaces the value of each perspective-correct varying by the varying. `quotient` computes h, which is scaled back
-/// and added to the plane's base.
+/// Replaces the linear value of each perspective-correct varying by the varying itself. `quotient` computes h, which is
+/// scaled back and added to the plane's base.
 #[inline]
 fn correct(values: &mut [i32], planes: &[PerspectivePlane], quotient: impl Fn(i32, &PerspectivePlane) -> i32) {
     for (value, plane) in values.iter_mut().zip(planes) {
@@ -79,19 +79,19 @@ fn correct(values: &mut [i32], planes: &[PerspectivePlane], quotient: impl Fn(i3
 }
 
 /// Table of 2³² / n, for steps of n pixels.
-static PARTS: [u32; 33] = {
-    let mut parts = [u32::MAX; 33];
+static INVERSES: [u32; 33] = {
+    let mut inverses = [u32::MAX; 33];
     let mut n = 2;
     while n < 33 {
-        parts[n] = ((1_u64 << 32) / n as u64) as u32;
+        inverses[n] = ((1_u64 << 32) / n as u64) as u32;
         n += 1;
     }
-    parts
+    inverses
 };
 
-/// Computes `difference` / `n`, within one unit, for n in 1..=32.
+/// Computes `difference` / `pixels`, within one unit, for 1 to 32 pixels.
 #[inline]
-pub(super) fn nth(difference: i32, n: usize) -> i32 {
-    let part = PARTS.get(n).copied().unwrap_or(0);
-    if n == 1 { difference } else { mul_high_signed(difference, part) }
+pub(super) fn per_pixel(difference: i32, pixels: usize) -> i32 {
+    let inverse = INVERSES.get(pixels).copied().unwrap_or(0);
+    if pixels == 1 { difference } else { mul_high_signed(difference, inverse) }
 }

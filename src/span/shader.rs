@@ -1,7 +1,7 @@
 //! The seam of the fragment stage, and the loops that call a shader for the pixels of a span.
 
 use super::depth::{DepthDyn, DepthState, DepthTest};
-use super::perspective::{correct_at, nth};
+use super::perspective::{correct_at, per_pixel};
 use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
 use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
@@ -181,7 +181,8 @@ fn uncorrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     }
 }
 
-/// Draws a span in the loop of [`linear_fragments`]. That loop needs depths, so it gets an array that nobody reads.
+/// Draws a span in the loop of [`linear_fragments`]. That loop needs stored depths, so it gets an array
+/// of its own, under a test that always passes.
 #[inline(never)]
 fn fragments_without_depth<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
@@ -294,7 +295,7 @@ impl<P: PixelFormat, V: Varyings, T, D: DepthTest> Stretch<'_, '_, P, V, T, D> {
         correct_at(&span.primitive.perspective, end, next);
         let ends = varyings.as_ref().iter().zip(next.as_ref());
         for (change, (from, to)) in change.as_mut().iter_mut().zip(ends) {
-            *change = if way == 0 { 0 } else { nth(to.wrapping_sub(*from), way) };
+            *change = if way == 0 { 0 } else { per_pixel(to.wrapping_sub(*from), way) };
         }
         pixels
     }

@@ -31,7 +31,7 @@
 //!    Cortex-M4.
 
 use super::depth::{DepthTest, RUN, count_passing_prefix, untested_tail};
-use super::perspective::nth;
+use super::perspective::per_pixel;
 use super::span::{Primitive, Span};
 use crate::color::PixelFormat;
 use crate::math::{CoarseDivisor, SMALL_CORE};
@@ -360,7 +360,7 @@ impl UvStepper {
         self.step = [end_q.wrapping_sub(q), end_u.wrapping_sub(u), end_v.wrapping_sub(v)];
         self.next_run();
         let (du, dv) = (self.uv.0.wrapping_sub(from.0), self.uv.1.wrapping_sub(from.1));
-        let step = step([nth(du, way), nth(dv, way)]);
+        let step = step([per_pixel(du, way), per_pixel(dv, way)]);
         (packed(self.uv).wrapping_sub(step.wrapping_mul(way as u32)), step)
     }
 }
