@@ -1,7 +1,7 @@
 //! Lights of all kinds: ambient, directional, point lights that fade with distance, and where they are seen from.
 //!
-//! All of it is given in eye space, or in any other space that a model matrix leads to. [`Lighting::on`] takes it to a mesh's
-//! own space once per draw, because the normals and positions of vertices are given there.
+//! All of it is given in eye space, or in any other space that a model matrix leads to. [`Lighting::on`] takes it to a
+//! mesh's own space once per draw, because the normals and positions of vertices are given there.
 
 use super::lit_material::{LitColors, LitDirection, LitMaterial, LitPoint, LitViewer, short};
 use super::local_space::ToLocal;
@@ -30,8 +30,8 @@ impl DirectionalLight {
 
 /// A light at a point, which fades with distance.
 ///
-/// At distance d it has (1 - d² / range²)² of its brightness: 1 at the light, 0 from `range` on. The curve has no corner
-/// there, and surfaces beyond `range` cost nothing.
+/// At distance d it has (1 - d² / range²)² of its brightness: 1 at the light, 0 from `range` on. The curve has no
+/// corner there, and surfaces beyond `range` cost nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PointLight {
     /// Position of the light.
@@ -103,11 +103,12 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
     /// Puts the lights on a material of a mesh that `model` brings into the lights' space, and whose positions are in
     /// `bounds` ([`Mesh::bounds`](crate::mesh::Mesh::bounds)).
     ///
-    /// `model` may rotate, move and scale evenly. This takes some thousand instructions: call it outside of the closure that
-    /// draws a frame, which runs once per strip where there are no records.
+    /// `model` may rotate, move and scale evenly. This takes some thousand instructions: call it outside of the closure
+    /// that draws a frame, which runs once per strip where there are no records.
     ///
     /// # Format
-    /// Directions within 2⁻¹⁴; positions of lights within 2⁻¹⁵ of the extent of the mesh, and at most 16,384 extents away.
+    /// Directions within 2⁻¹⁴; positions of lights within 2⁻¹⁵ of the extent of the mesh, and at most 16,384 extents
+    /// away.
     #[must_use]
     pub fn on(&self, material: impl Into<Material>, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
         self.put_on(&material.into(), model, bounds)

@@ -55,8 +55,8 @@ pub(super) struct LitDirection {
     pub(super) colors: LitColors,
 }
 
-/// The viewer: a direction in 2.14, or a position in local units. Its difference to any position of the mesh has 15 bits
-/// after the shift.
+/// The viewer: a direction in 2.14, or a position in local units. Its difference to any position of the mesh has 15
+/// bits after the shift.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum LitViewer {
     Toward(Short),
@@ -88,8 +88,8 @@ impl LitPoint {
         Self { position, range, inverse, scaled: scaled as u16, left: left as u8, right: right as u8, colors }
     }
 
-    /// Returns the fraction of the light that reaches the point `p`, 2.14, and 0 out of its range. Puts the unit vector from
-    /// `p` to the light into `direction`, 2.14.
+    /// Returns the fraction of the light that reaches the point `p`, 2.14; 0 out of the light's range. Puts the unit
+    /// vector from `p` to the light into `direction`, 2.14.
     ///
     /// # Format
     /// `p` in local units, below 2¹⁶. The fraction is within 2⁻¹² of the exact value for the rounded positions.
@@ -117,7 +117,8 @@ impl LitPoint {
 /// Raises `x` to the power of `n`; `x` and the result are 2.14 in 0..=1.
 ///
 /// # Format
-/// Squares and multiplies numbers of 0.16, rounded: off by at most (n + 2) 2⁻¹⁶. The error of `x` itself counts n times.
+/// Squares and multiplies numbers of 0.16, rounded: off by at most (n + 2) 2⁻¹⁶. The error of `x` itself counts n
+/// times.
 #[inline]
 pub(super) fn power(x: i32, n: u8) -> i32 {
     let mut base = ((x as u32) << 2).min(0xFFFF);
@@ -172,8 +173,8 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
         self.space.fine(position)
     }
 
-    /// Turns a normal towards the viewer, seen from the point `p` (local units) of the surface: for a vertex that belongs to
-    /// faces on both sides.
+    /// Turns a normal towards the viewer, seen from the point `p` (local units) of the surface: for a vertex that
+    /// belongs to faces on both sides.
     pub(crate) fn towards_viewer(&self, normal: [i32; 3], p: [i32; 3]) -> [i32; 3] {
         let [x, y, z] = self.viewer(&p);
         let dot =
@@ -200,8 +201,8 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
         Look { normal, viewer: [0; 3], body: [i32::from(r), i32::from(g), i32::from(b)], shine: [0; 3] }
     }
 
-    /// Returns the colour under the ambient and the directional lights, seen from far away. A [`Viewer::At`] looks from the
-    /// direction in which it is from the middle of the mesh's box.
+    /// Returns the colour under the ambient and the directional lights, seen from far away. A [`Viewer::At`] looks from
+    /// the direction in which it is from the middle of the mesh's box.
     ///
     /// `color` is that of the vertex, red first; it counts if the material has
     /// [`vertex_colors`](crate::light::Material::vertex_colors).

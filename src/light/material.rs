@@ -46,15 +46,15 @@ impl Matte {
         Self { vertex_colors: true, ..self }
     }
 
-    /// Turns the normals of faces that show their back, so that both sides are lit. A [`Sun`](crate::light::Sun) cannot do
-    /// that, as it does not know the viewer: the result is a [`Material`].
+    /// Turns the normals of faces that show their back, so that both sides are lit. A [`Sun`](crate::light::Sun) cannot
+    /// do that, as it does not know the viewer: the result is a [`Material`].
     pub const fn two_sided(self) -> Material {
         Material { matte: self, specular: [0; 3], shininess: 0, two_sided: true }
     }
 }
 
-/// A material under any [`Lighting`](crate::light::Lighting): the colours of ambient, diffuse and specular light, and how
-/// sharp its highlights are.
+/// A material under any [`Lighting`](crate::light::Lighting): the colours of ambient, diffuse and specular light, and
+/// how sharp its highlights are.
 ///
 /// ```
 /// use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor, WebColors};
@@ -87,8 +87,8 @@ impl Material {
         Matte::new(color)
     }
 
-    /// Returns a material with highlights of a colour and an exponent of 1 to 255: the higher it is, the smaller they are.
-    /// Powers of two are cheapest. An exponent of 0 means no highlights.
+    /// Returns a material with highlights of a colour and an exponent of 1 to 255: the higher it is, the smaller they
+    /// are. Powers of two are cheapest. An exponent of 0 means no highlights.
     pub fn glossy(color: impl Into<Rgb888>, highlight: impl Into<Rgb888>, shininess: u8) -> Self {
         let specular = channels(highlight.into());
         Self { matte: Matte::new(color), specular, shininess, two_sided: false }

@@ -5,10 +5,10 @@
 //! [`Surface`](crate::shader::Surface), which a shader asks for colours:
 //!
 //! ```text
-//! Sun      .on(&matte,    &model)                ─► Sunlit             ┐             ┌ Flat::new(surface)     per face
-//! Lighting .on(&material, &model, mesh.bounds()) ─► LitMaterial<D, P>  ├─► Surface ─►┼ Gouraud::new(surface)  per vertex
-//!                                                   Unlit              ┘             └ Textured::lit(surface) per vertex
-//!                                                   LitMaterial<D, P> ─► Phong::new, PhongNear::new           per fragment
+//! Sun      .on(&matte,    &model)               ─► Sunlit             ┐            ┌ Flat::new(surface)     per face
+//! Lighting .on(&material, &model, mesh.bounds())─► LitMaterial<D, P>  ├► Surface ─►┼ Gouraud::new(surface)  per vertex
+//!                                                  Unlit              ┘            └ Textured::lit(surface) per vertex
+//!                                                  LitMaterial<D, P> ─► Phong::new, PhongNear::new        per fragment
 //! ```
 //!
 //! # Which light, which shader
@@ -23,8 +23,8 @@
 //! | lamps nearer than triangles are long | [`Lighting`], 1 lamp | [`PhongNear`] | 634 / 489 |
 //!
 //! The [table of `shader`](crate::shader#cost-per-pixel) has more of these figures. Per face or per vertex, a [`Sun`]
-//! takes one scalar product and three products of channels. A [`Lighting`] takes as much per directional light, more for
-//! highlights, and two reciprocal square roots per point light: prefer the sun where many vertices are matte.
+//! takes one scalar product and three products of channels. A [`Lighting`] takes as much per directional light. A point
+//! light takes a reciprocal square root, too, and another one for its highlight. So prefer the sun where it is enough.
 //!
 //! # A texture, vertex colours and a lamp
 //!

@@ -68,8 +68,8 @@ const fn unit(direction: Vec3) -> [i16; 3] {
     }
 }
 
-/// Shifts the matrix of a model until its largest entry is at least 1/2, as in any rotation. The entries of a model that
-/// is scaled far down would otherwise leave few bits of a direction.
+/// Shifts the matrix of a model until its largest entry is at least 1/2, as in any rotation. The entries of a model
+/// that is scaled far down would otherwise leave few bits of a direction.
 const fn enlarged(model: &Affine) -> Affine {
     let rows = model.to_rows();
     let mut widest = 1;
@@ -89,8 +89,8 @@ const fn shifted(row: [i32; 4], shift: u32) -> Vec3 {
 }
 
 impl Sun {
-    /// Returns the light of `color` that comes from `direction`, a vector of any length that points *towards* the light,
-    /// and the ambient light.
+    /// Returns the light of `color` that comes from `direction`, a vector of any length that points *towards* the
+    /// light, and the ambient light.
     ///
     /// A zero vector leaves the ambient light alone.
     #[must_use]
@@ -128,7 +128,7 @@ impl Sun {
 #[repr(align(4))]
 pub struct Sunlit {
     direction: [i16; 3],
-    /// Per channel: 8.8 of the colour, or 0.8 of what the colour of a vertex is multiplied by.
+    /// Light of a channel, 8.8; with vertex colours the factor of a vertex's channel, 256 = 1.
     ambient: [u16; 3],
     diffuse: [u16; 3],
     vertex_colors: bool,
@@ -141,7 +141,7 @@ impl Sunlit {
         self.vertex_colors
     }
 
-    /// Returns the surface of one colour that a vertex's colour makes of it.
+    /// Multiplies the factors by the colour of a vertex.
     #[inline]
     pub(crate) fn colored(&self, color: [u8; 3]) -> Self {
         let (ambient, diffuse) = (product(self.ambient, color), product(self.diffuse, color));

@@ -1,4 +1,4 @@
-//! Blending: what becomes of a shader's colour and the one that is there.
+//! Blending: a shader's colour and the pixel that is there make a new pixel.
 
 use crate::color::{PixelFormat, Rgba8888};
 use crate::span::{Fragment, Shader, TriangleSetup};
@@ -15,17 +15,18 @@ use crate::vertex::{VertexShader, Wrapper};
 /// | [`AddAlpha`] | source · alpha + there, at most 1 | [`Rgba8888`] |
 /// | [`Multiply`] | source · there | [`Rgba8888`] |
 ///
-/// Modes whose source is `P` work in the format itself, in one word for RGB565; the others in 8 bits a channel, exactly
-/// rounded, before surplus bits are cut (and not dithered again: a pixel that nothing is added to stays as it is).
+/// Modes whose source is `P` compute in the format itself, in one word for RGB565. The others compute in 8 bits per
+/// channel, exactly rounded, and then cut surplus bits. Nothing is dithered again, so that a pixel to which black is
+/// added stays as it is.
 pub trait BlendMode<P: PixelFormat> {
-    /// In which format the shader is asked for colours.
+    /// Format in which the shader is asked for colours.
     type Source: PixelFormat;
 
-    /// The new pixel.
+    /// Returns the new pixel.
     fn blend(&self, source: <Self::Source as PixelFormat>::Raw, there: P::Raw) -> P::Raw;
 }
 
-/// The shader's colour; what an opaque draw does without [`Blend`].
+/// The shader's colour, as in an opaque draw without [`Blend`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Replace;
 
@@ -38,7 +39,7 @@ impl<P: PixelFormat> BlendMode<P> for Replace {
     }
 }
 
-/// One opacity for all of a draw, 255 = opaque; see [`PixelFormat::mix`] for its steps.
+/// One opacity for the whole draw, 255 = opaque; see [`PixelFormat::mix`] for its steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Opacity(pub u8);
 
@@ -51,11 +52,11 @@ impl<P: PixelFormat> BlendMode<P> for Opacity {
     }
 }
 
-/// The shader's own opacity, fragment by fragment.
+/// The shader's own opacity, per fragment.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Alpha;
 
-/// `x` / 255, to nearest, for `x` up to 255².
+/// Divides by 255, to nearest, for `x` up to 255².
 #[inline(always)]
 const fn by_255(x: u32) -> u32 {
     let x = x + 128;
@@ -80,7 +81,7 @@ impl<P: PixelFormat> BlendMode<P> for Alpha {
     }
 }
 
-/// Light is added: sparks, flames, beams. The order of such draws does not matter, but for what has reached 1.
+/// Adds light: sparks, flames, beams. The order of such draws does not matter, except for channels that have reached 1.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Add;
 
@@ -93,7 +94,7 @@ impl<P: PixelFormat> BlendMode<P> for Add {
     }
 }
 
-/// [`Add`] of what the shader's opacity leaves of its colour.
+/// Adds the shader's colour times its opacity, as [`Add`] adds the colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct AddAlpha;
 
@@ -108,7 +109,7 @@ impl<P: PixelFormat> BlendMode<P> for AddAlpha {
     }
 }
 
-/// Coloured glass, shadows: what is there is seen through the shader's colour.
+/// Multiplies the pixel that is there by the shader's colour: coloured glass, shadows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Multiply;
 
@@ -121,12 +122,12 @@ impl<P: PixelFormat> BlendMode<P> for Multiply {
     }
 }
 
-/// A shader whose colours are blended with what is there.
+/// A shader whose colours are blended with the pixels that are there.
 ///
 /// It has to be the outermost of nested shaders, `Blend<Fogged<..>>`: inner ones do not see the pixel that is there.
-/// Transparent things are drawn after all else, from back to front: see
-/// [`sort_back_to_front`](crate::mesh::sort_back_to_front); and without leaving its depth:
-/// [`DepthState::TEST`](crate::span::DepthState::TEST).
+/// Draw transparent things after all others, from back to front (see
+/// [`sort_back_to_front`](crate::mesh::sort_back_to_front)), and do not let them write depth
+/// ([`DepthState::TEST`](crate::span::DepthState::TEST)).
 ///
 /// ```
 /// use zstrip::State;
@@ -145,7 +146,7 @@ pub struct Blend<S, M> {
 }
 
 impl<S, M> Blend<S, M> {
-    /// Wraps a shader, whose colours are blended by a mode.
+    /// Wraps a shader and blends its colours by a mode.
     #[must_use]
     pub const fn new(shader: S, mode: M) -> Self {
         Self { shader, mode }
@@ -170,7 +171,7 @@ impl<P: PixelFormat, M: BlendMode<P>, S: Shader<M::Source>> Shader<P> for Blend<
         self.shader.setup(triangle)
     }
 
-    /// Blended with black.
+    /// Blends the colour with black.
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
         Some(self.mode.blend(self.shader.fragment(fragment)?, P::pack([0; 3])))

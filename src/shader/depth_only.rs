@@ -4,8 +4,8 @@ use crate::color::PixelFormat;
 use crate::span::{DepthTest, Fragment, Shader, Span, SpanOf};
 use crate::vertex::{VertexRef, VertexShader};
 
-/// Leaves depths and no colours: what is drawn with it hides what comes after, and shows what was there before. A mesh drawn
-/// so hides the lines behind it.
+/// Writes depths and no colours: a mesh drawn with it keeps the pixels that are there, and hides everything behind it
+/// that is drawn later. So a mesh hides its own lines, for instance.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct DepthOnly;
 
@@ -25,7 +25,7 @@ impl<P: PixelFormat> Shader<P> for DepthOnly {
         None
     }
 
-    /// Keeps the pixel as it is, and counts as drawn, so that its depth is left. Smooth strokes ask pixel by pixel.
+    /// Keeps the pixel as it is, and counts as drawn, so that its depth is written. Smooth strokes ask per pixel.
     #[inline(always)]
     fn paint(&self, _: &Fragment<'_, [i32; 0]>, _: &mut P::Raw) -> bool {
         true

@@ -1,10 +1,11 @@
-//! Shaders that leave fragments out: the alpha test, and the screen door.
+//! Shaders that discard fragments: the alpha test and the screen door.
 
 use crate::color::{PixelFormat, Rgba8888};
 use crate::span::{Fragment, Shader, TriangleSetup};
 use crate::vertex::{VertexShader, Wrapper};
 
-/// Draws the fragments whose alpha is at least a threshold, opaque: leaves, fences, letters. No order of drawing is needed.
+/// Draws the fragments whose alpha is at least a threshold, opaque: leaves, fences, letters. The order of draws is
+/// free.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct AlphaTest<S> {
     shader: S,
@@ -44,11 +45,11 @@ impl<P: PixelFormat, S: Shader<Rgba8888>> Shader<P> for AlphaTest<S> {
     }
 }
 
-/// Row y of the pattern, column x in the bits 4x to 4x + 3: Bayer's matrix of order 4.
+/// Bayer's matrix of order 4: one word per row, column x in its bits 4x to 4x + 3.
 const PATTERN: [u16; 4] = [0xA280, 0x6E4C, 0x91B3, 0x5D7F];
 
-/// Draws a part of the fragments, in a regular pattern of 4 by 4 pixels that is fixed to the screen: transparency that reads
-/// no pixel, writes depth, and needs no order.
+/// Draws some of the fragments, in a regular pattern of 4 by 4 pixels that is fixed to the screen. This transparency
+/// reads no pixel, writes depth, and needs no order of draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ScreenDoor<S> {
     shader: S,
@@ -56,7 +57,7 @@ pub struct ScreenDoor<S> {
 }
 
 impl<S> ScreenDoor<S> {
-    /// Wraps a shader, which draws `opacity` of 16 pixels.
+    /// Wraps a shader and draws `opacity` of each 16 pixels.
     #[must_use]
     pub const fn new(shader: S, opacity: u8) -> Self {
         Self { shader, opacity }

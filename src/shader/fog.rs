@@ -1,9 +1,9 @@
 //! Fog: colours fade with distance into one colour.
 //!
-//! Fog is worked out from a fragment's depth, and not from a varying of its own: so it wraps any shader, adds nothing to the
-//! records and nothing to set-up, and is right at each pixel of a large triangle. Depth is a hyperbola of distance, so
-//! a small table takes it to the amount of fog, fine where depth is coarse: beyond 15/16 of the depth range, and again
-//! beyond 255/256.
+//! Fog is computed from a fragment's depth, and not from a varying of its own. So it wraps any shader, adds nothing to
+//! records and set-up, and is right at each pixel of a large triangle. Depth is a hyperbola of distance: a small table
+//! converts it to the amount of fog. The table has finer steps beyond 15/16 of the depth range, and again beyond
+//! 255/256, because depth is coarse there.
 
 use crate::color::{PixelFormat, channels};
 use crate::math::{ProjectionError, Scalar, exp_negative};
@@ -14,31 +14,34 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 /// Law by which fog thickens with the distance from the camera's plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FogCurve {
-    /// None up to `start`, only fog from `end` on, evenly in between.
+    /// No fog up to `start`, nothing but fog from `end` on, evenly in between.
     Linear {
-        /// Where it begins.
+        /// Distance at which fog begins.
         start: Scalar,
-        /// Where nothing else is seen.
+        /// Distance from which on nothing else is seen.
         end: Scalar,
     },
-    /// e^-(density · distance) of a colour is left: even fog.
+    /// Even fog, which leaves e^-(density · distance) of a colour.
     Exponential {
-        /// Per unit of distance.
+        /// Density per unit of distance.
         density: Scalar,
     },
-    /// e^-(density · distance)² of a colour is left: clearer close by, with a denser end.
+    /// Fog that is clearer close by and denser far away, which leaves e^-(density · distance)² of a colour.
     ExponentialSquared {
-        /// Per unit of distance.
+        /// Density per unit of distance.
         density: Scalar,
     },
 }
 
-/// Entries: one for each of the last 256 steps of depth, then 256 of 16 steps, then 256 of 256 steps, and the end. An entry
-/// stands at the near end of its steps: counted from the far plane, `k`, 16 `k` and 256 `k`. Of the second and third kind
-/// the first 16 are not used, but for the very first of the third, which ends the second.
+/// Number of entries: one for each of the last 256 steps of depth, 256 of 16 steps each, 256 of 256 steps each, and the
+/// end.
+///
+/// An entry stands at the near end of its steps: counted from the far plane, `k`, 16 `k` and 256 `k`. The first 16
+/// entries of the second and of the third kind are not used, except for the very first of the third kind, which ends
+/// the second.
 const ENTRIES: usize = 769;
 
-/// Part of a colour that fog leaves at each depth. Make it a constant, or once for a camera.
+/// Part of a colour that fog leaves at each depth. Make the table a constant, or make it once per camera.
 ///
 /// ```
 /// use zstrip::shader::{FogCurve, FogTable};
@@ -56,15 +59,15 @@ const ENTRIES: usize = 769;
 /// ```
 ///
 /// # Format
-/// 255 = all of it. Within 1.5 of the exact amount at any depth (tested for fog that thickens over a quarter of the distance
-/// or more, up to far = 4,000 near).
+/// 255 = the whole colour. Within 1.5 of the exact part at any depth, as tested for fog that thickens over a quarter of
+/// the distance or more, and up to far = 4,000 near.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FogTable {
     entries: [u8; ENTRIES],
 }
 
 impl FogCurve {
-    /// Computes the part of a colour that is left at a distance in 16.16, 255 = all.
+    /// Computes the part of a colour that fog leaves at a distance in 16.16, 255 = all.
     const fn transmittance(&self, distance: i64) -> u8 {
         match *self {
             Self::Linear { start, end } => {
@@ -84,9 +87,9 @@ impl FogCurve {
     }
 }
 
-/// e^-x of 255, or e^-x², for x = density · distance.
+/// Computes 255 e^-x, or 255 e^-x², for x = density · distance.
 const fn fading(density: Scalar, distance: i64, squared: bool) -> u8 {
-    // From 32 on nothing is left.
+    // From x = 32 on, the result rounds to 0.
     let limit = 32 << 16;
     let product = (density.to_bits() as i64 * distance) >> 16;
     let x = if product > limit { limit } else { product };
@@ -96,7 +99,7 @@ const fn fading(density: Scalar, distance: i64, squared: bool) -> u8 {
 }
 
 impl FogTable {
-    /// For a [perspective camera](crate::math::Projective::perspective) with these planes.
+    /// Computes the table of a [perspective camera](crate::math::Projective::perspective) with these planes.
     ///
     /// # Errors
     /// When `near ≤ 0` or `near ≥ far`.
@@ -107,7 +110,7 @@ impl FogTable {
         Self::new(near, far, curve, true)
     }
 
-    /// For an [orthographic camera](crate::math::Projective::orthographic) with these planes.
+    /// Computes the table of an [orthographic camera](crate::math::Projective::orthographic) with these planes.
     ///
     /// # Errors
     /// When `near ≥ far`.
@@ -123,7 +126,7 @@ impl FogTable {
         let mut entries = [0; ENTRIES];
         let mut k = 0;
         while k < ENTRIES {
-            // Steps before the far plane; the near plane is 65,535 before it.
+            // Steps in front of the far plane; the near plane is 65,535 steps in front of it.
             let steps = match k {
                 0..256 => k,
                 256..512 => (k - 256) << 4,
@@ -138,7 +141,7 @@ impl FogTable {
         Ok(Self { entries })
     }
 
-    /// Returns the part of a colour that is left at a depth, 255 = all.
+    /// Returns the part of a colour that fog leaves at a depth, 255 = all.
     #[must_use]
     #[inline]
     pub fn transmittance(&self, depth: u16) -> u8 {
@@ -155,7 +158,7 @@ impl FogTable {
     }
 }
 
-/// The distance at a depth of a perspective camera: n f / (n + (f - n) steps / 65,535). All 16.16; 0 < n < f.
+/// Computes the distance at a depth of a perspective camera: n f / (n + (f - n) steps / 65,535). All 16.16; 0 < n < f.
 const fn hyperbola(n: i64, f: i64, steps: i64) -> i64 {
     // Below 2⁶²; as many bits more as fit, up to 16.
     let product = n * f;
@@ -177,7 +180,7 @@ pub struct Fogged<'t, S> {
 }
 
 impl<'t, S> Fogged<'t, S> {
-    /// A shader whose colours fade into `color`: usually that of the background; black for what is
+    /// Wraps a shader, whose colours fade into `color`: usually the background's, and black for draws that are
     /// [added](crate::shader::Add).
     #[must_use]
     pub fn new(shader: S, table: &'t FogTable, color: impl Into<Rgb888>) -> Self {

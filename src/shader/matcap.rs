@@ -5,20 +5,21 @@ use crate::math::{Affine, Vec3};
 use crate::span::{Fragment, Shader};
 use crate::vertex::{VertexRef, VertexShader};
 
-/// Shades by a square picture, of `N` × `N` pixels of format `T`, of a ball in eye space: whatever light and material the
-/// ball has, the surface gets, for one look-up a fragment.
+/// Shades by a picture of a ball in eye space, `N` × `N` pixels of format `T`. The surface looks as lit as the ball
+/// does, of any material and under any light, for one look-up per fragment.
 ///
 /// Rows go from the top down; `N` is a power of two. Normals are interpolated linearly on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matcap<'a, T: PixelFormat, const N: usize> {
     picture: &'a [[T::Raw; N]; N],
-    /// To the right and down in eye space, 2.14.
+    /// Directions to the right and down in eye space, seen from object space, 2.14.
     right: [i32; 3],
     down: [i32; 3],
 }
 
 impl<'a, T: PixelFormat, const N: usize> Matcap<'a, T, N> {
-    /// A picture for a mesh that `model` (which may rotate, move and scale evenly) brings into eye space.
+    /// Returns the shader of a picture for a mesh that `model` (which may rotate, move and scale evenly) brings into
+    /// eye space.
     #[must_use]
     pub fn new(picture: &'a [[T::Raw; N]; N], model: &Affine) -> Self {
         const { assert!(N.is_power_of_two() && N <= 4096, "the side of a matcap is a power of two, up to 4096") };
@@ -31,8 +32,8 @@ impl<'a, T: PixelFormat, const N: usize> Matcap<'a, T, N> {
     }
 }
 
-/// A component of a normal, by an axis in 2.14, as a place in the picture: 0 to 1 in 2.30, and so that rounding does not
-/// lead out of it by a 512th less at either end.
+/// Converts a normal's component along an axis (2.14) to a place in the picture: 0 to 1, 2.30. A 512th is left out at
+/// either end, so that rounding does not lead out of the picture.
 #[inline]
 fn place(normal: [i16; 3], axis: [i32; 3]) -> i32 {
     let [x, y, z] = normal.map(i32::from);
@@ -73,7 +74,7 @@ impl<P: PixelFormat, T: PixelFormat, const N: usize> Shader<P> for Matcap<'_, T,
     #[inline]
     fn fragment(&self, fragment: &Fragment<'_, [i32; 2]>) -> Option<P::Raw> {
         let [u, v] = *fragment.varyings;
-        // N is a power of two, and the mask keeps what would be out of the picture in it.
+        // N is a power of two, so the mask keeps any place in the picture.
         let along = |place: i32| (place as usize >> (30 - N.trailing_zeros())) & (N - 1);
         let texel = self.picture.get(along(v)).and_then(|row| row.get(along(u)))?;
         Some(P::pack_at(T::unpack(*texel), fragment.position))

@@ -6,12 +6,12 @@ use crate::math::unit_vector;
 use crate::span::{Fragment, Shader};
 use crate::vertex::{Face, Side, VertexRef, VertexShader};
 
-/// Phong shading under directional lights: a [`LitMaterial`] is lit at each fragment, by the interpolated normal made a unit
-/// vector again.
+/// Phong shading under directional lights: a [`LitMaterial`] is lit at each fragment, by the interpolated normal made a
+/// unit vector again.
 ///
-/// It is the cheaper of the two shaders per fragment, because it interpolates no positions. So it takes no point lights (they
-/// do not compile), and the viewer is far away: a [`Viewer::At`](crate::light::Viewer::At) looks from the direction in
-/// which it is from the middle of the mesh's box. [`PhongNear`] has neither limit.
+/// It is the cheaper of the two shaders per fragment, because it interpolates no positions. So it takes no point lights
+/// (they do not compile), and the viewer is far away: a [`Viewer::At`](crate::light::Viewer::At) looks from the
+/// direction in which it is from the middle of the mesh's box. [`PhongNear`] has neither limit.
 ///
 /// Colours of vertices are those of the provoking vertex.
 ///
@@ -43,11 +43,11 @@ impl<const D: usize> Phong<D> {
     }
 }
 
-/// Phong shading under any lights: as [`Phong`], with point lights and a viewer close by, because positions are interpolated
-/// as well.
+/// Phong shading under any lights: as [`Phong`], with point lights and a viewer close by, because positions are
+/// interpolated as well.
 ///
-/// Positions are interpolated linearly on the screen. Where a triangle is much nearer to the viewer at one end than at the
-/// other, a light close to it is displaced: divide such triangles.
+/// Positions are interpolated linearly on the screen. Where a triangle is much nearer to the viewer at one end than at
+/// the other, a light close to it is displaced: divide such triangles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PhongNear<const D: usize, const P: usize> {
     material: LitMaterial<D, P>,

@@ -10,8 +10,8 @@ use embedded_graphics_core::pixelcolor::{Rgb888, raw::RawU24};
 /// [`Flat`](crate::shader::Flat) asks once per face, [`Gouraud`](crate::shader::Gouraud) once per vertex, and
 /// [`Textured::lit`](crate::shader::Textured::lit) multiplies its texels by the colours of the vertices.
 ///
-/// [`Unlit`], [`Sunlit`] and [`LitMaterial`] are surfaces. A surface of one's own takes one function. This one is brighter
-/// where it looks up, as under an overcast sky:
+/// [`Unlit`], [`Sunlit`] and [`LitMaterial`] are surfaces. A surface of one's own takes one function. This one is
+/// brighter where it looks up, as under an overcast sky:
 ///
 /// ```
 /// use zstrip::light::LitColor;
@@ -32,8 +32,8 @@ use embedded_graphics_core::pixelcolor::{Rgb888, raw::RawU24};
 /// # let _ = shader;
 /// ```
 ///
-/// A shader is compiled for each type of surface that it is used with. Where a program has several, and size matters more
-/// than speed, `&dyn Surface` makes them one type.
+/// A shader is compiled for each type of surface that it is used with. Where a program has several, and size matters
+/// more than speed, `&dyn Surface` makes them one type.
 pub trait Surface {
     /// Returns the colour at a vertex.
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor;
@@ -104,11 +104,11 @@ impl Surface for Sunlit {
     }
 }
 
-/// Lit by the normals of vertices, or by the normal of a face at its middle. A mesh without normals shows only the ambient
-/// light at its vertices.
+/// Lit by the normals of vertices, or by the normal of a face at its middle. A mesh without normals shows only the
+/// ambient light at its vertices.
 ///
-/// Two-sided materials turn the normal of a face that shows its back, and turn the normal of a vertex towards the viewer,
-/// because the vertex may belong to faces of both sides.
+/// Two-sided materials turn the normal of a face that shows its back, and turn the normal of a vertex towards the
+/// viewer, because the vertex may belong to faces of both sides.
 impl<const D: usize, const P: usize> Surface for LitMaterial<D, P> {
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
         let p = self.local(vertex.position());

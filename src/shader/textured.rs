@@ -28,17 +28,17 @@ pub struct Textured<'a, T, W = Repeat, F = Nearest> {
 }
 
 impl<'a, T: Texture> Textured<'a, T> {
-    /// Creates a shader of one texture for all sizes on the screen.
+    /// Returns the shader of one texture for all sizes on the screen.
     #[must_use]
     pub const fn new(texture: &'a T) -> Self {
         Self { levels: core::slice::from_ref(texture), how: PhantomData }
     }
 
-    /// Creates a shader of a mip chain: each level half the size of the one before, rounded down, at least 1. Each triangle takes the level
-    /// whose texels are nearest in size to its pixels, and not smaller than 1/2 of one.
+    /// Returns the shader of a mip chain: each level has half the size of the previous level, rounded down, at least 1.
+    /// Each triangle takes the level whose texels are nearest in size to its pixels, and at least half as large.
     ///
     /// # Errors
-    /// If a level's size is not that, or there are no levels.
+    /// When a level has another size, or there are no levels.
     pub fn mipmapped(levels: &'a [T]) -> Result<Self, TextureError> {
         let mut sizes = levels.iter().map(Texture::size);
         let mut size = sizes.next().ok_or(TextureError::NoLevels)?;
@@ -66,10 +66,11 @@ impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
         Textured { levels: self.levels, how: PhantomData }
     }
 
-    /// Multiplies the texels by the colours of a [`Surface`] at the vertices: texture × material × vertex colours × light.
+    /// Multiplies the texels by the colours of a [`Surface`] at the vertices: texture × material × vertex colours ×
+    /// light.
     ///
-    /// Any surface will do: [`Unlit::vertex_colors`](crate::light::Unlit::vertex_colors) shows light that is baked into the
-    /// mesh, `sun.on(&Matte::WHITE, &model)` the light of a sun. Highlights are multiplied by the texels too.
+    /// Any surface will do: [`Unlit::vertex_colors`](crate::light::Unlit::vertex_colors) shows light that is baked into
+    /// the mesh, `sun.on(&Matte::WHITE, &model)` the light of a sun. Highlights are multiplied by the texels too.
     ///
     /// Colours of the surface are interpolated linearly on the screen.
     #[must_use]
@@ -92,8 +93,8 @@ impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
         self.level_for(triangle.corners.map(Perspective::corrected), triangle.area)
     }
 
-    /// The level whose texels have the size of pixels, or are up to half as large: from the areas of a triangle in texels
-    /// and in pixels, by their numbers of bits.
+    /// The level whose texels have the size of pixels, or are up to half as large: from the areas of a triangle in
+    /// texels and in pixels, by their numbers of bits.
     ///
     /// # Format
     /// `area` in 2⁻¹⁶ px², differences of coordinates are cut to 16.8 bits: products below 2⁴⁸, 2⁻¹⁶ of the texture.
@@ -166,7 +167,7 @@ type LitVaryings = Perspective<2, 6>;
 impl<T, S: Surface, W, F> VertexShader for LitTexture<'_, T, S, W, F> {
     type Varyings = LitVaryings;
 
-    /// u, v, the light in 10 bits a channel, 1 / w.
+    /// u, v, the colour of the surface in 10 bits per channel, 1 / w.
     const WORDS: usize = 4;
 
     #[inline]
