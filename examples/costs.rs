@@ -115,7 +115,7 @@ mod rows {
     /// Draws with a texture of 64 x 64 texels.
     fn image<T: TexelFormat>(scene: S<'_, '_, '_>, format: T, draw: impl FnOnce(S<'_, '_, '_>, &Image<'_, T>)) {
         let bytes = BYTES.get(..64 * 64 * T::BITS / 8).unwrap_or_default();
-        if let Ok(image) = Image::new(bytes, (64, 64), format) {
+        if let Ok(image) = Image::new(bytes, Size::new(64, 64), format) {
             draw(scene, &image);
         }
     }

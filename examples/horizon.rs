@@ -10,6 +10,7 @@ use host::program::{Demo, show};
 use minifb::Key;
 use std::process::ExitCode;
 use zstrip::Scene;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle16;
 use zstrip::target::Strip;
@@ -43,7 +44,7 @@ impl Demo for Horizon {
         self.steered.1 += roll;
     }
 
-    fn prepare(&mut self, frame: u32, _: (u16, u16)) {
+    fn prepare(&mut self, frame: u32, _: Size) {
         let sway = |speed: u32, degrees: i32| {
             let sine = Angle16((frame.wrapping_mul(speed)) as u16).sin().to_bits();
             ((i64::from(sine) * i64::from(degrees * 182)) >> 16) as i32

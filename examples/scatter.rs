@@ -69,14 +69,9 @@ impl Demo for Scatter {
     const MODES: &'static [&'static str] = &["squares", "stems", "large"];
     const BACKGROUND: Rgb565 = Rgb565::new(2, 5, 4);
 
-    fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
+    fn prepare(&mut self, frame: u32, screen: Size) {
         let turn = Angle16(frame.wrapping_mul(64) as u16) + Angle16::from_degrees(32);
-        let camera = Projective::perspective(
-            Angle16::from_degrees(40),
-            Size::new(screen.0.into(), screen.1.into()),
-            Scalar::ONE,
-            Scalar::from_num(10),
-        );
+        let camera = Projective::perspective(Angle16::from_degrees(40), screen, Scalar::ONE, Scalar::from_num(10));
         let view = Affine::translation(Vec3::from_milli(0, 130, -5000))
             * Affine::rotation_x(Angle16::from_degrees(24))
             * Affine::rotation_y(turn);
@@ -135,9 +130,9 @@ impl Demo for Scatter {
         let inside = State { depth: DepthState { compare: Compare::LessEqual, write: true }, ..State::DEFAULT };
         scene.draw_points_with(inside, &points, &self.mvp, &Flat::vertex_colors(), Pixels::from_bits(size));
         // The plot's frame, over all.
-        let (width, height) = scene.screen();
+        let Size { width, height } = scene.screen();
         let mut canvas = scene.canvas();
-        let corner = |x: u16, y: u16| zstrip::ScreenPoint::corner(x as i16, y as i16);
+        let corner = |x: u32, y: u32| zstrip::ScreenPoint::corner(x as i16, y as i16);
         let frame = [corner(1, 1), corner(width - 1, 1), corner(width - 1, height - 1), corner(1, height - 1)];
         canvas.outline(&frame, Rgb888::new(70, 84, 96), &Thick::px(2));
     }

@@ -75,7 +75,7 @@ impl Ends {
     fn input(&self) -> Option<Input<'_>> {
         let positions = Positions::Quantized { points: &self.space, scale: Scalar::ONE, offset: Vec3::ZERO };
         let data = Vertices { colors: Some(&self.colors), ..Vertices::new(positions) };
-        let camera = scenes::camera((WIDTH as u16, HEIGHT as u16), Scalar::ONE, Scalar::from_bits(12 << 16));
+        let camera = scenes::camera(Size::new(WIDTH as u32, HEIGHT as u32), Scalar::ONE, Scalar::from_bits(12 << 16));
         let torus = camera * scenes::torus_model(Angle16(5000));
         Some(Input { screen: &self.screen, lines: Lines::new(data, LineTopology::Pairs, None).ok()?, torus })
     }

@@ -132,17 +132,12 @@ impl Demo for Wireframe {
     const MODES: &'static [&'static str] = &["dashed", "removed", "shaded", "all"];
     const BACKGROUND: Rgb565 = Rgb565::new(2, 8, 8);
 
-    fn prepare(&mut self, frame: u32, screen: (u16, u16)) {
+    fn prepare(&mut self, frame: u32, screen: Size) {
         let turn = Angle16(frame.wrapping_mul(96) as u16) + Angle16::from_degrees(-35);
         let model = Affine::translation(Vec3::from_milli(0, 150, -6000))
             * Affine::rotation_x(Angle16::from_degrees(28))
             * Affine::rotation_y(turn);
-        let camera = Projective::perspective(
-            Angle16::from_degrees(32),
-            Size::new(screen.0.into(), screen.1.into()),
-            Scalar::ONE,
-            Scalar::from_num(12),
-        );
+        let camera = Projective::perspective(Angle16::from_degrees(32), screen, Scalar::ONE, Scalar::from_num(12));
         self.mvp = camera.expect("a camera") * model;
         self.surface = surface(&model);
         // An edge is an outline if one of its quads faces the eye, and the other does not.

@@ -29,7 +29,7 @@ pub use crate::{
     mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices},
     scene::{Cull, Scene, State, Thick, Thin},
     shader::{Flat, Gouraud, Phong, Textured},
-    target::{Framebuffer, StripPixels},
+    target::{Framebuffer, StripPixels, WithDepth, WithRecords, WithoutDepth, WithoutRecords},
 };
 #[doc(no_inline)]
 pub use embedded_graphics_core::{

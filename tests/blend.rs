@@ -197,7 +197,7 @@ static FLOOR: Mesh<'static> = {
 fn textures_are_blended_by_their_alpha_in_perspective_too() {
     const COLOR: [u8; 3] = [200, 100, 50];
     let bytes = COLOR.repeat(4);
-    let image = Image::new(&bytes, (4, 1), Rgb888Texel).expect("an image");
+    let image = Image::new(&bytes, Size::new(4, 1), Rgb888Texel).expect("an image");
     let texture = WithAlpha::new(image, &[0x05, 0xAF]).expect("as many alphas");
     let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::CSS_DARK_SLATE_BLUE, |scene| {
         scene.draw(&FLOOR, &Projective::IDENTITY, &Blend::new(Textured::new(&texture), Alpha));

@@ -131,7 +131,7 @@ fn pillar<F: Framebuffer>(scene: &mut Scene<'_, F>)
 where
     Flat: Shader<F::Format>,
 {
-    let mvp = scenes::camera(SCREEN, Scalar::ONE, Scalar::ONE * 20)
+    let mvp = scenes::camera(Size::new(SCREEN.0.into(), SCREEN.1.into()), Scalar::ONE, Scalar::ONE * 20)
         * (Affine::translation(Vec3::from_ints(0, 0, -3)) * Affine::rotation_y(Angle16(5000)));
     scene.draw(&scenes::polygons::PILLAR, &mvp, &Flat::new(scenes::LIT_COLORS));
 }

@@ -47,7 +47,8 @@ impl Shader<Rgb565> for Drawn<'_> {
 }
 
 fn mvp(turn: Angle16) -> Projective {
-    scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12)) * scenes::torus_model(turn)
+    scenes::camera(Size::new(SCREEN.0.into(), SCREEN.1.into()), Scalar::ONE, Scalar::from_num(12))
+        * scenes::torus_model(turn)
 }
 
 /// A front face on the screen, as the oracle sees it.
@@ -167,7 +168,7 @@ fn lines_may_be_pulled_forward_instead() {
     let indices = Some(&[0_u16, 2][..]);
 
     let diagonal = Lines::new(Vertices::new(Positions::Exact(&corners)), LineTopology::Pairs, indices).expect("a line");
-    let camera = scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12));
+    let camera = scenes::camera(Size::new(SCREEN.0.into(), SCREEN.1.into()), Scalar::ONE, Scalar::from_num(12));
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -3));
     let red = |constant: i16| {
         let bias = DepthBias { constant, ..DepthBias::NONE };

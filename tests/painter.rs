@@ -63,7 +63,7 @@ fn torus_is_painted_as_a_depth_buffer_would_show_it() {
     let data = MeshData { face_normals: None, normals: None, colors: Some(&colors), hierarchy: None, ..*source };
     let mesh = Mesh::new(data).expect("a mesh");
     for turn in [0, 9000, 31_000] {
-        let camera = scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12));
+        let camera = scenes::camera(Size::new(SCREEN.0.into(), SCREEN.1.into()), Scalar::ONE, Scalar::from_num(12));
         let (differ, drawn, order) = compare(&mesh, &(camera * scenes::torus_model(Angle16(turn))));
         assert!(drawn > 2000 && differ <= drawn / 200, "turn {turn}: {differ} of {drawn} pixels differ, {order:?}");
     }
@@ -92,7 +92,7 @@ fn slanted_triangles_are_painted_in_the_right_order() {
         let data =
             MeshData { colors: Some(&colors), indices: Some(&indices), ..MeshData::new(Positions::Exact(&points)) };
         let mesh = Mesh::new(data).expect("a mesh");
-        let camera = scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12));
+        let camera = scenes::camera(Size::new(SCREEN.0.into(), SCREEN.1.into()), Scalar::ONE, Scalar::from_num(12));
         let (differ, _, order) = compare(&mesh, &camera);
         assert_eq!(order.indices, 42);
         wrong += differ;
@@ -111,7 +111,7 @@ fn slanted_triangles_are_painted_in_the_right_order() {
 
 #[test]
 fn rings_and_intersections_are_counted() {
-    let camera = scenes::camera(SCREEN, Scalar::ONE, Scalar::from_num(12));
+    let camera = scenes::camera(Size::new(SCREEN.0.into(), SCREEN.1.into()), Scalar::ONE, Scalar::from_num(12));
     let mvp = camera * Affine::translation(Vec3::from_ints(0, 0, -3));
     let (.., order) = compare(&scenes::polygons::CYCLE, &mvp);
     assert!(order.unresolved > 0, "{order:?}");

@@ -45,13 +45,14 @@ fn parts(meshes: &[(&'static Mesh<'static>, Projective)], cull: Cull) -> Vec<Par
 
 /// The draws of the scenes of the examples, under their names.
 fn scene_parts(name: &str, size: (u16, u16), turn: Angle16) -> Vec<Part> {
-    let camera = scenes::camera(size, Scalar::ONE, Scalar::from_num(12));
+    let screen = Size::new(size.0.into(), size.1.into());
+    let camera = scenes::camera(screen, Scalar::ONE, Scalar::from_num(12));
     let at = |z: i16| Affine::translation(Vec3::from_ints(0, 0, z));
     let (spin, tilt) = (Affine::rotation_z(turn), Affine::rotation_x(Angle16::from_degrees(-20)));
     match name {
         "torus" => parts(&[(&torus::MESH, camera * scenes::torus_model(turn))], Cull::Back),
         "room" => {
-            let room = scenes::room_camera(size, turn);
+            let room = scenes::room_camera(screen, turn);
             let pillar = Affine::translation(Vec3::from_milli(800, 0, -600));
             let ring = Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
             let half = Affine::scale(Scalar::from_bits(1 << 15));
@@ -335,7 +336,7 @@ fn lit_torus_agrees_with_light_in_f64() {
     let size = (96, 72);
     let turn = Angle16(9000);
     let model = scenes::torus_model(turn);
-    let mvp = scenes::camera(size, Scalar::ONE, Scalar::from_num(12)) * model;
+    let mvp = scenes::camera(Size::new(size.0.into(), size.1.into()), Scalar::ONE, Scalar::from_num(12)) * model;
     let rows = model.to_rows().map(|row| row.map(|v| f64::from(v) / 65_536.0));
     let to_light = ray::normalize([0.4, 0.7, 0.6]);
     // Into object space: by the transposed rotation.

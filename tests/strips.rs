@@ -86,10 +86,10 @@ where
     Gouraud: zstrip::span::Shader<F::Format>,
     Flat: zstrip::span::Shader<F::Format>,
 {
-    let (width, height) = scene.screen();
+    let screen = scene.screen();
     scene.set_viewport(part);
     scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
-    scene.set_viewport(Viewport::full(Size::new(width.into(), height.into())).expect("the screen is a viewport"));
+    scene.set_viewport(Viewport::full(screen).expect("the screen is a viewport"));
     let turned = Projective::from(Affine::rotation_z(Angle16(9999)));
     scene.draw_with(BOTH_SIDES, mesh, &turned, &Flat::unlit(Rgb888::CSS_CORAL));
     scene.draw_with(state, mesh, &turned, &Gouraud::vertex_colors());

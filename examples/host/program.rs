@@ -64,7 +64,7 @@ pub trait Demo<Z: Depth = WithDepth> {
     fn key(&mut self, _key: Key) {}
 
     /// Called before each frame, with the screen's size.
-    fn prepare(&mut self, _frame: u32, _screen: (u16, u16)) {}
+    fn prepare(&mut self, _frame: u32, _screen: Size) {}
 
     /// Draws the frame that was prepared, for an angle that each frame adds 1/512 of a turn to. Called for each strip.
     fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, Z, WithRecords>>, turn: Angle16, mode: usize);
@@ -93,7 +93,7 @@ fn render<D: Demo<Z>, Z: Depth>(
         picture.put(strip);
         Ok::<(), std::convert::Infallible>(())
     };
-    demo.prepare(settings.frame, settings.size);
+    demo.prepare(settings.frame, Size::new(settings.size.0.into(), settings.size.1.into()));
     let turn = Angle16(settings.frame.wrapping_mul(128) as u16);
     Ok(renderer.frame_to(to_picture, &mut color, D::BACKGROUND, |scene| demo.draw(scene, turn, settings.mode))?)
 }

@@ -1,6 +1,7 @@
 //! An artificial horizon: an instrument drawn on the screen's plane.
 
 use super::Rgb888;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::math::{Angle16, Pixels, Scalar};
 use zstrip::{Canvas, Framebuffer, Scene, ScreenPoint, Smooth};
 
@@ -42,10 +43,10 @@ impl Dial {
 
 /// Draws the instrument in the middle of the screen.
 pub fn horizon<F: Framebuffer>(scene: &mut Scene<'_, F>, pitch: Angle16, roll: Angle16) {
-    let (width, height) = scene.screen();
+    let Size { width, height } = scene.screen();
     let dial = Dial {
-        center: (i32::from(width) * 128, i32::from(height) * 128),
-        radius: i32::from(width.min(height)) * 116,
+        center: (width as i32 * 128, height as i32 * 128),
+        radius: width.min(height) as i32 * 116,
         down: 0,
         turn: (0, 1 << 16),
     };

@@ -48,16 +48,15 @@ struct Lens {
 
 impl Lens {
     #[inline(never)]
-    fn new(screen: (u16, u16), near: Scalar, far: Scalar) -> Self {
+    fn new(screen: Size, near: Scalar, far: Scalar) -> Self {
         let camera =
-            Projective::perspective(Angle16::from_degrees(45), Size::new(screen.0.into(), screen.1.into()), near, far)
-                .unwrap_or(Projective::IDENTITY);
+            Projective::perspective(Angle16::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
         let [[x, ..], [_, y, ..], [.., z, w], _] = camera.to_rows();
         Self { x, y, z: [z, w] }
     }
 
     /// For things that are a few units away.
-    fn close(screen: (u16, u16)) -> Self {
+    fn close(screen: Size) -> Self {
         Self::new(screen, Scalar::ONE, Scalar::from_bits(16 << 16))
     }
 
@@ -375,7 +374,7 @@ fn glass_model(turn: Angle16, k: u16) -> Affine {
 
 /// The order of the panes and the pot.
 #[inline(never)]
-fn back_to_front(screen: (u16, u16), turn: Angle16) -> [u16; 5] {
+fn back_to_front(screen: Size, turn: Angle16) -> [u16; 5] {
     let lens = Lens::close(screen);
     let mut order = [0, 1, 2, 3, 4];
     sort_back_to_front(&mut order, |k| view_depth(&lens.seen(|| glass_model(turn, *k)), PANE.bounds()));
@@ -406,7 +405,7 @@ fn lit_pot(turn: Angle16, material: impl Into<Material>) -> LitMaterial<1, 1> {
 
 /// Object space of the pot → clip space.
 #[inline(never)]
-fn pot_seen(screen: (u16, u16), turn: Angle16) -> Projective {
+fn pot_seen(screen: Size, turn: Angle16) -> Projective {
     Lens::close(screen).seen(|| glass_model(turn, PANES.len() as u16))
 }
 

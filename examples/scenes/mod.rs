@@ -105,14 +105,13 @@ fn in_place<T>(make: impl FnOnce() -> T) -> T {
 
 /// A camera with a vertical field of view of 60 degrees.
 #[inline(never)]
-pub fn camera((width, height): (u16, u16), near: Scalar, far: Scalar) -> Projective {
-    Projective::perspective(Angle16::from_degrees(60), Size::new(width.into(), height.into()), near, far)
-        .unwrap_or(Projective::IDENTITY)
+pub fn camera(screen: Size, near: Scalar, far: Scalar) -> Projective {
+    Projective::perspective(Angle16::from_degrees(60), screen, near, far).unwrap_or(Projective::IDENTITY)
 }
 
 /// Object space → clip space: the camera of most scenes, and what it is multiplied by.
 #[inline(never)]
-fn seen(screen: (u16, u16), times: impl FnOnce(Projective) -> Projective) -> Projective {
+fn seen(screen: Size, times: impl FnOnce(Projective) -> Projective) -> Projective {
     times(camera(screen, Scalar::ONE, Scalar::from_bits(12 << 16)))
 }
 
@@ -159,7 +158,7 @@ pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 /// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view. It
 /// looks to and fro, by 40 degrees.
 #[inline(never)]
-pub fn room_camera(screen: (u16, u16), turn: Angle16) -> Projective {
+pub fn room_camera(screen: Size, turn: Angle16) -> Projective {
     let eye = Vec3::from_milli(-1500, 300, 1500);
     let sway = Angle16((turn.sin().to_bits() / 9) as u16);
     let view = Affine::rotation_y(sway + Angle16::from_degrees(40)) * Affine::translation(-eye);
@@ -168,7 +167,7 @@ pub fn room_camera(screen: (u16, u16), turn: Angle16) -> Projective {
 
 /// Takes what a model matrix brings into the room to clip space.
 #[inline(never)]
-fn in_room(screen: (u16, u16), turn: Angle16, model: impl FnOnce() -> Affine) -> Projective {
+fn in_room(screen: Size, turn: Angle16, model: impl FnOnce() -> Affine) -> Projective {
     room_camera(screen, turn) * model()
 }
 
@@ -222,7 +221,7 @@ pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 }
 
 /// [`seen`] so far away, turned on the screen.
-fn turned_at(screen: (u16, u16), distance: i16, turn: Angle16) -> Projective {
+fn turned_at(screen: Size, distance: i16, turn: Angle16) -> Projective {
     seen(screen, |camera| camera * Affine::translation(Vec3::from_ints(0, 0, -distance)) * Affine::rotation_z(turn))
 }
 

@@ -2,6 +2,7 @@
 
 use super::kept::kept;
 use super::{LIGHT, camera};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::light::{Matte, NORMAL_ONE};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
@@ -156,7 +157,7 @@ pub fn floor_levels() -> &'static [Level; LEVELS] {
 const fn level(bytes: &'static [u8; FLOOR_BYTES], at: usize, side: usize) -> Level {
     let (_, rest) = bytes.split_at(at);
     let (bytes, _) = rest.split_at(2 * side * side);
-    match Image::new(bytes, (side as u16, side as u16), Rgb565Texel) {
+    match Image::new(bytes, Size::new(side as u32, side as u32), Rgb565Texel) {
         Ok(image) => image,
         Err(_) => panic!("a level has another size"),
     }
@@ -241,7 +242,7 @@ fn around(turn: Angle16) -> Affine {
 
 /// Takes what a model matrix brings into the world to clip space.
 #[inline(never)]
-fn seen(screen: (u16, u16), turn: Angle16) -> Projective {
+fn seen(screen: Size, turn: Angle16) -> Projective {
     camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * around(turn)
 }
 
@@ -268,7 +269,7 @@ fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16,
 
 /// Object space of a crate → clip space.
 #[inline(never)]
-fn crate_seen(screen: (u16, u16), turn: Angle16, place: [i32; 4]) -> Projective {
+fn crate_seen(screen: Size, turn: Angle16, place: [i32; 4]) -> Projective {
     camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * crate_model(turn, place)
 }
 
@@ -292,13 +293,13 @@ pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, look: Loo
 /// A fence behind the crates, seen from both sides.
 #[inline(never)]
 fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let Ok(wire) = Image::new(&WIRE, (16, 16), MaskTexel([150, 160, 170])) else { return };
+    let Ok(wire) = Image::new(&WIRE, Size::new(16, 16), MaskTexel([150, 160, 170])) else { return };
     let state = State { cull: Cull::None, ..State::DEFAULT };
     scene.draw_with(state, &FENCE, &kept(|| fence_seen(scene.screen(), turn)), &Textured::new(&wire));
 }
 
 #[inline(never)]
-fn fence_seen(screen: (u16, u16), turn: Angle16) -> Projective {
+fn fence_seen(screen: Size, turn: Angle16) -> Projective {
     seen(screen, turn) * Affine::translation(Vec3::from_milli(0, 0, 1300))
 }
 
@@ -308,7 +309,7 @@ pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
 }
 
 #[inline(never)]
-fn close_seen(screen: (u16, u16), turn: Angle16) -> Projective {
+fn close_seen(screen: Size, turn: Angle16) -> Projective {
     camera(screen, Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16))
         * (Affine::translation(Vec3::from_milli(0, 0, -1250))
             * Affine::rotation_x(Angle16::from_degrees(25))

@@ -3,6 +3,7 @@
 use super::kept::kept;
 use super::{LIGHT, camera, textured};
 use zstrip::color::PixelFormat;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::light::Matte;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
@@ -109,7 +110,7 @@ pub fn water<F: Framebuffer>(scene: &mut Scene<'_, F>, time: Angle16, tenths: i3
 
 /// World → clip space.
 #[inline(never)]
-fn above(screen: (u16, u16)) -> Projective {
+fn above(screen: Size) -> Projective {
     camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(16 << 16))
         * (Affine::rotation_x(Angle16::from_degrees(24)) * Affine::translation(Vec3::from_milli(0, -1400, -3000)))
 }
@@ -131,7 +132,7 @@ fn crate_model(water: Water) -> Affine {
 
 /// Object space of the crate → clip space.
 #[inline(never)]
-fn crate_seen(screen: (u16, u16), water: Water) -> Projective {
+fn crate_seen(screen: Size, water: Water) -> Projective {
     above(screen) * crate_model(water)
 }
 

@@ -22,8 +22,8 @@ pub(super) const LIGHT: [u16; 256] = {
             ((v * 25_700 + 646) / 1292) as u16
         } else {
             let c = ((v as u128 * 1000 + 14_025) << 60) / 269_025;
-            let square = product(c, c);
-            ((product(square, fifth_root(square)) * 65_535 + (1 << 59)) >> 60) as u16
+            let square = mul_q60(c, c);
+            ((mul_q60(square, fifth_root(square)) * 65_535 + (1 << 59)) >> 60) as u16
         };
         v += 1;
     }
@@ -31,7 +31,7 @@ pub(super) const LIGHT: [u16; 256] = {
 };
 
 /// Multiplies two numbers in 4.60.
-const fn product(a: u128, b: u128) -> u128 {
+const fn mul_q60(a: u128, b: u128) -> u128 {
     (a * b) >> 60
 }
 
@@ -41,8 +41,8 @@ const fn fifth_root(x: u128) -> u128 {
     let mut bit = 1 << 60;
     while bit > 1 << 28 {
         let r = root | bit;
-        let square = product(r, r);
-        if product(product(square, square), r) <= x {
+        let square = mul_q60(r, r);
+        if mul_q60(mul_q60(square, square), r) <= x {
             root = r;
         }
         bit >>= 1;
@@ -229,6 +229,7 @@ macro_rules! grey_levels {
         impl Dither<$color> {
             /// Returns this dithering for a panel whose light grows evenly with its levels, as with some controllers
             /// that have no gamma curve set. Otherwise levels count as sRGB greys, which are evenly spaced to the eye.
+            #[must_use]
             pub const fn on_linear_panel(self) -> Self {
                 Self { tones: &$linear, ..self }
             }

@@ -40,12 +40,12 @@ pub fn unit_vector(v: [i32; 3]) -> [i32; 3] {
     let [x, y, z] = v;
     // Below 3 · 2³⁰.
     let q = x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).wrapping_add(z.wrapping_mul(z)) as u32;
-    if q.wrapping_sub(1 << 28) <= (1 << 30) - (1 << 28) { scaled(v, q) } else { unit_vector_of_any_length(v) }
+    if q.wrapping_sub(1 << 28) <= (1 << 30) - (1 << 28) { divide_by_root(v, q) } else { unit_vector_of_any_length(v) }
 }
 
 /// `v` / √`q` in 2.14, for the sum `q` of its squares in 2²⁸..=2³⁰.
 #[inline(always)]
-fn scaled([x, y, z]: [i32; 3], q: u32) -> [i32; 3] {
+fn divide_by_root([x, y, z]: [i32; 3], q: u32) -> [i32; 3] {
     // 2³⁰ / √q; components times that are at most 2³⁰ and a little.
     let factor = inverse_sqrt((q + (1 << 13)) >> 14) as i32;
     let component = |c: i32| c.wrapping_mul(factor).wrapping_add(1 << 15) >> 16;
@@ -70,7 +70,7 @@ fn unit_vector_of_any_length(v: [i32; 3]) -> [i32; 3] {
         (x, y, z) = (x << 1, y << 1, z << 1);
         q <<= 2;
     }
-    scaled([x, y, z], q)
+    divide_by_root([x, y, z], q)
 }
 
 #[cfg(test)]

@@ -18,7 +18,7 @@ pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
 
 /// The product of two numbers: a third of what the compiler's own routine takes on small cores.
 #[inline]
-pub(crate) fn product(a: i32, b: i32) -> i64 {
+pub(crate) fn mul_wide(a: i32, b: i32) -> i64 {
     if SMALL_CORE { product_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
 }
 
@@ -31,7 +31,7 @@ fn product_by_halves(a: i32, b: i32) -> i64 {
 
 /// [`mul_high_signed`] out of line: where speed does not matter.
 #[inline(never)]
-pub fn mul_high_apart(a: i32, b: u32) -> i32 {
+pub fn mul_high_outlined(a: i32, b: u32) -> i32 {
     mul_high_signed(a, b)
 }
 

@@ -11,7 +11,7 @@
 //! exact one. D is below 2³², and 45 bits after the point leave room for the rounding of one step in each of 4,096
 //! rows.
 
-use crate::math::{ShortDivisor, divide_modulo, leading_zeros_long, mul_high_apart, reciprocal};
+use crate::math::{ShortDivisor, divide_modulo, leading_zeros_long, mul_high_outlined, reciprocal};
 use crate::vertex::ScreenVertex;
 
 /// The state of an edge at a row.
@@ -94,9 +94,9 @@ impl Edge {
     fn large(x: i32, dx: i32, dy: i32, p: i32) -> Self {
         let z = leading_zeros_long(dy as u64) - 32;
         let inverse = reciprocal((dy as u32) << z);
-        let h = mul_high_apart(dx << 12, inverse);
+        let h = mul_high_outlined(dx << 12, inverse);
         let rest = (dx << (43 - z)).wrapping_sub(h.wrapping_mul(dy));
-        let second = i64::from(mul_high_apart(rest << 8, inverse)) << 20 >> (57 - 2 * (z as i32)).max(0);
+        let second = i64::from(mul_high_outlined(rest << 8, inverse)) << 20 >> (57 - 2 * (z as i32)).max(0);
         let step = (i64::from(h) << (z + 2)).wrapping_add(second);
         Self { x: Self::start(x).wrapping_add((step.wrapping_mul(p.into())) >> 8) - (1 << (z + 4)), step }
     }

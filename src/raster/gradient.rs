@@ -13,7 +13,7 @@
 //! The only error is the rounding of the gradients, 2⁻¹⁶ per pixel in 16.16: below 2⁻³ over the largest viewport.
 
 use crate::math::{
-    SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_apart, mul_high_signed, reciprocal,
+    SMALL_CORE, divide_modulo, leading_zeros, leading_zeros_long, mul_high_outlined, mul_high_signed, reciprocal,
 };
 use crate::vertex::{Plane64, ScreenVertex};
 
@@ -178,7 +178,7 @@ impl Gradients {
             // Redundant sign bits. All but the last of them are shifted out.
             let zeros = leading_zeros_long((n ^ (n >> 63)) as u64);
             let normalized = (n << (zeros - 1) >> 32) as i32;
-            let high = mul_high_apart(normalized, self.reciprocal);
+            let high = mul_high_outlined(normalized, self.reciprocal);
             // With up = zeros - 33: high 2³² 2^(shift + scale - up) / 2⁵⁵.
             let down = zeros as i32 - 10 - self.shift - scale as i32;
             if self.reciprocal == 0 || down < 2 {

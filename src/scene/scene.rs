@@ -8,6 +8,7 @@ use crate::raster::PixelRect;
 use crate::target::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::vertex::{DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, Varyings, VertexShader, Viewport};
 use core::ops::Range;
+use embedded_graphics_core::geometry::Size;
 
 /// Phases of a frame: the work that one call of the frame's closure does, see [the pipeline](crate#the-pipeline).
 ///
@@ -72,10 +73,10 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         self.viewport = viewport;
     }
 
-    /// Returns the width and the height of the screen.
+    /// Returns the size of the screen.
     #[must_use]
-    pub const fn screen(&self) -> (u16, u16) {
-        self.screen
+    pub const fn screen(&self) -> Size {
+        Size::new(self.screen.0 as u32, self.screen.1 as u32)
     }
 
     /// Returns the pixels that may be drawn in `rows` of the screen.

@@ -6,6 +6,7 @@ use crate::span::{DepthTest, Fragment, STEP, Shader, SpanOf, TriangleSetup, draw
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
 use crate::vertex::{Perspective, PerspectiveClass, PerspectiveSetup, VertexRef, VertexShader};
 use core::marker::PhantomData;
+use embedded_graphics_core::geometry::Size;
 
 /// The colours of a texture, perspective-correct: divided every 16 pixels and at both ends of a span.
 ///
@@ -43,7 +44,7 @@ impl<'a, T: Texture> Textured<'a, T> {
         let mut sizes = levels.iter().map(Texture::size);
         let mut size = sizes.next().ok_or(TextureError::NoLevels)?;
         for found in sizes {
-            let expected = ((size.0 / 2).max(1), (size.1 / 2).max(1));
+            let expected = Size::new((size.width / 2).max(1), (size.height / 2).max(1));
             if found != expected {
                 return Err(TextureError::Size { found, expected });
             }
@@ -103,7 +104,7 @@ impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
         let [a, b, c] = uv;
         let difference = |a: i32, b: i32| i64::from(b.wrapping_sub(a) >> 8);
         let texture = difference(a[0], b[0]) * difference(a[1], c[1]) - difference(a[0], c[0]) * difference(a[1], b[1]);
-        let Some((width, height)) = self.levels.first().map(Texture::size) else { return 0 };
+        let Some(Size { width, height }) = self.levels.first().map(Texture::size) else { return 0 };
         let bits = |n: u64| 64 - n.leading_zeros();
         // Half the bits of width and height are those of a square with the same area.
         let texels = bits(texture.unsigned_abs()) + bits(width.into()) + bits(height.into()) - 2;

@@ -3,13 +3,14 @@
 
 use super::texel::{OPAQUE, TexelFormat, expand};
 use crate::color::{PixelFormat, pack_rgb565};
+use embedded_graphics_core::geometry::Size;
 
 /// A rectangle of texels.
 ///
 /// Shaders ask only for columns and rows that are inside of it. An implementation may return anything for others.
 pub trait Texture {
-    /// Returns the number of columns and of rows, at least one each.
-    fn size(&self) -> (u16, u16);
+    /// Returns the number of columns and of rows, from 1 to 65,535 each.
+    fn size(&self) -> Size;
 
     /// Returns red, green, blue and alpha of the texel at a column and a row.
     fn rgba(&self, x: u32, y: u32) -> [u8; 4];
@@ -34,20 +35,24 @@ pub trait Texture {
     /// lower half of the word, v in the upper half.
     #[inline(always)]
     fn fetch<P: PixelFormat>(&self, vu: u32) -> Option<P::Raw> {
-        let (width, height) = self.size();
-        self.pixel::<P>(((vu & 0xFFFF) * u32::from(width)) >> 16, ((vu >> 16) * u32::from(height)) >> 16)
+        let Size { width, height } = self.size();
+        self.pixel::<P>((vu & 0xFFFF).wrapping_mul(width) >> 16, (vu >> 16).wrapping_mul(height) >> 16)
     }
 }
 
 /// Error in the bytes or the sizes of images.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum TextureError {
     /// An image without columns or without rows.
     Empty {
         /// Columns and rows.
-        size: (u16, u16),
+        size: Size,
+    },
+    /// More than 65,535 columns or rows.
+    TooLarge {
+        /// Columns and rows.
+        size: Size,
     },
     /// A mip chain without levels.
     NoLevels,
@@ -61,22 +66,33 @@ pub enum TextureError {
     /// An image's size does not fit another image: alpha beside colours, or a level of a mip chain.
     Size {
         /// Columns and rows of that image.
-        found: (u16, u16),
+        found: Size,
         /// Columns and rows that fit.
-        expected: (u16, u16),
+        expected: Size,
     },
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for TextureError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
 }
 
 impl core::fmt::Display for TextureError {
     fn fmt(&self, f: &mut core::fmt::Formatter<'_>) -> core::fmt::Result {
         match self {
             Self::Empty { size } => {
-                write!(f, "{} x {} texels: a texture has at least one column and one row", size.0, size.1)
+                write!(f, "{} x {} texels: a texture has at least one column and one row", size.width, size.height)
+            }
+            Self::TooLarge { size } => {
+                write!(f, "{} x {} texels: a texture has at most 65,535 columns and rows", size.width, size.height)
             }
             Self::NoLevels => f.write_str("a mip chain has at least one level"),
             Self::Length { found, expected } => write!(f, "{found} bytes, but the size takes {expected}"),
             Self::Size { found, expected } => {
-                write!(f, "{} x {} texels instead of {} x {}", found.0, found.1, expected.0, expected.1)
+                let [[w, h], [width, height]] = [found, expected].map(|size| [size.width, size.height]);
+                write!(f, "{w} x {h} texels instead of {width} x {height}")
             }
         }
     }
@@ -87,10 +103,12 @@ impl core::error::Error for TextureError {}
 /// An image of any size. Its bytes are those of an embedded-graphics `ImageRaw`.
 ///
 /// ```
+/// use zstrip::embedded_graphics_core::geometry::Size;
 /// use zstrip::texture::{Image, Rgb565Texel, TextureError};
 /// static BYTES: [u8; 8] = [0xF8, 0x00, 0x07, 0xE0, 0x00, 0x1F, 0xFF, 0xFF];
-/// let image = Image::new(&BYTES, (2, 2), Rgb565Texel)?;
-/// assert_eq!(Image::new(&BYTES, (3, 2), Rgb565Texel).err(), Some(TextureError::Length { found: 8, expected: 12 }));
+/// let image = Image::new(&BYTES, Size::new(2, 2), Rgb565Texel)?;
+/// let wider = Image::new(&BYTES, Size::new(3, 2), Rgb565Texel);
+/// assert_eq!(wider.err(), Some(TextureError::Length { found: 8, expected: 12 }));
 /// # let _ = image;
 /// # Ok::<(), TextureError>(())
 /// ```
@@ -105,16 +123,20 @@ pub struct Image<'a, F> {
 }
 
 impl<'a, F: TexelFormat> Image<'a, F> {
-    /// Creates an image from its bytes, its columns and rows, and the format of its texels.
+    /// Creates an image from its bytes, its size, and the format of its texels.
     ///
     /// # Errors
-    /// If there are no columns or no rows, or if the number of bytes does not fit the size.
-    pub const fn new(data: &'a [u8], (width, height): (u16, u16), format: F) -> Result<Self, TextureError> {
-        if width == 0 || height == 0 {
-            return Err(TextureError::Empty { size: (width, height) });
+    /// If there are no columns or no rows, or more than 65,535; or if the number of bytes does not fit the size.
+    pub const fn new(data: &'a [u8], size: Size, format: F) -> Result<Self, TextureError> {
+        if size.width == 0 || size.height == 0 {
+            return Err(TextureError::Empty { size });
+        }
+        let (width, height) = (size.width as u16, size.height as u16);
+        if width as u32 != size.width || height as u32 != size.height {
+            return Err(TextureError::TooLarge { size });
         }
         let stride = (width as usize * F::BITS).div_ceil(8);
-        let expected = stride * height as usize;
+        let expected = stride.saturating_mul(height as usize);
         if data.len() != expected {
             return Err(TextureError::Length { found: data.len(), expected });
         }
@@ -147,8 +169,8 @@ impl<'a, F: TexelFormat> Image<'a, F> {
 
 impl<F: TexelFormat> Texture for Image<'_, F> {
     #[inline(always)]
-    fn size(&self) -> (u16, u16) {
-        (self.width, self.height)
+    fn size(&self) -> Size {
+        Size::new(self.width.into(), self.height.into())
     }
 
     #[inline(always)]
@@ -195,8 +217,8 @@ impl<'a, const W: usize, const H: usize> Tile<'a, W, H> {
 
 impl<const W: usize, const H: usize> Texture for Tile<'_, W, H> {
     #[inline(always)]
-    fn size(&self) -> (u16, u16) {
-        (W as u16, H as u16)
+    fn size(&self) -> Size {
+        Size::new(W as u32, H as u32)
     }
 
     #[inline(always)]
@@ -254,7 +276,7 @@ impl<'a, T: Texture> WithAlpha<'a, T> {
 
 impl<T: Texture> Texture for WithAlpha<'_, T> {
     #[inline(always)]
-    fn size(&self) -> (u16, u16) {
+    fn size(&self) -> Size {
         self.texture.size()
     }
 
@@ -279,22 +301,26 @@ mod tests {
 
     #[test]
     fn images_check_their_length() {
-        assert_eq!(Image::new(&[], (0, 4), Rgb565Texel).err(), Some(TextureError::Empty { size: (0, 4) }));
+        let size = Size::new(0, 4);
+        assert_eq!(Image::new(&[], size, Rgb565Texel).err(), Some(TextureError::Empty { size }));
+        let size = Size::new(1, 1 << 16);
+        assert_eq!(Image::new(&[], size, Rgb565Texel).err(), Some(TextureError::TooLarge { size }));
         let expected = TextureError::Length { found: 5, expected: 4 };
         // Nine texels of one bit take two bytes.
-        assert_eq!(Image::new(&[0; 5], (9, 2), PaletteTexel::<1>(&[])).err(), Some(expected));
-        assert!(Image::new(&[0; 4], (9, 2), PaletteTexel::<1>(&[])).is_ok());
-        let colors = Image::new(&[0; 12], (2, 2), Rgb888Texel).expect("an image");
+        assert_eq!(Image::new(&[0; 5], Size::new(9, 2), PaletteTexel::<1>(&[])).err(), Some(expected));
+        assert!(Image::new(&[0; 4], Size::new(9, 2), PaletteTexel::<1>(&[])).is_ok());
+        let colors = Image::new(&[0; 12], Size::new(2, 2), Rgb888Texel).expect("an image");
         assert_eq!(WithAlpha::new(colors, &[0; 3]).err(), Some(TextureError::Length { found: 3, expected: 2 }));
     }
 
     #[test]
     fn texels_are_where_image_raw_has_them() {
         let palette: [[u8; 3]; 16] = core::array::from_fn(|k| [k as u8; 3]);
-        let four = Image::new(&[0x12, 0x30, 0x45, 0x60], (3, 2), PaletteTexel::<4>(&palette)).expect("an image");
+        let four =
+            Image::new(&[0x12, 0x30, 0x45, 0x60], Size::new(3, 2), PaletteTexel::<4>(&palette)).expect("an image");
         let found: [u8; 6] = core::array::from_fn(|k| four.rgba(k as u32 % 3, k as u32 / 3)[0]);
         assert_eq!(found, [1, 2, 3, 4, 5, 6]);
-        let two = Image::new(&[0b0001_1011], (4, 1), PaletteTexel::<2>(&palette)).expect("an image");
+        let two = Image::new(&[0b0001_1011], Size::new(4, 1), PaletteTexel::<2>(&palette)).expect("an image");
         assert_eq!([0, 1, 2, 3].map(|x| two.rgba(x, 0)[0]), [0, 1, 2, 3]);
         let alpha = WithAlpha::new(four, &[0x8F, 0x70, 0x00, 0x00]).expect("an image");
         assert_eq!([0, 1, 2].map(|x| alpha.rgba(x, 0)), [[1, 1, 1, 136], [2, 2, 2, 255], [3, 3, 3, 119]]);
@@ -310,7 +336,7 @@ mod tests {
         for (pair, texel) in bytes.chunks_exact_mut(2).zip(texels.iter().flatten()) {
             pair.copy_from_slice(&texel.to_be_bytes());
         }
-        let (tile, image) = (Tile::new(&texels), Image::new(&bytes, (8, 4), Rgb565Texel).expect("an image"));
+        let (tile, image) = (Tile::new(&texels), Image::new(&bytes, Size::new(8, 4), Rgb565Texel).expect("an image"));
         for k in 0..32 * 256 {
             let vu = u32::wrapping_mul(k, 0x0123_4567);
             assert_eq!(tile.fetch::<Rgb888>(vu), image.fetch::<Rgb888>(vu), "{vu:x}");

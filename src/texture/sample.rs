@@ -5,6 +5,7 @@
 use super::image::Texture;
 use super::texel::OPAQUE;
 use crate::color::{PixelFormat, fold_rgb565, mix_spread_rgb565, spread_rgb565};
+use embedded_graphics_core::geometry::Size;
 
 /// Rule for coordinates outside of the texture.
 pub trait Wrap: Copy {
@@ -15,7 +16,7 @@ pub trait Wrap: Copy {
     fn fraction(coordinate: i32) -> u32;
 
     /// Converts a column or row from -1 to `size`, both included, to one in the texture.
-    fn texel(number: i32, size: u16) -> u32;
+    fn texel(number: i32, size: u32) -> u32;
 }
 
 /// Repeats the texture.
@@ -31,10 +32,10 @@ impl Wrap for Repeat {
     }
 
     #[inline(always)]
-    fn texel(number: i32, size: u16) -> u32 {
+    fn texel(number: i32, size: u32) -> u32 {
         match number {
-            -1 => u32::from(size) - 1,
-            n if n == i32::from(size) => 0,
+            -1 => size.wrapping_sub(1),
+            n if n == size as i32 => 0,
             n => n as u32,
         }
     }
@@ -53,7 +54,7 @@ impl Wrap for Mirror {
     }
 
     #[inline(always)]
-    fn texel(number: i32, size: u16) -> u32 {
+    fn texel(number: i32, size: u32) -> u32 {
         Clamp::texel(number, size)
     }
 }
@@ -69,8 +70,8 @@ impl Wrap for Clamp {
     }
 
     #[inline(always)]
-    fn texel(number: i32, size: u16) -> u32 {
-        number.max(0).min(i32::from(size) - 1) as u32
+    fn texel(number: i32, size: u32) -> u32 {
+        number.max(0).min(size.wrapping_sub(1) as i32) as u32
     }
 }
 
@@ -93,8 +94,8 @@ pub struct Nearest;
 impl Nearest {
     #[inline(always)]
     fn texel<T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> (u32, u32) {
-        let (width, height) = texture.size();
-        ((W::fraction(u) * u32::from(width)) >> 16, (W::fraction(v) * u32::from(height)) >> 16)
+        let Size { width, height } = texture.size();
+        (W::fraction(u).wrapping_mul(width) >> 16, W::fraction(v).wrapping_mul(height) >> 16)
     }
 }
 
@@ -125,10 +126,10 @@ pub struct Bilinear;
 /// Finds the two columns or rows around a coordinate, and how far the coordinate is from the centre of the first one to
 /// that of the second one, in 0.8.
 #[inline(always)]
-fn pair<W: Wrap>(coordinate: i32, size: u16) -> (u32, u32, u32) {
+fn pair<W: Wrap>(coordinate: i32, size: u32) -> (u32, u32, u32) {
     // The distance from the centre of the first texel, in texels, 16.16: at least -1/2 and below `size`, which takes 64
     // bits.
-    let place = i64::from(W::fraction(coordinate) * u32::from(size)) - (1 << 15);
+    let place = i64::from(W::fraction(coordinate).wrapping_mul(size)) - (1 << 15);
     let first = (place >> 16) as i32;
     (W::texel(first, size), W::texel(first + 1, size), (place as u32 >> 8) & 0xFF)
 }
@@ -166,7 +167,7 @@ impl Bilinear {
 impl Filter for Bilinear {
     #[inline]
     fn rgba<T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> [u8; 4] {
-        let (width, height) = texture.size();
+        let Size { width, height } = texture.size();
         let (x0, x1, tx) = pair::<W>(u, width);
         let (y0, y1, ty) = pair::<W>(v, height);
         // Red and blue go into one word, green and alpha into the other. Transparent texels become black.
@@ -188,7 +189,7 @@ impl Filter for Bilinear {
     #[inline]
     fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, [u, v]: [i32; 2]) -> Option<P::Raw> {
         if T::IS_RGB565 {
-            let (width, height) = texture.size();
+            let Size { width, height } = texture.size();
             let (x0, x1, tx) = pair::<W>(u, width);
             let (y0, y1, ty) = pair::<W>(v, height);
             let (tx, ty) = ((tx + 4) >> 3, (ty + 4) >> 3);
@@ -249,7 +250,7 @@ mod tests {
         let mut random = random(7);
         for size in [(1, 1), (8, 8), (5, 9), (64, 3)] {
             let bytes: Vec<u8> = (0..size.0 * size.1).flat_map(|k: u16| [0, (k >> 8) as u8, k as u8]).collect();
-            let image = Image::new(&bytes, size, Rgb888Texel).expect("an image");
+            let image = Image::new(&bytes, Size::new(size.0.into(), size.1.into()), Rgb888Texel).expect("an image");
             for _ in 0..3000 {
                 let uv = [random() as i32 >> 12, random() as i32 >> 12];
                 let [x, y] = [0, 1].map(|k: usize| {
@@ -301,8 +302,8 @@ mod tests {
         let (mut errors, mut count) = ([[0.0_f64; 2]; 2], 0.0);
         for size in [(8_u16, 8_u16), (5, 9), (64, 3), (1, 1)] {
             let bytes: Vec<u8> = (0..3 * usize::from(size.0 * size.1)).map(|_| random() as u8).collect();
-            let image = Image::new(&bytes, size, Rgb888Texel).expect("an image");
-            let packed = Image::new(&bytes[..2 * bytes.len() / 3], size, Rgb565Texel).expect("an image");
+            let image = Image::new(&bytes, Size::new(size.0.into(), size.1.into()), Rgb888Texel).expect("an image");
+            let packed = Image::new(&bytes[..2 * bytes.len() / 3], image.size(), Rgb565Texel).expect("an image");
             for _ in 0..3000 {
                 let uv = [random() as i32 >> 13, random() as i32 >> 13];
                 let found = Bilinear::rgba::<_, W>(&image, uv);
@@ -350,7 +351,7 @@ mod tests {
     fn transparent_texels_do_not_tint_their_neighbours() {
         let palette = [[255, 0, 255], [200, 100, 50]];
         let format = Keyed { format: PaletteTexel::<8>(&palette), key: 0 };
-        let image = Image::new(&[1, 0, 1, 1], (2, 2), format).expect("an image");
+        let image = Image::new(&[1, 0, 1, 1], Size::new(2, 2), format).expect("an image");
         let mut seen = [0, 0];
         for k in 0..1024 {
             let uv = [(k % 32) * 2048 + 1000, (k / 32) * 2048 + 1000];

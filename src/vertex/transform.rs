@@ -8,7 +8,7 @@
 use super::clip::{ClipVertex, Outcode};
 use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
 use super::viewport::Viewport;
-use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long, product};
+use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long, mul_wide};
 use crate::mesh::{Bounds, Mesh, Positions};
 use core::ops::Range;
 
@@ -86,7 +86,7 @@ fn times(a: i64, b: i32) -> i64 {
     // The lower half of `a` takes part in two products of 16 bits, below 2³¹ and 2³².
     let (high, low) = ((a >> 16) as i32, a as u32 & 0xFFFF);
     let fraction = low as i32 * (b >> 16) + ((low * (b as u32 & 0xFFFF)) >> 16) as i32;
-    product(high, b) + i64::from(fraction)
+    mul_wide(high, b) + i64::from(fraction)
 }
 
 /// Returns by how many bits the largest of `values` exceeds 2^`bits`; negative if it is smaller.
@@ -309,8 +309,8 @@ impl Row {
     fn apply(&self, p: &[i32; 4], short: bool) -> i64 {
         let (mut value, mut fraction) = (self.translation, 0_i64);
         for ((high, low), p) in self.high.iter().zip(&self.low).zip(p) {
-            value += product(*high, *p);
-            fraction += product(*low, *p);
+            value += mul_wide(*high, *p);
+            fraction += mul_wide(*low, *p);
         }
         if short && !SMALL_CORE {
             return (value + fraction) >> 32;
