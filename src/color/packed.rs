@@ -9,9 +9,11 @@
 ///
 /// # Format
 /// Channels c are 8.16, within 0.5..=254.5, and at most 0.39 off. Let b be the bits that stay, and s = 2^(8 - b) one
-/// step. Then c - 1/2 is within 0..=254, and the result is 1/2 + (c - 1/2) (1 - 2⁻ᵇ + 2⁻⁷). That takes 254 to 256 - s
-/// and up to 0.6 more: white is the last level without any addend. The largest addend is (s - 1) 63/64: with it, black
-/// stays on the first level, and no channel exceeds 256.
+/// step. Then c - 1/2 is within 0..=254, and the result is 1/2 + (c - 1/2) (1 - 2⁻ᵇ + 2⁻⁷).
+///
+/// - White, c - 1/2 = 254, becomes 256 - s and up to 0.6 more: it is the last level without any addend.
+/// - Black plus the largest addend, (s - 1) 63/64, is still the first level.
+/// - No channel plus an addend exceeds 256.
 #[inline(always)]
 pub(crate) fn spread(dither: Option<[u32; 3]>, c: [i32; 3]) -> [i32; 3] {
     let spread = |channel: usize, c: i32| spread_step(dither, channel, c.wrapping_sub(1 << 15)).wrapping_add(1 << 15);

@@ -37,7 +37,7 @@ pub(crate) const fn fold_rgb565(word: u32) -> u16 {
 /// and 1,008 in the 10 bits of red and of blue.
 #[inline(always)]
 pub(crate) const fn mix_spread_rgb565(a: u32, b: u32, weight: u32) -> u32 {
-    // One difference of words serves all channels: modulo 2³² borrows between channels cancel in the sum.
+    // One difference of words serves all channels: borrows between channels cancel in the sum, modulo 2³².
     let sum = (b << 5).wrapping_add(a.wrapping_sub(b).wrapping_mul(weight)).wrapping_add(0x0200_8010);
     sum >> 5 & SPREAD
 }

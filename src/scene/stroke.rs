@@ -324,8 +324,8 @@ fn rectangle(a: &ScreenVertex, b: &ScreenVertex, (u, v): (i32, i32), half: u32, 
     // A product of 2.30 and 24.8, rounded.
     let times = |c: i32, length: u32| (crate::math::mul_high_signed(c, length << 3) + 1) >> 1;
     let (along, aside) = ((times(u, more), times(v, more)), (times(-v, half), times(u, half)));
-    // An end whose corners would be out of range is moved inward, by four times `half + more`. A line that comes from
-    // there to the screen does so at an angle for which that is enough, and it is far longer than that.
+    // An end whose corners would be out of range is moved inward, by four times `half + more`. That is enough at the
+    // angles at which a line can come from such an end to the screen, and the line is far longer than that.
     const LIMIT: i32 = (1 << 23) - 1;
     let room = LIMIT - (half + more) as i32;
     let inward = (times(u, 4 * (half + more)), times(v, 4 * (half + more)));

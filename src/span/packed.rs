@@ -169,8 +169,8 @@ fn draw_runs<P: PixelFormat, D: DepthTest, const TWO_PASS: bool>(
             cursor.colors::<P>([correction, middle], addends, colors);
         } else {
             draw_partial::<P, D>(test, depths, cursor.z, primitive, colors, cursor.word, addends, RUN - passed);
-            // Hides that the step stays the same: the compiler would otherwise prepare all multiples of it, and spill
-            // them.
+            // The black box hides that the step stays the same. The compiler would otherwise prepare all multiples of
+            // it, and spill them.
             cursor.dz_dx = black_box(cursor.dz_dx);
         }
         cursor.z = cursor.z.wrapping_add_signed(cursor.dz_dx.wrapping_mul(RUN as i32));

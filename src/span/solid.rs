@@ -96,8 +96,8 @@ fn tested_span<R: Copy, D: DepthTest>(
         let Some(([az, bz, cz, dz], rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<4>() else { return };
         depth = rest;
         if !draw(test, &mut z, dz_dx, value, a, az) {
-            // Hides that the step stays the same: the compiler would otherwise prepare all multiples of it, and spill
-            // them.
+            // The black box hides that the step stays the same. The compiler would otherwise prepare all multiples of
+            // it, and spill them.
             dz_dx = black_box(dz_dx);
         }
         draw(test, &mut z, dz_dx, value, b, bz);

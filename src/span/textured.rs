@@ -17,7 +17,7 @@
 //!
 //!    ```text
 //!    bits   31 .. 16   15 .. 0
-//!              v          u        fractions of the texture; what is carried from u into v is 2⁻¹⁶ of it
+//!              v          u        fractions of the texture; a carry from u adds 2⁻¹⁶ to v
 //!    ```
 //!    Steps are rounded to 2⁻¹⁶, so a pixel of a run is off by at most 2⁻¹³. The last run of a span is stepped
 //!    backwards from its end, so that both ends are exact.
