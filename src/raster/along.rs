@@ -18,7 +18,7 @@ pub struct Along {
     reciprocal: u32,
     shift: u32,
     /// Position of the centre of the pixel `origin` between the two ends, 0.32.
-    part: u32,
+    fraction: u32,
     /// 1 if the centre of the first pixel lies before the line's start, otherwise 0.
     origin: u32,
 }
@@ -33,8 +33,8 @@ impl Along {
         let way = (line.lead() + 256 * origin as i32).max(0) as u32;
         // As 1.31 first: the way may be the whole line, or longer if there is no pixel after the first.
         let way = way.min(line.length()) << shift;
-        let part = mul_high(way, reciprocal).min(0x7FFF_FFFF) << 1;
-        Self { reciprocal, shift, part, origin }
+        let fraction = mul_high(way, reciprocal).min(0x7FFF_FFFF) << 1;
+        Self { reciprocal, shift, fraction, origin }
     }
 
     /// Returns the number of the pixel that values are given for: 0 or 1. If it is 1, pixel 0 has the value at the
@@ -61,7 +61,7 @@ impl Along {
             0 => step,
             down => ((step >> (down - 1)) + 1) >> 1,
         };
-        let way = mul_high(magnitude, self.part);
+        let way = mul_high(magnitude, self.fraction);
         let start = (from as u32) << scale;
         if difference < 0 {
             (start.wrapping_sub(way), (step as i32).wrapping_neg())

@@ -17,7 +17,7 @@ use crate::vertex::ScreenVertex;
 /// The state of an edge at a row.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
-    /// The position plus one pixel, and less by an error that the module's documentation allows; 45 fractional bits.
+    /// The position plus one pixel, minus an error within the bound of the module's documentation; 45 fractional bits.
     x: i64,
     /// Change of the position per row.
     step: i64,

@@ -89,8 +89,9 @@ impl Line {
 
     /// Finds the first pixel along the minor axis, and the error there, from the start's fraction of a pixel.
     ///
-    /// At the centre of the first pixel, the line is at n / 256 `length` px from the row that the start is in, with n =
-    /// `fraction` `length` ± `lead` `height`. Steps change n by multiples of 256, so its lower 8 bits do not matter.
+    /// At the centre of the first pixel, the line is at n / 256 `length` px from the row that the start is in, where
+    /// n = `fraction` `length` ± `lead` `height`. Steps change n by multiples of 256, so its lower 8 bits do not
+    /// matter.
     ///
     /// # Format
     /// n is within 2³⁴, and n / 256 within ±2²⁶. The first pixel is within three pixels of the start.
@@ -200,7 +201,7 @@ impl Line {
         }
     }
 
-    /// Returns the error after some steps, if nothing is ever taken off it.
+    /// Returns the error after `steps` steps, if `length` is never subtracted from it.
     fn error_after(&self, steps: u32) -> u64 {
         u64::from(self.error) + u64::from(steps) * u64::from(self.height)
     }
@@ -225,8 +226,8 @@ pub struct LinePixels {
     /// Step along the major axis, and step along both axes.
     pub(crate) straight: (i32, i32),
     pub(crate) diagonal: (i32, i32),
-    /// The error minus `length`, below 0. It grows by `height` per pixel. The step is diagonal where it would not be
-    /// negative.
+    /// The error minus `length`, below 0. It grows by `height` per pixel. Where it would become 0 or more, the step is
+    /// diagonal and `length` is subtracted again.
     pub(crate) error: i32,
     pub(crate) height: i32,
     pub(crate) length: i32,

@@ -12,8 +12,7 @@ use super::triangle::PixelRect;
 ///
 /// # Format
 /// The centre is in 24.8, at most ±32,767 px, and `side` in 24.8, up to 65,535 px. The result is exact: it holds the
-/// centres in x - `side` / 2..x + `side` / 2. To include the half, coordinates are counted in twice as many units,
-/// below 2²⁶.
+/// centres in x - `side` / 2..x + `side` / 2. Coordinates are doubled, to below 2²⁶, so that `side` / 2 loses no bit.
 #[inline]
 pub const fn square(center: (i32, i32), side: u32) -> PixelRect {
     let side = (if side > 1 << 24 { 1 << 24 } else { side }) as i32;

@@ -204,7 +204,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         }
     }
 
-    /// Stage 7, faces, of a single triangle on the screen. Records or draws the triangle.
+    /// Shades the face of a single triangle on the screen, stage 7, and records or draws the triangle.
     #[inline(never)]
     fn shade_face(&mut self, triangle: &ScreenTriangle) {
         let word = self.face(triangle);

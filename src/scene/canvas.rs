@@ -151,8 +151,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         self.canvas_with(0, DepthState::OFF)
     }
 
-    /// Returns a canvas at a depth. A shape is drawn where this depth is nearer than the depth buffer's, and stores it
-    /// there.
+    /// Returns a canvas at a depth. A shape's pixel is drawn where this depth is nearer than the depth buffer's depth,
+    /// and the depth buffer then takes this depth.
     ///
     /// [`project`](Self::project) tells the depth of a point. Without a depth buffer, this is [`canvas`](Self::canvas).
     pub fn canvas_at(&mut self, z: u16) -> Canvas<'_, 'a, F> {
@@ -216,8 +216,8 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         self.fan(corners, |(corner, color)| (*corner, Gouraud::varyings(*color)), &Gouraud::vertex_colors(), 0);
     }
 
-    /// Fills a convex polygon with a shader. The shader's varyings are given at the corners, and its face word is
-    /// `face`: its vertex stage is not called.
+    /// Fills a convex polygon with a shader. The shader's vertex stage is not called: its varyings are given at the
+    /// corners, and `face` is its face word.
     pub fn polygon_with<S: Shader<F::Format>>(
         &mut self,
         corners: &[(ScreenPoint, S::Varyings)],

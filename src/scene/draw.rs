@@ -22,8 +22,8 @@ impl<F: Framebuffer> Scene<'_, F> {
 
     /// Draws a mesh by the rules of `state`.
     ///
-    /// A program links the loops for all depth tests that `state` may ask for. If `state` is a constant, it links only
-    /// one.
+    /// A program links the loops for all depth tests that `state` may ask for. If `state` is a constant, the program
+    /// links only the loop for its depth test.
     #[inline]
     pub fn draw_with<S: Shader<F::Format>>(&mut self, state: State, mesh: &Mesh<'_>, mvp: &Projective, shader: &S) {
         self.draw_by(&state, &AssemblyHooks::of(&state), mesh, mvp, shader);

@@ -24,7 +24,7 @@ impl<F: Framebuffer> Scene<'_, F> {
     }
 
     /// Returns an embedded-graphics target at a depth. A pixel is drawn where this depth is nearer than the depth
-    /// buffer's, and stores it there.
+    /// buffer's depth, and the depth buffer then takes this depth.
     ///
     /// [`project`](Self::project) tells the depth of a point. Without a depth buffer, this is
     /// [`overlay`](Self::overlay).

@@ -12,8 +12,8 @@
 use super::varyings::Varyings;
 use heapless::deque::{Deque, DequeView};
 
-/// A vertex in clip space, in any common scale: x / w and y / w are in units of 512 px from the screen's corner, and z
-/// / w is depth.
+/// A vertex in clip space, in any common scale. x / w and y / w count units of 512 px from the screen's corner, and
+/// z / w is depth.
 ///
 /// Magnitudes stay below 2⁵⁵ + 2, so that plane distances fit 63 bits. The scale must be so large that a w below
 /// [`ClipVertex::MIN_W`] does not matter: such a vertex counts as behind the eye.
@@ -268,7 +268,7 @@ impl DepthSlab {
         !((plane == NEAR && self == Self::InFrontOfNear) || (plane == FAR && self == Self::BeyondFar))
     }
 
-    /// Moves a vertex in front of the near plane or beyond the far plane to that plane.
+    /// Sets the depth of a vertex in a slab outside of the depth planes to the depth of the slab's plane.
     pub(super) fn clamp(self, vertex: &mut ClipVertex) {
         match self {
             Self::InFrontOfNear => vertex.z = 0,

@@ -164,9 +164,9 @@ pub struct SortReport {
 /// the data of this mesh, which is drawn without depth ([`DepthState::OFF`](crate::span::DepthState::OFF)).
 ///
 /// A vertex outside of the screen's guard band or depth range does not count: its triangle is placed by its other
-/// vertices. Triangles without any other vertex come first.
+/// vertices. Triangles without a vertex that counts come first.
 ///
-/// In the worst case, every triangle is compared with every other one. It is meant for some 100 triangles.
+/// In the worst case, every triangle is compared with every other one. This function is meant for some 100 triangles.
 ///
 /// # Errors
 /// When a slice is too short, or the mesh has normals of faces.

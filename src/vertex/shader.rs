@@ -60,7 +60,7 @@ impl<'a> VertexRef<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Side {
-    /// The front: seen from here, the corners go round as [`State::front`](crate::scene::State::front) says.
+    /// The front: on the screen, its corners go round as [`State::front`](crate::scene::State::front) says.
     Front,
     /// The back.
     Back,
@@ -212,15 +212,15 @@ pub trait VertexShader {
     /// Returns the varyings at a vertex.
     fn vertex(&self, vertex: &VertexRef<'_>) -> Self::Varyings;
 
-    /// Returns the position in object space at which the vertex is drawn. It is called only if
+    /// Returns the position in object space at which the vertex is drawn. This function is called only if
     /// [`DISPLACES`](Self::DISPLACES) is set.
     fn displace(&self, vertex: &VertexRef<'_>) -> Vec3 {
         vertex.position()
     }
 
     /// Returns the clip distances, and then the cull distances, on any scale: linear in space, and not negative inside.
-    /// It is called only if the shader has distances, and possibly more than once per vertex. Distances concern
-    /// triangles, not lines and points.
+    /// This function is called only if the shader has distances, and possibly more than once per vertex. Distances
+    /// concern triangles, not lines and points.
     fn distances(&self, vertex: &VertexRef<'_>) -> [i32; MAX_DISTANCES] {
         let _ = vertex;
         [0; MAX_DISTANCES]

@@ -39,10 +39,10 @@ pub struct Transform {
 /// # Format
 /// The long path computes Σ e p / 2¹⁶ + t, with e = 2¹⁶ high + low below 2⁴⁰, low not negative, |t| < 2⁵⁵.
 ///
-/// The short path, for quantized positions q, computes Σ m q / 2¹⁵ + t, rounded to nearest, with |m| < 2³⁰ and |t| <
-/// 2³⁰. On small cores, m is 2¹⁵ high + low with low in -2¹⁴..2¹⁴, and t is the last entry, for q = 1. The low part of
-/// t has 15 fractional bits and includes the half that rounds. Cores that multiply to 64 bits have 2 m in `low` and 2³²
-/// t in `translation`: the result is the upper word of the sum with Σ 2 m 2¹⁶ q.
+/// The short path, for quantized positions q, computes Σ m q / 2¹⁵ + t, rounded to nearest, with |m| < 2³⁰ and
+/// |t| < 2³⁰. On small cores, m is 2¹⁵ high + low with low in -2¹⁴..2¹⁴, and t is the last entry, for q = 1. The low
+/// part of t has 15 fractional bits and includes the half that rounds. Cores that multiply to 64 bits have 2 m in
+/// `low`, and 2³² t in `translation`: the result is the upper word of the sum with Σ 2 m 2¹⁶ q.
 #[derive(Clone, Copy, Debug, Default)]
 struct Row {
     high: [i32; 4],
@@ -403,9 +403,9 @@ impl Transform {
     /// # Format
     /// Values of the short path are those of the long path / 2²⁵: below 2³⁰ and a little, and off by at most 3.5 units.
     /// Each of three entries is off by half a unit, one of them may lose another half to stay below 2³⁰, the constant
-    /// is off by half, and the cut by one. 4 units are added, so that w does not fall below 2²⁶ because of them. With w
-    /// ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at most 2¹⁷ · 3.5 · (1 + |x / w|) / w: by 2⁻⁶ on a
-    /// screen of 512 px, and by less than 1/8 as long as |x / w| < 16, which is well inside the guard band.
+    /// is off by half, and the cut by one. 4 units are added, so that w does not fall below 2²⁶ because of these
+    /// errors. With w ≥ 2²⁶, a screen position, 2¹⁷ x / w in 1/256 px, is off by at most 2¹⁷ · 3.5 · (1 + |x / w|) / w:
+    /// by 2⁻⁶ on a screen of 512 px, and by less than 1/8 as long as |x / w| < 16, which is well inside the guard band.
     const SHORT_W: i64 = (1 << 51) + (4 << 25);
 
     /// Returns the clip coordinates of a mesh vertex; the origin for an index past the end.
@@ -490,8 +490,8 @@ impl Transform {
         self.short
     }
 
-    /// Computes a clip vertex, coordinate by coordinate, by either path. The short path comes here only for the few
-    /// vertices that are clipped.
+    /// Computes a clip vertex, coordinate by coordinate, by either path. Of the vertices on the short path, only those
+    /// that are clipped come here.
     #[inline(never)]
     fn apply(&self, p: &[i32; 4]) -> ClipVertex {
         let [x, y, z, w] = core::array::from_fn(|k| self.rows[k].apply(p, self.short));
