@@ -25,7 +25,7 @@ pub fn homogenize<V: Varyings>(
 ) {
     if let Some((class, _, planes)) = perspective.parts_mut() {
         let [a, b, c] = varyings;
-        *class = convert([a.as_mut(), b.as_mut(), c.as_mut()], planes, reach(v, screen));
+        *class = convert([a.as_mut(), b.as_mut(), c.as_mut()], planes, extent(v, screen));
     }
 }
 
@@ -54,7 +54,7 @@ fn planes_in_64_bits(
 }
 
 /// Returns the number of columns and rows that a plane's value may have to be carried over.
-fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
+fn extent(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
     let [a, b, c] = v;
     let columns = a.x.max(b.x).max(c.x) - a.x.min(b.x).min(c.x);
     let rows = a.y.max(b.y).max(c.y) - a.y.min(b.y).min(c.y);
@@ -64,12 +64,12 @@ fn reach(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
 /// Replaces the values at three vertices as [`homogenize`] does, and returns the amount of perspective.
 ///
 /// # Format
-/// Planes in 32 bits are off by less than reach + 64 units (see [`Gradients`](crate::raster::Gradients)). So are q and
-/// d q, which makes h, of 28 bits, wrong by some 2³¹ (reach + 64) / q. [`Planes32`](PerspectiveClass::Planes32) keeps
+/// Planes in 32 bits are off by less than extent + 64 units (see [`Gradients`](crate::raster::Gradients)). So are q and
+/// d q, which makes h, of 28 bits, wrong by some 2³¹ (extent + 64) / q. [`Planes32`](PerspectiveClass::Planes32) keeps
 /// this error below 2¹⁵ units, 2⁻¹³ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter
 /// of that, 2⁻¹⁶.
 #[inline(never)]
-fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], reach: u32) -> PerspectiveClass {
+fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], extent: u32) -> PerspectiveClass {
     let [a, b, c] = values;
     let ([.., wa], [.., wb], [.., wc]) = (&mut *a, &mut *b, &mut *c) else {
         return PerspectiveClass::Affine;
@@ -80,7 +80,7 @@ fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], reach: u32)
     let (least, most) = (qa.min(qb).min(qc), qa.max(qb).max(qc));
     let class = match () {
         () if most - least < most >> 14 => PerspectiveClass::Affine,
-        () if (reach + 64).saturating_mul(most >> 14) <= least => PerspectiveClass::Planes32,
+        () if (extent + 64).saturating_mul(most >> 14) <= least => PerspectiveClass::Planes32,
         () => PerspectiveClass::Planes64,
     };
     for (((plane, a), b), c) in planes.iter_mut().zip(a).zip(b).zip(c) {
