@@ -6,25 +6,16 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
-use scenes::textured::{Look, crates};
-use zstrip::Scene;
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::textured::{Crates, Levels};
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::WithDepth;
+use zstrip::texture::{Bilinear, Nearest};
 
-const LOOKS: [Look; 4] = [
-    Look { bilinear: true, mips: true },
-    Look { bilinear: false, mips: true },
-    Look { bilinear: true, mips: false },
-    Look { bilinear: false, mips: false },
-];
+struct Demonstration;
 
-struct Crates;
-
-impl Demo for Crates {
+impl Demo for Demonstration {
     type Format = Dithered<Rgb565>;
     const NAME: &'static str = "crates";
     const ABOUT: &'static str =
@@ -32,11 +23,18 @@ impl Demo for Crates {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["bilinear", "nearest", "one-level", "pixels"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
-        crates(scene, turn, LOOKS[mode]);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+        let (screen, turn) = (shot.screen, shot.turn());
+        let levels = if shot.mode < 2 { Levels::All } else { Levels::First };
+        // The filter is part of the shader's type: each has a pixel loop of its own.
+        if shot.mode % 2 == 0 {
+            Box::new(Crates::new(screen, turn, Bilinear, levels))
+        } else {
+            Box::new(Crates::new(screen, turn, Nearest, levels))
+        }
     }
 }
 
 fn main() -> std::process::ExitCode {
-    show(Crates)
+    show(Demonstration)
 }

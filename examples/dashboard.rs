@@ -1,5 +1,5 @@
-//! Gauges, a plot, text and an image: embedded-graphics alone, drawn strip by strip in a tenth of a framebuffer's memory and
-//! without a depth buffer. What is drawn is in `scenes/dashboard.rs`.
+//! Gauges, a plot, text and an image: embedded-graphics alone, drawn strip by strip in a tenth of a framebuffer's memory
+//! and without a depth buffer. `scenes/dashboard.rs` draws them.
 //!
 //! ```text
 //! cargo run --release --example dashboard -- --help
@@ -7,26 +7,24 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
-use zstrip::Scene;
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::dashboard::Dashboard;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithRecords, WithoutDepth};
+use zstrip::target::WithoutDepth;
 
-struct Dashboard;
+struct Demonstration;
 
-impl Demo<WithoutDepth> for Dashboard {
+impl Demo<WithoutDepth> for Demonstration {
     type Format = Rgb565;
     const NAME: &'static str = "dashboard";
     const ABOUT: &'static str = "Instruments drawn with embedded-graphics, strip by strip and without a depth buffer.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithoutDepth, WithRecords>>, turn: Angle16, _mode: usize) {
-        scenes::dashboard::draw(scene, turn);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithoutDepth> {
+        Box::new(Dashboard::new(shot.turn()))
     }
 }
 
 fn main() -> std::process::ExitCode {
-    show(Dashboard)
+    show(Demonstration)
 }

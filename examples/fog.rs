@@ -6,18 +6,15 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
-use scenes::light::{Mist, fog};
-use zstrip::Scene;
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::light::{Fog, Mist};
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::WithDepth;
 
-struct Fog;
+struct Demonstration;
 
-impl Demo for Fog {
+impl Demo for Demonstration {
     type Format = Dithered<Rgb565>;
     const NAME: &'static str = "fog";
     const ABOUT: &'static str = "A flight over hills and a lake in the morning fog, which thickens in three ways.";
@@ -25,11 +22,12 @@ impl Demo for Fog {
     const RECORDS: usize = 64 * 1024;
     const MODES: &'static [&'static str] = &["squared", "exponential", "linear"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
-        fog(scene, turn, [Mist::Squared, Mist::Exponential, Mist::Linear][mode]);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+        let mist = [Mist::Squared, Mist::Exponential, Mist::Linear][shot.mode];
+        Box::new(Fog::new(shot.screen, shot.turn(), mist))
     }
 }
 
 fn main() -> std::process::ExitCode {
-    show(Fog)
+    show(Demonstration)
 }

@@ -18,6 +18,7 @@ mod scenes;
 mod ticks;
 
 use core::convert::Infallible;
+use scenes::Draw;
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888};
@@ -30,6 +31,7 @@ mod counting {
     use super::*;
     use core::hint::black_box;
     use cortex_m::peripheral::Peripherals;
+    use scenes::Torus;
     use semihosting::println;
     use zstrip::color::{Bgr565Be, Rgb565Be};
     use zstrip::math::{Projective, Scalar};
@@ -68,10 +70,9 @@ mod counting {
         let renderer = Renderer::<Gray8>::new(SCREEN).expect("rows fit").with_depth(depth).expect("rows fit");
         let mut renderer = renderer.with_records(records);
         let mut packer = Packer::<F>::new(SCREEN, SCREEN.height, dither, packed).expect("strips fit");
+        let torus = Torus::gouraud(SCREEN, Angle16(0));
         let mut frame = renderer.begin(Gray8::new(99));
-        while let Some(strip) =
-            frame.next_strip(color, |scene| scenes::torus_gouraud(scene, Angle16(0))).expect("the same scene")
-        {
+        while let Some(strip) = frame.next_strip(color, |scene| torus.draw(scene)).expect("the same scene") {
             count(name, || {
                 black_box(packer.pack(&strip));
             });
@@ -144,6 +145,7 @@ use counting::run;
 #[cfg(not(target_os = "none"))]
 mod sheet {
     use super::*;
+    use scenes::Room;
     use zstrip::color::Levels;
 
     pub const CELL: (usize, usize) = (160, 120);
@@ -165,9 +167,8 @@ mod sheet {
             picture.extend(strip.pixels().iter().map(|raw| P::unpack(*raw)));
             Ok::<(), Infallible>(())
         };
-        renderer
-            .frame_to(sink, &mut color, Rgb888::new(24, 28, 24), |scene| scenes::room(scene, Angle16(0)))
-            .expect("a frame");
+        let room = Room::new(Size::new(CELL.0 as u32, CELL.1 as u32), Angle16(0));
+        renderer.frame_to(sink, &mut color, Rgb888::new(24, 28, 24), |scene| room.draw(scene)).expect("a frame");
         picture
     }
 
@@ -190,7 +191,8 @@ mod sheet {
             }
             Ok::<(), Infallible>(())
         };
-        renderer.frame_to(sink, &mut color, Gray8::new(26), |scene| scenes::room(scene, Angle16(0))).expect("a frame");
+        let room = Room::new(Size::new(CELL.0 as u32, CELL.1 as u32), Angle16(0));
+        renderer.frame_to(sink, &mut color, Gray8::new(26), |scene| room.draw(scene)).expect("a frame");
         picture
     }
 

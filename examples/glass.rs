@@ -6,33 +6,26 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
-use zstrip::Scene;
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::light::Glass;
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::WithDepth;
 
-struct Glass;
+struct Demonstration;
 
-impl Demo for Glass {
+impl Demo for Demonstration {
     type Format = Dithered<Rgb565>;
     const NAME: &'static str = "glass";
     const ABOUT: &'static str = "A glass pot between coloured panes, and a fountain of sparks.";
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const RECORDS: usize = 64 * 1024;
 
-    fn draw(
-        &self,
-        scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>,
-        turn: Angle16,
-        _mode: usize,
-    ) {
-        scenes::light::glass(scene, turn);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+        Box::new(Glass::new(shot.screen, shot.turn()))
     }
 }
 
 fn main() -> std::process::ExitCode {
-    show(Glass)
+    show(Demonstration)
 }

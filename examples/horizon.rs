@@ -6,25 +6,22 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
+use host::program::{Demo, Drawing, Shot, show};
 use minifb::Key;
+use scenes::horizon::Horizon;
 use std::process::ExitCode;
-use zstrip::Scene;
-use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::WithDepth;
 
-/// The aircraft's attitude: what is steered, and what the wind adds.
+/// The attitude of the aircraft, as it is steered: pitch and roll in binary angles.
 #[derive(Default)]
-struct Horizon {
-    steered: (i32, i32),
-    pitch: Angle16,
-    roll: Angle16,
+struct Steered {
+    pitch: i32,
+    roll: i32,
 }
 
-impl Demo for Horizon {
+impl Demo for Steered {
     type Format = Rgb565;
     const NAME: &'static str = "horizon";
     const ABOUT: &'static str = "An artificial horizon.";
@@ -40,26 +37,21 @@ impl Demo for Horizon {
             Key::D => (0, 80),
             _ => (0, 0),
         };
-        self.steered.0 = (self.steered.0 + pitch).clamp(-8192, 8192);
-        self.steered.1 += roll;
+        self.pitch = (self.pitch + pitch).clamp(-8192, 8192);
+        self.roll += roll;
     }
 
-    fn prepare(&mut self, frame: u32, _: Size) {
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
         let sway = |speed: u32, degrees: i32| {
-            let sine = Angle16((frame.wrapping_mul(speed)) as u16).sin().to_bits();
+            let sine = Angle16((shot.number.wrapping_mul(speed)) as u16).sin().to_bits();
             ((i64::from(sine) * i64::from(degrees * 182)) >> 16) as i32
         };
-        self.pitch = Angle16((self.steered.0 + sway(160, 9)) as u16);
-        self.roll = Angle16((self.steered.1 + sway(97, 24) + sway(301, 4)) as u16);
-    }
-
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, _turn: Angle16, mode: usize) {
-        let steered = (Angle16(self.steered.0 as u16), Angle16(self.steered.1 as u16));
-        let (pitch, roll) = if mode == 0 { (self.pitch, self.roll) } else { steered };
-        scenes::horizon::horizon(scene, pitch, roll);
+        let wind = if shot.mode == 0 { (sway(160, 9), sway(97, 24) + sway(301, 4)) } else { (0, 0) };
+        let (pitch, roll) = (Angle16((self.pitch + wind.0) as u16), Angle16((self.roll + wind.1) as u16));
+        Box::new(Horizon::new(shot.screen, pitch, roll))
     }
 }
 
 fn main() -> ExitCode {
-    show(Horizon::default())
+    show(Steered::default())
 }

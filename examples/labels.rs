@@ -1,5 +1,4 @@
-//! A torus with axes and names in its space: text that is hidden by what is in front of it. What is drawn is in
-//! `scenes/labels.rs`.
+//! A torus with axes and names in its space: text that is hidden by objects in front of it. `scenes/labels.rs` draws it.
 //!
 //! ```text
 //! cargo run --release --example labels -- --help
@@ -7,26 +6,24 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
-use zstrip::Scene;
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::labels::Labels;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::WithDepth;
 
-struct Labels;
+struct Demonstration;
 
-impl Demo for Labels {
+impl Demo for Demonstration {
     type Format = Rgb565;
     const NAME: &'static str = "labels";
     const ABOUT: &'static str = "A torus with labels in its space, hidden by what is in front of them.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, turn: Angle16, _mode: usize) {
-        scenes::labels::draw(scene, turn);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+        Box::new(Labels::new(shot.screen, shot.turn()))
     }
 }
 
 fn main() -> std::process::ExitCode {
-    show(Labels)
+    show(Demonstration)
 }

@@ -1,5 +1,5 @@
-//! A turning torus on a panel of 128×64 pixels that are on or off, as an SSD1306 is: in a window, or in a PNG where there is no
-//! display. What is shown is made from the bytes that the panel would get.
+//! A turning torus on a panel of 128×64 pixels that are on or off, like an SSD1306: in a window, or in a PNG file where
+//! there is no display. The picture is made from the bytes that the panel would get.
 //!
 //! ```text
 //! cargo run --release --example mono -- --help
@@ -8,6 +8,7 @@ mod host;
 mod scenes;
 
 use minifb::{Key, KeyRepeat, Window, WindowOptions};
+use scenes::{Draw, Room};
 use std::convert::Infallible;
 use std::error::Error;
 use std::path::{Path, PathBuf};
@@ -16,9 +17,10 @@ use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8};
 use zstrip::frame::{RamBudget, Renderer};
-use zstrip::math::{Affine, Angle16, Scalar, Vec3};
+use zstrip::light::{Matte, Sunlit};
+use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::shader::Gouraud;
-use zstrip::target::{Packer, Pages, StripPixels};
+use zstrip::target::{Packer, Pages, Strip, StripPixels, WithDepth, WithRecords};
 use zstrip::{Framebuffer, Scene};
 
 const HELP: &str = "\
@@ -39,7 +41,7 @@ keys in the window
   Esc               quit";
 
 const SIZE: (u16, u16) = (128, 64);
-/// Dots of the picture to a pixel of the panel.
+/// Dots of the picture per pixel of the panel, each way.
 const ZOOM: usize = 5;
 
 const DITHERS: [(&str, Dither<BinaryColor>); 5] = [
@@ -59,7 +61,7 @@ struct Settings {
     frame: u32,
 }
 
-/// The settings, or `None` if help was asked for.
+/// Returns the settings, or `None` if help was asked for.
 fn arguments() -> Result<Option<Settings>, Box<dyn Error>> {
     use lexopt::prelude::*;
     let mut settings = Settings { png: None, strip_rows: 8, dither: 2, scene: 0, frame: 0 };
@@ -84,7 +86,7 @@ fn place(names: &[&str], name: &str) -> Result<usize, String> {
     names.iter().position(|known| *known == name).ok_or_else(|| format!("one of {}", names.join(", ")))
 }
 
-/// Draws a frame and packs it: the bytes that the panel would get, one page after the other.
+/// Draws a frame and packs it. Returns the bytes that the panel would get, one page after the other.
 fn frame(settings: &Settings, number: u32) -> Result<Vec<u8>, Box<dyn Error>> {
     let pixels = usize::from(SIZE.0) * usize::from(settings.strip_rows.min(SIZE.1));
     let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; 4096]);
@@ -100,21 +102,38 @@ fn frame(settings: &Settings, number: u32) -> Result<Vec<u8>, Box<dyn Error>> {
         Ok::<(), Infallible>(())
     };
     let turn = Angle16(number.wrapping_mul(128) as u16);
-    renderer.frame_to(to_panel, &mut color, Gray8::new(0), |scene| match settings.scene {
-        0 => torus(scene, turn),
-        _ => scenes::room(scene, turn),
-    })?;
+    let drawing: Drawing = match settings.scene {
+        0 => Box::new(NearTorus::new(screen, turn)),
+        _ => Box::new(Room::new(screen, turn)),
+    };
+    renderer.frame_to(to_panel, &mut color, Gray8::new(0), |scene| drawing.draw(scene))?;
     Ok(sent)
 }
 
-/// The torus nearer and in white, as a panel without greys wants it.
-fn torus<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let nearer = Affine::translation(Vec3::from_milli(0, 0, 500)) * scenes::torus_model(turn);
-    let mvp = scenes::camera(scene.screen(), Scalar::from_bits(1 << 15), Scalar::from_bits(12 << 16)) * nearer;
-    scene.draw(&scenes::torus::MESH, &mvp, &Gouraud::new(scenes::LIGHT.on(&zstrip::light::Matte::WHITE, &nearer)));
+/// A scene, ready to be drawn in greys.
+type Drawing = Box<dyn for<'p> Draw<Strip<'p, Gray8, WithDepth, WithRecords>>>;
+
+/// The torus nearer and in white, for a panel without greys.
+struct NearTorus {
+    mvp: Projective,
+    shader: Gouraud<Sunlit>,
 }
 
-/// What the panel shows, enlarged: rows of dots that are on or off.
+impl NearTorus {
+    fn new(screen: Size, turn: Angle16) -> Self {
+        let nearer = Affine::translation(Vec3::from_milli(0, 0, 500)) * scenes::torus_model(turn);
+        let camera = scenes::camera(screen, Scalar::from_bits(1 << 15), Scalar::from_bits(12 << 16));
+        Self { mvp: camera * nearer, shader: Gouraud::new(scenes::LIGHT.on(&Matte::WHITE, &nearer)) }
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for NearTorus {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw(&scenes::torus::MESH, &self.mvp, &self.shader);
+    }
+}
+
+/// Returns the panel's picture, enlarged: rows of dots that are on or off.
 fn dots(pages: &[u8]) -> Vec<bool> {
     let (width, height) = (usize::from(SIZE.0), usize::from(SIZE.1));
     let lit = |x: usize, y: usize| pages[y / 8 * width + x] >> (y % 8) & 1 == 1;
@@ -145,7 +164,7 @@ fn picture(settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The window, or why there is none.
+/// Opens the window, or returns why there is none.
 fn open() -> Result<Window, String> {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     if cfg!(target_os = "linux") && !is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") {

@@ -11,6 +11,7 @@ mod firmware;
 mod scenes;
 
 use core::convert::Infallible;
+use scenes::{Draw, Torus};
 use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray4, Gray8};
@@ -39,9 +40,10 @@ fn draw(frame: u16, buffers: &mut Memory, mut send: impl FnMut(usize, &[u8])) {
         send(strip.area().top_left.y as usize, packer.pack(strip));
         Ok::<(), Infallible>(())
     };
+    let torus = Torus::gouraud(SCREEN, turn);
     renderer
-        .frame_to(sink, color, Gray8::new(26), |scene| scenes::torus_gouraud(scene, turn))
-        .expect("each call draws the same");
+        .frame_to(sink, color, Gray8::new(26), |scene| torus.draw(scene))
+        .expect("each call of the closure draws one scene");
 }
 
 struct Memory {

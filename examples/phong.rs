@@ -6,32 +6,35 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
-use scenes::light::{Shading, phong};
-use zstrip::Scene;
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::light::{Night, copper, glaze, sunlit_glaze};
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::shader::{Flat, Gouraud, Phong, PhongNear};
+use zstrip::target::WithDepth;
 
-const SHADINGS: [Shading; 5] =
-    [Shading::PerFragmentNear, Shading::PerVertex, Shading::PerFace, Shading::PerFragment, Shading::Matcap];
+struct Demonstration;
 
-struct Phong;
-
-impl Demo for Phong {
+impl Demo for Demonstration {
     type Format = Dithered<Rgb565>;
     const NAME: &'static str = "phong";
     const ABOUT: &'static str = "A glazed pot under the moon and two lamps, shaded in five ways.";
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["fragment", "vertex", "face", "sun", "matcap"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
-        phong(scene, turn, SHADINGS[mode]);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+        let (screen, turn) = (shot.screen, shot.turn());
+        // How often the pot is lit is part of its shader's type.
+        match shot.mode {
+            0 => Box::new(Night::new(screen, turn, PhongNear::new(glaze(turn)))),
+            1 => Box::new(Night::new(screen, turn, Gouraud::new(glaze(turn)))),
+            2 => Box::new(Night::new(screen, turn, Flat::new(glaze(turn)))),
+            3 => Box::new(Night::new(screen, turn, Phong::new(sunlit_glaze(turn)))),
+            _ => Box::new(Night::new(screen, turn, copper(turn))),
+        }
     }
 }
 
 fn main() -> std::process::ExitCode {
-    show(Phong)
+    show(Demonstration)
 }

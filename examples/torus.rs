@@ -1,5 +1,5 @@
-//! A turning, lit torus in a window, drawn strip by strip as on a small display; a PNG where there is no display. All other
-//! scenes of the tests can be chosen, too.
+//! A turning, lit torus in a window, drawn strip by strip as on a small display; a PNG file where there is no display.
+//! `--mode NAME` shows any other scene of `scenes/mod.rs`.
 //!
 //! ```text
 //! cargo run --release --example torus -- --help
@@ -7,15 +7,12 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
+use host::program::{Demo, Drawing, Shot, show};
 use scenes::SCENES;
-use zstrip::Scene;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::WithDepth;
 
-/// The scenes' names.
+/// The names of the scenes.
 const NAMES: [&str; SCENES.len()] = {
     let mut names = [""; SCENES.len()];
     let mut k = 0;
@@ -37,8 +34,8 @@ impl Demo for Torus {
     /// Gouraud shaded.
     const FIRST: usize = 1;
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
-        (SCENES[mode].draw)(scene, turn);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+        (SCENES[shot.mode].make)(shot.screen, shot.turn())
     }
 }
 

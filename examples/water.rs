@@ -6,29 +6,26 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
-use scenes::water::water;
-use zstrip::Scene;
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::water::Sea;
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::math::Angle16;
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::WithDepth;
 
-struct Water;
+struct Demonstration;
 
-impl Demo for Water {
+impl Demo for Demonstration {
     type Format = Dithered<Rgb565>;
     const NAME: &'static str = "water";
     const ABOUT: &'static str = "Water, waved by a vertex shader, and a crate on it.";
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["breeze", "waves", "gale"];
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, WithDepth, WithRecords>>, turn: Angle16, mode: usize) {
-        water(scene, turn, [1, 2, 3][mode]);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+        Box::new(Sea::new(shot.screen, shot.turn(), [1, 2, 3][shot.mode]))
     }
 }
 
 fn main() -> std::process::ExitCode {
-    show(Water)
+    show(Demonstration)
 }

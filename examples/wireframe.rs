@@ -6,19 +6,18 @@
 mod host;
 mod scenes;
 
-use host::program::{Demo, show};
+use host::program::{Demo, Drawing, Shot, show};
+use scenes::Draw;
 use scenes::wires::BEHIND_LINES;
 use std::process::ExitCode;
-use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::light::{Material, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{Lines, Mesh, MeshData, Positions, Topology, edges};
 use zstrip::shader::{DepthOnly, Flat};
 use zstrip::span::{Compare, DepthState};
-use zstrip::target::Strip;
-use zstrip::target::{WithDepth, WithRecords};
-use zstrip::{Dashed, Scene, Smooth, State, Thin};
+use zstrip::target::WithDepth;
+use zstrip::{Dashed, Framebuffer, Scene, Smooth, State, Thin};
 
 /// Corners of the polygons that stand for circles.
 const ROUND: usize = 48;
@@ -100,20 +99,10 @@ impl Part {
     }
 }
 
+/// The part, and all edges of its quads.
 struct Wireframe {
     part: Part,
-    /// All edges of its quads.
     all: Vec<[u16; 2]>,
-    /// Edges that are drawn in this frame: sharp ones, and outlines.
-    seen: Vec<[u16; 2]>,
-    mvp: Projective,
-    surface: Sunlit,
-}
-
-/// The part's paint under the light of the drawing office.
-fn surface(model: &Affine) -> Sunlit {
-    let sun = Sun::from_channels(Vec3::from_ints(2, 4, 3), [190, 200, 205], [50, 50, 55]);
-    sun.on(&Material::matte(Rgb888::new(120, 150, 170)), model)
 }
 
 impl Wireframe {
@@ -121,8 +110,31 @@ impl Wireframe {
         let part = Part::bracket();
         let mut room = vec![[0; 2]; part.quads.len()];
         let all = edges(&part.mesh(), &mut room).expect("a place for each side").to_vec();
-        Self { part, all, seen: Vec::new(), mvp: Projective::IDENTITY, surface: surface(&Affine::IDENTITY) }
+        Self { part, all }
     }
+
+    /// Returns the edges that are drawn from a place of the eye: sharp ones, and outlines.
+    fn seen_from(&self, eye: Vec3) -> Vec<[u16; 2]> {
+        let mut seen = self.part.sharp.clone();
+        for (edge, normals) in &self.part.smooth {
+            let to_eye = eye - self.part.points[usize::from(edge[0])];
+            // An edge is an outline if one of its quads faces the eye, and the other does not.
+            let [a, b] = normals.map(|normal| normal.dot(to_eye) > Scalar::ZERO);
+            if a != b {
+                seen.push(*edge);
+            }
+        }
+        seen
+    }
+}
+
+/// The drawing of one frame.
+struct Sheet<'p> {
+    mode: usize,
+    mesh: Mesh<'p>,
+    edges: Vec<[u16; 2]>,
+    mvp: Projective,
+    shaded: Flat<Sunlit>,
 }
 
 impl Demo for Wireframe {
@@ -132,49 +144,47 @@ impl Demo for Wireframe {
     const MODES: &'static [&'static str] = &["dashed", "removed", "shaded", "all"];
     const BACKGROUND: Rgb565 = Rgb565::new(2, 8, 8);
 
-    fn prepare(&mut self, frame: u32, screen: Size) {
-        let turn = Angle16(frame.wrapping_mul(96) as u16) + Angle16::from_degrees(-35);
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+        let turn = Angle16(shot.number.wrapping_mul(96) as u16) + Angle16::from_degrees(-35);
         let model = Affine::translation(Vec3::from_milli(0, 150, -6000))
             * Affine::rotation_x(Angle16::from_degrees(28))
             * Affine::rotation_y(turn);
-        let camera = Projective::perspective(Angle16::from_degrees(32), screen, Scalar::ONE, Scalar::from_num(12));
-        self.mvp = camera.expect("a camera") * model;
-        self.surface = surface(&model);
-        // An edge is an outline if one of its quads faces the eye, and the other does not.
+        let camera = Projective::perspective(Angle16::from_degrees(32), shot.screen, Scalar::ONE, Scalar::from_num(12));
+        let sun = Sun::from_channels(Vec3::from_ints(2, 4, 3), [190, 200, 205], [50, 50, 55]);
         let eye = model.inverse_rigid().transform_point(Vec3::ZERO);
-        self.seen.clone_from(&self.part.sharp);
-        for (edge, normals) in &self.part.smooth {
-            let to_eye = eye - self.part.points[usize::from(edge[0])];
-            let [a, b] = normals.map(|normal| normal.dot(to_eye) > Scalar::ZERO);
-            if a != b {
-                self.seen.push(*edge);
-            }
-        }
+        Box::new(Sheet {
+            mode: shot.mode,
+            mesh: self.part.mesh(),
+            edges: if shot.mode == 3 { self.all.clone() } else { self.seen_from(eye) },
+            mvp: camera.expect("a camera") * model,
+            shaded: Flat::new(sun.on(&Material::matte(Rgb888::new(120, 150, 170)), &model)),
+        })
     }
+}
 
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, _turn: Angle16, mode: usize) {
-        let mesh = self.part.mesh();
-        let edges = if mode == 3 { &self.all } else { &self.seen };
-        let Ok(lines) = Lines::of_mesh(&mesh, edges) else { return };
+impl<F: Framebuffer> Draw<F> for Sheet<'_> {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        let Self { mesh, mvp, .. } = self;
+        let Ok(lines) = Lines::of_mesh(mesh, &self.edges) else { return };
         let white = Flat::unlit(Rgb888::new(214, 236, 244));
-        match mode {
+        match self.mode {
             2 => {
-                scene.draw_with(BEHIND_LINES, &mesh, &self.mvp, &Flat::new(self.surface));
+                scene.draw_with(BEHIND_LINES, mesh, mvp, &self.shaded);
                 let ink = Flat::unlit(Rgb888::new(8, 16, 24));
                 let blended = DepthState { compare: Compare::Less, write: false };
                 let state = State { depth: blended, ..State::DEFAULT };
-                scene.draw_lines_with(state, &lines, &self.mvp, &ink, &Smooth::new(Pixels::from_bits(360)));
+                scene.draw_lines_with(state, &lines, mvp, &ink, &Smooth::new(Pixels::from_bits(360)));
             }
-            3 => scene.draw_lines(&lines, &self.mvp, &white, &Thin),
-            _ => {
-                scene.draw_with(BEHIND_LINES, &mesh, &self.mvp, &DepthOnly);
+            3 => scene.draw_lines(&lines, mvp, &white, &Thin),
+            mode => {
+                scene.draw_with(BEHIND_LINES, mesh, mvp, &DepthOnly);
                 if mode == 0 {
                     let hidden = DepthState { compare: Compare::GreaterEqual, write: false };
                     let state = State { depth: hidden, ..State::DEFAULT };
                     let dim = Flat::unlit(Rgb888::new(70, 100, 116));
-                    scene.draw_lines_with(state, &lines, &self.mvp, &dim, &Dashed::EVEN);
+                    scene.draw_lines_with(state, &lines, mvp, &dim, &Dashed::EVEN);
                 }
-                scene.draw_lines_with(State::DEFAULT, &lines, &self.mvp, &white, &Thin);
+                scene.draw_lines(&lines, mvp, &white, &Thin);
             }
         }
     }

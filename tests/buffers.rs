@@ -7,6 +7,7 @@ mod reference;
 mod scenes;
 mod support;
 
+use scenes::{Draw, Room};
 use support::{difference, strips};
 use zstrip::color::Rgb565Be;
 use zstrip::embedded_graphics_core::geometry::Size;
@@ -22,7 +23,7 @@ const WIDTH: usize = 80;
 const RECORDS: [usize; 3] = [0, 700, 40_000];
 
 fn room(scene: &mut Scene<'_, impl Framebuffer<Format = Rgb565>>, turn: Angle16) {
-    scenes::room(scene, turn);
+    Room::new(SIZE, turn).draw(scene);
 }
 
 fn expected(turn: Angle16) -> Vec<u16> {

@@ -6,6 +6,7 @@ mod scenes;
 mod support;
 
 use reference::rng::Rng;
+use scenes::{Draw, Intersections};
 use support::{Soup, difference, strips};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
@@ -139,9 +140,9 @@ where
 #[test]
 fn convex_body_needs_no_depth() {
     // Squares through one another do need depth.
-    let (deep, _) =
-        strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle16(9000)));
-    let flat = without_depth::<Rgb565>(50, 20_000, scenes::BACKGROUND, |s| scenes::intersections(s, Angle16(9000)));
+    let squares = Intersections::new(Size::new(SCREEN.0.into(), SCREEN.1.into()), Angle16(9000));
+    let (deep, _) = strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| squares.draw(s));
+    let flat = without_depth::<Rgb565>(50, 20_000, scenes::BACKGROUND, |s| squares.draw(s));
     assert_ne!(difference(&flat, &deep, SCREEN.0), None);
     let (deep, _) = strips::<Rgb565>(SCREEN, 50, 20_000, scenes::BACKGROUND, |s| {
         pillar(s);

@@ -6,12 +6,15 @@ mod scenes;
 mod support;
 
 use reference::rng::Rng;
+use scenes::{Draw, Room, Torus};
 use support::{Soup, difference, strips, whole};
 use zstrip::color::{Bgr565Be, Ditherable, Dithered, PixelFormat, Rgb332, Rgb565Be};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Bgr565, Rgb565, Rgb888, RgbColor};
 use zstrip::math::{Angle16, Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud};
+use zstrip::target::{Strip, WithDepth, WithRecords};
 use zstrip::{Cull, State};
 
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
@@ -163,12 +166,14 @@ fn dithered_pictures_are_the_same_in_any_strips() {
     for name in ["torus_flat", "torus_gouraud", "room"] {
         let draw = |rows: usize, records: usize| {
             let background = scenes::BACKGROUND;
+            let (screen, turn) = (Size::new(320, 240), Angle16(999));
+            let drawing: Box<dyn for<'p> Draw<Strip<'p, Dithered<Rgb565Be>, WithDepth, WithRecords>>> = match name {
+                "torus_flat" => Box::new(Torus::flat(screen, turn)),
+                "torus_gouraud" => Box::new(Torus::gouraud(screen, turn)),
+                _ => Box::new(Room::new(screen, turn)),
+            };
             let (picture, _) =
-                strips::<Dithered<Rgb565Be>>((320, 240), rows, records, background, |scene| match name {
-                    "torus_flat" => scenes::torus_flat(scene, Angle16(999)),
-                    "torus_gouraud" => scenes::torus_gouraud(scene, Angle16(999)),
-                    _ => scenes::room(scene, Angle16(999)),
-                });
+                strips::<Dithered<Rgb565Be>>((320, 240), rows, records, background, |scene| drawing.draw(scene));
             picture
         };
         let expected = draw(240, 40_000);

@@ -6,6 +6,7 @@ mod scenes;
 mod support;
 
 use core::convert::Infallible;
+use scenes::{Draw, Room, Torus};
 use std::error::Error;
 use support::{difference, strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
@@ -216,13 +217,15 @@ fn next_frame(
         picture.extend_from_slice(strip.pixels());
         Ok::<(), Infallible>(())
     };
-    let drawn = renderer.frame_to(sink, color, Rgb565::BLACK, |scene| scenes::room(scene, turn));
+    let room = Room::new(Size::new(64, 48), turn);
+    let drawn = renderer.frame_to(sink, color, Rgb565::BLACK, |scene| room.draw(scene));
     drawn.expect("a frame like any other");
     picture
 }
 
 fn first_frame(turn: Angle16) -> Vec<u16> {
-    strips::<Rgb565>(SIZE, 48, 40_000, Rgb565::BLACK, |scene| scenes::room(scene, turn)).0
+    let room = Room::new(Size::new(64, 48), turn);
+    strips::<Rgb565>(SIZE, 48, 40_000, Rgb565::BLACK, |scene| room.draw(scene)).0
 }
 
 /// A sink that fails at a strip.
@@ -244,7 +247,8 @@ fn failing_sink_ends_the_frame_and_the_next_one_is_right() {
     for (records, strips_left) in [0, 900, 30_000].into_iter().flat_map(|r| [0, 1, 3, 5].map(|s| (r, s))) {
         with_renderer(records, |renderer, color| {
             let sink = Failing { strips_left };
-            let failed = renderer.frame_to(sink, color, Rgb565::RED, |scene| scenes::room(scene, Angle16(1000)));
+            let room = Room::new(Size::new(64, 48), Angle16(1000));
+            let failed = renderer.frame_to(sink, color, Rgb565::RED, |scene| room.draw(scene));
             let error = failed.expect_err("the sink fails");
             assert_eq!(error, FrameError::Sink("the cable came off"));
             assert!(error.to_string().contains("the cable came off"));
@@ -332,9 +336,8 @@ fn ram_of_a_frame_is_what_the_constants_say() {
     assert_eq!(renderer.strip_rows(color.len()), ROWS);
     let handle = size_of_val(&renderer);
     let sink = |_: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(());
-    let stats = renderer
-        .frame_to(sink, &mut color, Rgb565::BLACK, |scene| scenes::torus_gouraud(scene, Angle16(0)))
-        .expect("a frame");
+    let torus = Torus::gouraud(Size::new(WIDTH, 240), Angle16(0));
+    let stats = renderer.frame_to(sink, &mut color, Rgb565::BLACK, |scene| torus.draw(scene)).expect("a frame");
     assert_eq!((stats.overflows, stats.direct_strips), (0, 0), "the records suffice: {stats:?}");
     println!(
         "320x240 in 16-row strips: colour {} + depth {} + records {} = {} bytes; renderer {handle} bytes; without records {}",

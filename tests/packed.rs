@@ -10,6 +10,7 @@ use embedded_graphics_core::Pixel;
 use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{OriginDimensions, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888, WebColors};
+use scenes::{Draw, Torus};
 use zstrip::color::{Dither, Levels, PixelFormat};
 use zstrip::frame::Renderer;
 use zstrip::math::{Angle16, Projective, Scalar};
@@ -40,16 +41,15 @@ fn torus<P: PixelFormat, F: PackedFormat>(
         sink(strip.area().top_left.y as usize, packer.pack(strip));
         Ok::<(), Infallible>(())
     };
-    renderer
-        .frame_to(to_sink, &mut color, background, |scene| scenes::torus_gouraud(scene, Angle16(4000)))
-        .expect("a frame");
+    let torus = Torus::gouraud(Size::new(screen.0.into(), screen.1.into()), Angle16(4000));
+    renderer.frame_to(to_sink, &mut color, background, |scene| torus.draw(scene)).expect("a frame");
 }
 
 /// Greys of the same frame, pixel by pixel.
 fn greys(screen: (u16, u16)) -> Vec<u8> {
-    let (picture, _) = support::strips::<Gray8>(screen, usize::from(screen.1), 20_000, Gray8::new(70), |scene| {
-        scenes::torus_gouraud(scene, Angle16(4000));
-    });
+    let torus = Torus::gouraud(Size::new(screen.0.into(), screen.1.into()), Angle16(4000));
+    let rows = usize::from(screen.1);
+    let (picture, _) = support::strips::<Gray8>(screen, rows, 20_000, Gray8::new(70), |scene| torus.draw(scene));
     picture
 }
 
@@ -143,8 +143,9 @@ fn check_display<C: Levels + PartialEq + core::fmt::Debug>(dither: Dither<C>) {
         let mut renderer = renderer.with_records(&mut records);
         let mut panel = Panel { size: Size::new(61, 45), pixels: vec![None; 61 * 45] };
         let sink = DitheredDisplay::new(&mut panel, dither);
+        let torus = Torus::gouraud(Size::new(61, 45), Angle16(4000));
         renderer
-            .frame_to(sink, &mut color, Gray8::new(70), |scene| scenes::torus_gouraud(scene, Angle16(4000)))
+            .frame_to(sink, &mut color, Gray8::new(70), |scene| torus.draw(scene))
             .expect("the same scene in each call");
         for (k, grey) in greys(screen).into_iter().enumerate() {
             let expected = dither.color(grey, (k as i32 % 61, k as i32 / 61));

@@ -12,7 +12,7 @@ use reference::homogeneous::{self, Vertex};
 use reference::ray;
 use reference::rng::Rng;
 use reference::snapped::{self, Shading, SnappedVertex};
-use scenes::{polygons, soup, torus};
+use scenes::{Draw, polygons, soup, torus};
 use support::{apply, matrix, position, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
@@ -22,7 +22,7 @@ use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
 use zstrip::span::{DepthState, Fragment, Shader};
 use zstrip::vertex::{DepthRange, Face, VertexRef, VertexShader, Viewport};
-use zstrip::{Cull, Scene, State};
+use zstrip::{Cull, State};
 
 /// A draw of a scene.
 struct Part {
@@ -88,19 +88,20 @@ fn scene_parts(name: &str, size: (u16, u16), turn: Angle16) -> Vec<Part> {
 fn parts_are_what_the_examples_draw() {
     let size = (80, 60);
     let turn = Angle16(4321);
-    let frame = |draw: &dyn Fn(&mut Scene<'_, zstrip::target::FrameSlice<'_, Rgb888>>)| {
-        whole::<Rgb888>(size, Rgb888::BLACK, draw).1
+    let screen = Size::new(size.0.into(), size.1.into());
+    let frame = |drawing: &dyn for<'p> Draw<zstrip::target::FrameSlice<'p, Rgb888>>| {
+        whole::<Rgb888>(size, Rgb888::BLACK, |scene| drawing.draw(scene)).1
     };
     for (name, depths) in [
-        ("torus", frame(&|s| scenes::torus_flat(s, turn))),
-        ("room", frame(&|s| scenes::room(s, turn))),
-        ("intersections", frame(&|s| scenes::intersections(s, turn))),
-        ("cycle", frame(&|s| scenes::cycle(s, turn))),
-        ("slivers", frame(&|s| scenes::slivers(s, turn))),
-        ("far", frame(&|s| scenes::far(s, turn))),
-        ("soup", frame(&|s| scenes::soup(s, turn))),
-        ("near", frame(&|s| scenes::near(s, turn))),
-        ("field", frame(&|s| scenes::field(s, turn))),
+        ("torus", frame(&scenes::Torus::flat(screen, turn))),
+        ("room", frame(&scenes::Room::new(screen, turn))),
+        ("intersections", frame(&scenes::Intersections::new(screen, turn))),
+        ("cycle", frame(&scenes::Cycle::new(screen, turn))),
+        ("slivers", frame(&scenes::Slivers::new(screen, turn))),
+        ("far", frame(&scenes::Far::new(screen, turn))),
+        ("soup", frame(&scenes::Soup::new(screen, turn))),
+        ("near", frame(&scenes::Near::new(turn))),
+        ("field", frame(&scenes::Field::new(screen, turn))),
     ] {
         let (_, same) = draw_ids(size, &scene_parts(name, size, turn), DepthState::LESS);
         assert_eq!(support::difference(&same, &depths, size.0), None, "{name}");
@@ -357,7 +358,8 @@ fn lit_torus_agrees_with_light_in_f64() {
             .map(|k| Vertex { position: apply(&m, position(&torus::MESH.data().positions, k)), attributes: lit(k) });
         homogeneous::draw(&mut reference, &viewport, ReferenceCull::Back, &tri, number as u32 + 1, |s| s.linear);
     }
-    let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| scenes::torus_gouraud(scene, turn));
+    let gouraud = scenes::Torus::gouraud(Size::new(size.0.into(), size.1.into()), turn);
+    let (picture, ..) = whole::<Rgb888>(size, Rgb888::BLACK, |scene| gouraud.draw(scene));
     let (mut worst, mut pixels) = (0_f64, 0);
     for (i, found) in picture.iter().enumerate().filter(|(i, _)| reference.is_clear_cut(*i, MARGIN, GAP)) {
         pixels += usize::from(reference.id[i] != 0);

@@ -16,8 +16,7 @@ use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud};
 use zstrip::span::{DepthBias, DepthState};
-use zstrip::target::{FrameSlice, Framebuffer, Stats, Strip, records_len};
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::{FrameSlice, Framebuffer, Stats, records_len};
 use zstrip::vertex::{DepthScale, Viewport};
 use zstrip::{Cull, Scene, State};
 
@@ -25,21 +24,21 @@ const SCREEN: (u16, u16) = (320, 240);
 const AMPLE: usize = 40_000;
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
-fn draw_scene(name: &str) -> impl Fn(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, Angle16) + use<> {
+/// Makes a scene by its name.
+fn made(name: &str, (width, height): (u16, u16), turn: Angle16) -> Box<scenes::Drawing> {
     let info = scenes::SCENES.iter().find(|info| info.name == name);
-    let draw = info.unwrap_or_else(|| panic!("no scene {name}")).draw;
-    move |scene, turn| draw(scene, turn)
+    (info.unwrap_or_else(|| panic!("no scene {name}")).make)(Size::new(width.into(), height.into()), turn)
 }
 
 /// The frame in one strip must be what it is in others; some of it must not be background.
 fn assert_strips_do_not_matter(name: &str, turn: Angle16, heights: &[usize], capacities: &[usize]) {
-    let draw = draw_scene(name);
-    let (expected, _) = strips::<Rgb565>(SCREEN, 240, AMPLE, scenes::BACKGROUND, |s| draw(s, turn));
+    let drawing = made(name, SCREEN, turn);
+    let (expected, _) = strips::<Rgb565>(SCREEN, 240, AMPLE, scenes::BACKGROUND, |s| drawing.draw(s));
     let background = Rgb565::from_color(scenes::BACKGROUND);
     let drawn = expected.iter().filter(|p| **p != background).count();
     assert!(drawn > 500, "{name}: only {drawn} pixels are drawn");
     for (&rows, &records) in heights.iter().flat_map(|h| capacities.iter().map(move |c| (h, c))) {
-        let (picture, stats) = strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| draw(s, turn));
+        let (picture, stats) = strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| drawing.draw(s));
         let found = difference(&picture, &expected, SCREEN.0);
         assert_eq!(found, None, "{name} at {turn:?}, strips of {rows} rows, {records} records");
         assert_eq!(stats.strips as usize, 240_usize.div_ceil(rows));
@@ -273,8 +272,8 @@ fn framebuffer_of_ones_own_gets_the_rows_it_hands_out() {
 
 #[test]
 fn pulled_strips_are_those_that_are_sent() {
-    let draw = draw_scene("room");
-    let (expected, _) = strips::<Rgb565>((80, 60), 60, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle16(3)));
+    let room = made("room", (80, 60), Angle16(3));
+    let (expected, _) = strips::<Rgb565>((80, 60), 60, AMPLE, scenes::BACKGROUND, |s| room.draw(s));
     for records in [0, 700, AMPLE] {
         let (mut color, mut depth, mut records) = (vec![9; 80 * 7], vec![9; 80 * 7], vec![9; records]);
         let renderer =
@@ -283,13 +282,13 @@ fn pulled_strips_are_those_that_are_sent() {
 
         let mut frame = renderer.begin(scenes::BACKGROUND);
         let mut picture = Vec::new();
-        while let Some(strip) = frame.next_strip(&mut color, |s| draw(s, Angle16(3))).expect("the same scene") {
+        while let Some(strip) = frame.next_strip(&mut color, |s| room.draw(s)).expect("the same scene") {
             picture.extend_from_slice(strip.pixels());
         }
         assert_eq!(frame.stats().strips, 9);
         assert_eq!(difference(&picture, &expected, 80), None);
         assert!(
-            frame.next_strip(&mut color, |s| draw(s, Angle16(3))).expect("no error").is_none(),
+            frame.next_strip(&mut color, |s| room.draw(s)).expect("no error").is_none(),
             "a finished frame stays finished"
         );
         assert_eq!(frame.stats().strips, 9);
@@ -298,7 +297,7 @@ fn pulled_strips_are_those_that_are_sent() {
         let mut frame = renderer.begin(scenes::BACKGROUND);
         let (mut drawn, mut sent) = (vec![1; 80 * 7], vec![2; 80 * 7]);
         let (mut picture, mut rows) = (Vec::new(), 0);
-        while let Some(strip) = frame.next_strip(&mut drawn, |s| draw(s, Angle16(3))).expect("the same scene") {
+        while let Some(strip) = frame.next_strip(&mut drawn, |s| room.draw(s)).expect("the same scene") {
             rows = strip.area().size.height as usize;
             assert_eq!(strip.pixels().len(), 80 * rows);
             std::mem::swap(&mut drawn, &mut sent);
@@ -311,21 +310,21 @@ fn pulled_strips_are_those_that_are_sent() {
 
 #[test]
 fn frame_that_is_not_finished_does_not_disturb_the_next() {
-    let draw = draw_scene("torus_flat");
+    let [earlier, later] = [100, 200].map(|turn| made("torus_flat", (64, 64), Angle16(turn)));
     let (mut color, mut depth, mut records) = (vec![0; 64 * 8], vec![0; 64 * 8], vec![0; 3000]);
     let renderer =
         Renderer::<Rgb565>::new(Size::new(64, 64)).expect("a renderer").with_depth(&mut depth).expect("a renderer");
     let mut renderer = renderer.with_records(&mut records);
     let mut frame = renderer.begin(Rgb565::BLACK);
     for _ in 0..3 {
-        assert!(frame.next_strip(&mut color, |s| draw(s, Angle16(100))).expect("the same scene").is_some());
+        assert!(frame.next_strip(&mut color, |s| earlier.draw(s)).expect("the same scene").is_some());
     }
     let mut picture = Vec::new();
     let mut frame = renderer.begin(Rgb565::BLACK);
-    while let Some(strip) = frame.next_strip(&mut color, |s| draw(s, Angle16(200))).expect("the same scene") {
+    while let Some(strip) = frame.next_strip(&mut color, |s| later.draw(s)).expect("the same scene") {
         picture.extend_from_slice(strip.pixels());
     }
-    let (expected, _) = strips::<Rgb565>((64, 64), 64, AMPLE, Rgb565::BLACK, |s| draw(s, Angle16(200)));
+    let (expected, _) = strips::<Rgb565>((64, 64), 64, AMPLE, Rgb565::BLACK, |s| later.draw(s));
     assert_eq!(difference(&picture, &expected, 64), None);
 }
 
@@ -370,11 +369,11 @@ fn painted_layers_stay_in_the_order_they_were_drawn() {
 /// Every capacity around the points where a walk begins to overflow, and where the lists themselves do not fit.
 #[test]
 fn frame_is_the_same_at_every_capacity_about_the_overflow_points() {
-    let draw = draw_scene("field");
     let screen = (48, 40);
-    let (expected, ample) = strips::<Rgb565>(screen, 40, AMPLE, scenes::BACKGROUND, |s| draw(s, Angle16(5)));
+    let field = made("field", screen, Angle16(5));
+    let (expected, ample) = strips::<Rgb565>(screen, 40, AMPLE, scenes::BACKGROUND, |s| field.draw(s));
     let records_at = |records| {
-        let (picture, stats) = strips::<Rgb565>(screen, 4, records, scenes::BACKGROUND, |s| draw(s, Angle16(5)));
+        let (picture, stats) = strips::<Rgb565>(screen, 4, records, scenes::BACKGROUND, |s| field.draw(s));
         let found = difference(&picture, &expected, screen.0);
         assert_eq!(found, None, "{records} words of records: {stats:?}");
         stats
@@ -408,8 +407,8 @@ fn frame_is_the_same_at_every_capacity_about_the_overflow_points() {
 
 #[test]
 fn stats_tell_how_the_frame_was_made() {
-    let draw = draw_scene("torus_flat");
-    let frame = |rows, records| strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| draw(s, Angle16(0))).1;
+    let torus = made("torus_flat", SCREEN, Angle16(0));
+    let frame = |rows, records| strips::<Rgb565>(SCREEN, rows, records, scenes::BACKGROUND, |s| torus.draw(s)).1;
     let ample = frame(16, AMPLE);
     assert_eq!((ample.strips, ample.walks, ample.draws), (15, 16, 16), "one walk records, fifteen replay");
     assert_eq!((ample.overflows, ample.direct_strips), (0, 0));

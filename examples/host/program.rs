@@ -1,19 +1,20 @@
-//! A program around something to draw, strip by strip as on a small display: a window with keys, or a PNG where there is no
-//! display.
+//! A program that shows a demo, strip by strip as on a small display: in a window with keys, or as a PNG file where there
+//! is no display.
 
 use super::Picture;
 use super::options::{Settings, arguments, help};
+use crate::scenes::Draw;
 use minifb::{Key, KeyRepeat, Scale, Window, WindowOptions};
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
+use zstrip::Renderer;
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::frame::{RamBudget, RendererError};
 use zstrip::math::Angle16;
 use zstrip::target::{DepthChoice, Stats, Strip, StripPixels, WithDepth, WithRecords, WithoutDepth};
-use zstrip::{Renderer, Scene};
 
 /// Lends a renderer its depth buffer, if it is to have one.
 pub trait Depth: DepthChoice + Sized {
@@ -41,9 +42,26 @@ impl Depth for WithoutDepth {
     }
 }
 
-/// What is shown.
+/// A frame of a demo, ready to be drawn.
+pub type Drawing<'d, P, Z> = Box<dyn for<'p> Draw<Strip<'p, P, Z, WithRecords>> + 'd>;
+
+/// The frame that is to be made.
+pub struct Shot {
+    pub number: u32,
+    pub screen: Size,
+    pub mode: usize,
+}
+
+impl Shot {
+    /// Returns the angle of the frame: each frame adds 1/512 of a turn.
+    pub fn turn(&self) -> Angle16 {
+        Angle16(self.number.wrapping_mul(128) as u16)
+    }
+}
+
+/// A demo to be shown.
 pub trait Demo<Z: Depth = WithDepth> {
-    /// What is drawn into.
+    /// The format of its strips.
     type Format: PixelFormat;
 
     /// Its name, and that of its picture.
@@ -55,50 +73,43 @@ pub trait Demo<Z: Depth = WithDepth> {
     const MODES: &'static [&'static str] = &[];
     /// The mode to begin with.
     const FIRST: usize = 0;
-    /// Words of records where the command line says nothing: enough for most of what is shown.
+    /// Words of records where the command line gives no number: enough for most demos.
     const RECORDS: usize = if Z::DEPTH { 16 * 1024 } else { 0 };
-    /// What [`key`](Self::key) does, a line for each of its keys.
+    /// The help for the keys of [`key`](Self::key), a line for each.
     const KEYS: &'static str = "";
 
-    /// A key is held down.
+    /// Handles a key that is held down.
     fn key(&mut self, _key: Key) {}
 
-    /// Called before each frame, with the screen's size.
-    fn prepare(&mut self, _frame: u32, _screen: Size) {}
-
-    /// Draws the frame that was prepared, for an angle that each frame adds 1/512 of a turn to. Called for each strip.
-    fn draw(&self, scene: &mut Scene<'_, Strip<'_, Self::Format, Z, WithRecords>>, turn: Angle16, mode: usize);
+    /// Makes matrices, shaders and lights of one frame. The renderer then draws the frame once or twice per strip.
+    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, Z>;
 }
 
-/// What the keys choose from; the height of the screen is the tallest strip.
+/// The choices of the keys; the height of the screen is the tallest strip.
 const STRIP_ROWS: [u16; 7] = [1, 2, 4, 7, 8, 16, 40];
 const RECORDS: [usize; 5] = [0, 100, 1000, 16 * 1024, 64 * 1024];
 const DIGITS: [Key; 9] =
     [Key::Key1, Key::Key2, Key::Key3, Key::Key4, Key::Key5, Key::Key6, Key::Key7, Key::Key8, Key::Key9];
 
 /// Draws a frame through strips, as a display would get it.
-fn render<D: Demo<Z>, Z: Depth>(
-    demo: &mut D,
-    settings: &Settings,
-    picture: &mut Picture,
-) -> Result<Stats, Box<dyn Error>> {
+fn render<D: Demo<Z>, Z: Depth>(demo: &D, settings: &Settings, picture: &mut Picture) -> Result<Stats, Box<dyn Error>> {
     let pixels = usize::from(settings.size.0) * usize::from(settings.strip_rows.min(settings.size.1));
     let depths = if Z::DEPTH { pixels } else { 0 };
     let mut color = vec![bytemuck::Zeroable::zeroed(); pixels];
     let (mut depth, mut records) = (vec![0; depths], vec![0; settings.records]);
     let (width, height) = settings.size;
-    let renderer = Renderer::<D::Format>::new(Size::new(width.into(), height.into()))?;
+    let screen = Size::new(width.into(), height.into());
+    let renderer = Renderer::<D::Format>::new(screen)?;
     let mut renderer = Z::lend(renderer, &mut depth)?.with_records(&mut records);
     let to_picture = |strip: &StripPixels<'_, D::Format>| {
         picture.put(strip);
         Ok::<(), std::convert::Infallible>(())
     };
-    demo.prepare(settings.frame, Size::new(settings.size.0.into(), settings.size.1.into()));
-    let turn = Angle16(settings.frame.wrapping_mul(128) as u16);
-    Ok(renderer.frame_to(to_picture, &mut color, D::BACKGROUND, |scene| demo.draw(scene, turn, settings.mode))?)
+    let drawing = demo.frame(&Shot { number: settings.frame, screen, mode: settings.mode });
+    Ok(renderer.frame_to(to_picture, &mut color, D::BACKGROUND, |scene| drawing.draw(scene))?)
 }
 
-/// Settings and statistics in a line.
+/// Returns settings and statistics in a line.
 fn describe<D: Demo<Z>, Z: Depth>(settings: &Settings, stats: &Stats) -> String {
     let (width, height) = settings.size;
     let rows = settings.strip_rows.min(height);
@@ -114,7 +125,7 @@ fn describe<D: Demo<Z>, Z: Depth>(settings: &Settings, stats: &Stats) -> String 
     line + &format!(", {} walks, {} overflows", stats.walks, stats.overflows)
 }
 
-fn picture<D: Demo<Z>, Z: Depth>(demo: &mut D, settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
+fn picture<D: Demo<Z>, Z: Depth>(demo: &D, settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
     let mut picture = Picture::new(settings.size);
     let stats = render(demo, settings, &mut picture)?;
     picture.write_png(path)?;
@@ -123,7 +134,7 @@ fn picture<D: Demo<Z>, Z: Depth>(demo: &mut D, settings: &Settings, path: &Path)
     Ok(())
 }
 
-/// The window, or why there is none.
+/// Opens the window, or returns why there is none.
 fn open(name: &str, (width, height): (u16, u16)) -> Result<Window, String> {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
     if cfg!(target_os = "linux") && !is_set("DISPLAY") && !is_set("WAYLAND_DISPLAY") {
@@ -133,13 +144,13 @@ fn open(name: &str, (width, height): (u16, u16)) -> Result<Window, String> {
     Window::new(name, width.into(), height.into(), options).map_err(|error| error.to_string())
 }
 
-/// The next entry above `value`, or the one below; `value` itself at the ends.
+/// Returns the next entry above `value`, or the one below; `value` itself at the ends.
 fn neighbour<T: Copy + PartialOrd>(list: impl Iterator<Item = T> + Clone, value: T, up: bool) -> T {
     let next = if up { list.clone().find(|entry| *entry > value) } else { list.filter(|entry| *entry < value).last() };
     next.unwrap_or(value)
 }
 
-/// What a key does that was pressed.
+/// Changes the settings by a key that was pressed.
 fn press<D: Demo<Z>, Z: Depth>(key: Key, settings: &mut Settings, paused: &mut bool) {
     let height = settings.size.1;
     let rows = STRIP_ROWS.into_iter().filter(|rows| *rows < height).chain([height]);
@@ -170,7 +181,7 @@ fn play<D: Demo<Z>, Z: Depth>(demo: &mut D, window: &mut Window, mut settings: S
     let (mut since, mut frames, mut drawing) = (Instant::now(), 0, Duration::ZERO);
     while window.is_open() && !window.is_key_down(Key::Escape) {
         let start = Instant::now();
-        let stats = render(demo, &settings, &mut picture)?;
+        let stats = render(&*demo, &settings, &mut picture)?;
         drawing += start.elapsed();
         window.update_with_buffer(&picture.to_0rgb(), settings.size.0.into(), settings.size.1.into())?;
         frames += 1;

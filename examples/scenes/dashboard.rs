@@ -2,6 +2,7 @@
 //!
 //! Angles come from the crate's integer sine, as embedded-graphics' own arcs compute in floats.
 
+use super::Draw;
 use embedded_graphics::image::{Image, ImageRawLE};
 use embedded_graphics::mono_font::{MonoFont, MonoTextStyle, ascii};
 use embedded_graphics::prelude::*;
@@ -24,22 +25,37 @@ const AMBER: Rgb565 = Rgb565::new(30, 42, 4);
 const RED: Rgb565 = Rgb565::new(30, 14, 8);
 const BLUE: Rgb565 = Rgb565::new(8, 40, 30);
 
-/// Draws the instruments on a screen of 320×240; `turn` is the time.
-pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let overlay = &mut scene.overlay();
-    let Ok(()) = overlay.clear(BACK);
-    header(overlay, turn);
-    let speed = 118 + wave(turn, 1, 60) + wave(turn, 5, 14);
-    gauge(overlay, Point::new(74, 100), "km/h", speed, 200);
-    let power = 47 + wave(turn + Angle16(9000), 2, 38);
-    gauge(overlay, Point::new(246, 100), "kW", power, 100);
-    overlay
-        .draw(&Image::new(&ImageRawLE::<Rgb565>::new(const { &picture() }, WEATHER_SIZE as u32), Point::new(140, 34)));
-    label(overlay, Point::new(160, 84), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, "19 C");
-    plot(overlay, Rectangle::new(Point::new(10, 176), Size::new(186, 54)), turn);
-    for (k, (name, color)) in [("cell", GREEN), ("coil", AMBER), ("oil", BLUE)].into_iter().enumerate() {
-        let share = 50 + wave(turn + Angle16(k as u16 * 20_000), 1 + k as u16, 45);
-        bar(overlay, Point::new(206, 178 + 18 * k as i32), name, share, color);
+/// The instruments on a screen of 320×240.
+pub struct Dashboard {
+    /// The time that they show.
+    turn: Angle16,
+    speed: i32,
+    power: i32,
+}
+
+impl Dashboard {
+    pub fn new(turn: Angle16) -> Self {
+        let speed = 118 + wave(turn, 1, 60) + wave(turn, 5, 14);
+        let power = 47 + wave(turn + Angle16(9000), 2, 38);
+        Self { turn, speed, power }
+    }
+}
+
+impl<F: Framebuffer<Format = Rgb565>> Draw<F> for Dashboard {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        let overlay = &mut scene.overlay();
+        let Ok(()) = overlay.clear(BACK);
+        header(overlay, self.turn);
+        gauge(overlay, Point::new(74, 100), "km/h", self.speed, 200);
+        gauge(overlay, Point::new(246, 100), "kW", self.power, 100);
+        let weather = ImageRawLE::<Rgb565>::new(const { &picture() }, WEATHER_SIZE as u32);
+        overlay.draw(&Image::new(&weather, Point::new(140, 34)));
+        label(overlay, Point::new(160, 84), &ascii::FONT_6X10, DIM_TEXT, Alignment::Center, "19 C");
+        plot(overlay, Rectangle::new(Point::new(10, 176), Size::new(186, 54)), self.turn);
+        for (k, (name, color)) in [("cell", GREEN), ("coil", AMBER), ("oil", BLUE)].into_iter().enumerate() {
+            let share = 50 + wave(self.turn + Angle16(k as u16 * 20_000), 1 + k as u16, 45);
+            bar(overlay, Point::new(206, 178 + 18 * k as i32), name, share, color);
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! Scenes in formats other than RGB565: dithered ones, and strips packed for panels.
 
-use super::{in_place, room, torus_gouraud};
-use zstrip::Scene;
+use super::kept::kept;
+use super::{Draw, Room, Torus, in_place};
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8, Rgb888};
@@ -10,14 +10,14 @@ use zstrip::math::Angle16;
 use zstrip::target::{PackedFormat, Packer, Pages, Rows, Strip};
 use zstrip::target::{WithDepth, WithRecords};
 
-/// Memory for a frame: colours, packed strips and whatever else a pixel takes are in `color`.
+/// The memory of a frame; `color` holds colours and packed strips in any format.
 pub struct Memory<'m> {
     pub color: &'m mut [u16],
     pub depth: &'m mut [u16],
     pub records: &'m mut [u32],
 }
 
-/// Takes a strip's bytes.
+/// A closure that takes a strip's bytes.
 pub type Sink<'s> = dyn FnMut(&[u8]) + 's;
 
 /// A scene in a format.
@@ -32,11 +32,15 @@ pub struct FormatInfo {
 pub const FORMATS: &[FormatInfo] = &[
     FormatInfo {
         name: "room_dithered",
-        draw: |memory, sink| direct::<Dithered<Rgb565Be>>(memory, sink, |scene| room(scene, Angle16(0))),
+        draw: |memory, sink| {
+            direct::<Dithered<Rgb565Be>, _>(memory, sink, &*kept(|| Room::new(Size::new(320, 240), Angle16(0))))
+        },
     },
     FormatInfo {
         name: "torus_332",
-        draw: |memory, sink| direct::<Dithered<Rgb332>>(memory, sink, |scene| torus_gouraud(scene, Angle16(0))),
+        draw: |memory, sink| {
+            direct::<Dithered<Rgb332>, _>(memory, sink, &*kept(|| Torus::gouraud(Size::new(320, 240), Angle16(0))))
+        },
     },
     FormatInfo {
         name: "torus_pages",
@@ -53,11 +57,11 @@ pub const FORMATS: &[FormatInfo] = &[
 ];
 
 /// Draws 320×240 pixels of a format.
-fn direct<P: PixelFormat>(
-    memory: Memory<'_>,
-    sink: &mut Sink<'_>,
-    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, P, WithDepth, WithRecords>>),
-) {
+fn direct<P, S>(memory: Memory<'_>, sink: &mut Sink<'_>, drawing: &S)
+where
+    P: PixelFormat,
+    S: for<'p> Draw<Strip<'p, P, WithDepth, WithRecords>>,
+{
     let Memory { color, depth, records } = memory;
     let Ok(color) = bytemuck::try_cast_slice_mut(color) else { return };
     let mut renderer = in_place(|| {
@@ -68,7 +72,7 @@ fn direct<P: PixelFormat>(
     let Ok(renderer) = &mut renderer else { return };
     let mut frame = renderer.begin(Rgb888::new(24, 28, 24));
     // A frame that fails lacks strips, which shows in its hash.
-    while let Ok(Some(strip)) = frame.next_strip(color, &mut draw) {
+    while let Ok(Some(strip)) = frame.next_strip(color, |scene| drawing.draw(scene)) {
         sink(strip.bytes());
     }
 }
@@ -86,13 +90,14 @@ fn packed<F: PackedFormat>(screen: Size, dither: Dither<F::Color>, memory: Memor
     let Ok(renderer) = Renderer::<Gray8>::new(screen).and_then(|renderer| renderer.with_depth(depth)) else { return };
     let mut renderer = renderer.with_records(records);
     let Ok(mut packer) = Packer::<F>::new(screen, rows as u32, dither, bytes) else { return };
+    let torus = kept(|| Torus::gouraud(screen, Angle16(0)));
     let mut frame = renderer.begin(Gray8::new(26));
-    while let Ok(Some(strip)) = frame.next_strip(color, |scene| torus_gouraud(scene, Angle16(0))) {
+    while let Ok(Some(strip)) = frame.next_strip(color, |scene| torus.draw(scene)) {
         sink(packer.pack(&strip));
     }
 }
 
-/// FNV-1a 64 of a frame's bytes.
+/// Returns the FNV-1a 64 of a frame's bytes.
 pub fn hash(format: &FormatInfo, memory: Memory<'_>) -> u64 {
     let mut hash = 0xcbf2_9ce4_8422_2325_u64;
     (format.draw)(memory, &mut |bytes| {

@@ -1,6 +1,6 @@
 //! An artificial horizon: an instrument drawn on the screen's plane.
 
-use super::Rgb888;
+use super::{Draw, Rgb888};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::math::{Angle16, Pixels, Scalar};
 use zstrip::{Canvas, Framebuffer, Scene, ScreenPoint, Smooth};
@@ -41,24 +41,38 @@ impl Dial {
     }
 }
 
-/// Draws the instrument in the middle of the screen.
-pub fn horizon<F: Framebuffer>(scene: &mut Scene<'_, F>, pitch: Angle16, roll: Angle16) {
-    let Size { width, height } = scene.screen();
-    let dial = Dial {
-        center: (width as i32 * 128, height as i32 * 128),
-        radius: width.min(height) as i32 * 116,
-        down: 0,
-        turn: (0, 1 << 16),
-    };
-    let mut canvas = scene.canvas();
-    // The radius is 40 degrees: 9 of them make a turn.
-    let world = Dial { down: (i32::from(pitch.0 as i16) * 9) >> 4, ..dial }.turned(-roll);
-    backdrop(&mut canvas, &world);
-    ladder(&mut canvas, &world);
-    bezel(&mut canvas, &dial);
-    scale(&mut canvas, &dial, roll);
-    pointers(&mut canvas, &dial, roll);
-    wings(&mut canvas, &dial);
+/// The instrument in the middle of the screen.
+pub struct Horizon {
+    dial: Dial,
+    /// Sky and ground: moved by the pitch, then turned by the roll.
+    world: Dial,
+    roll: Angle16,
+}
+
+impl Horizon {
+    pub fn new(Size { width, height }: Size, pitch: Angle16, roll: Angle16) -> Self {
+        let dial = Dial {
+            center: (width as i32 * 128, height as i32 * 128),
+            radius: width.min(height) as i32 * 116,
+            down: 0,
+            turn: (0, 1 << 16),
+        };
+        // The radius is 40 degrees: 9 radii make a turn.
+        let world = Dial { down: (i32::from(pitch.0 as i16) * 9) >> 4, ..dial }.turned(-roll);
+        Self { dial, world, roll }
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Horizon {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        let mut canvas = scene.canvas();
+        backdrop(&mut canvas, &self.world);
+        ladder(&mut canvas, &self.world);
+        bezel(&mut canvas, &self.dial);
+        scale(&mut canvas, &self.dial, self.roll);
+        pointers(&mut canvas, &self.dial, self.roll);
+        wings(&mut canvas, &self.dial);
+    }
 }
 
 /// The angles of roll.

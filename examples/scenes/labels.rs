@@ -1,12 +1,13 @@
 //! A torus with the axes of its space and with names in that space: text is hidden by what is in front of it.
 
-use super::{LIGHT, TORUS_COLOR, camera, torus};
+use super::kept::{Kept, kept_list};
+use super::{Draw, LIGHT, TORUS_COLOR, camera, torus};
 use embedded_graphics::mono_font::{MonoTextStyle, MonoTextStyleBuilder, ascii};
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, Line, PrimitiveStyle};
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyle, TextStyleBuilder};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::light::Material;
+use zstrip::light::{Material, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
 use zstrip::shader::{Flat, Gouraud};
@@ -41,7 +42,7 @@ const fn at(x: i32, y: i32, z: i32) -> Vec3 {
     Vec3::from_milli(x, y, z)
 }
 
-/// Axes: name and where it is written, rotation from x, colour.
+/// Returns the axes: name and where it is written, rotation from x, colour.
 fn axes() -> [(&'static str, Vec3, Affine, Rgb888); 3] {
     let quarter = Angle16::from_degrees(90);
     [
@@ -51,37 +52,58 @@ fn axes() -> [(&'static str, Vec3, Affine, Rgb888); 3] {
     ]
 }
 
-/// Draws torus, axes and names.
-pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let model = Affine::translation(at(0, -150, -3900))
-        * Affine::rotation_x(Angle16::from_degrees(32))
-        * Affine::rotation_y(turn + Angle16::from_degrees(35));
-    let mvp = camera(scene.screen(), Scalar::ONE, Scalar::ONE * 12) * model;
-
-    scene.draw(&torus::MESH, &mvp, &Gouraud::new(LIGHT.on(&Material::matte(TORUS_COLOR), &model)));
-    let grow = Affine::scale(Scalar::from_bits((LENGTH << 16) / 1000));
-    for (_, _, rotation, color) in axes() {
-        let local = rotation * grow;
-        scene.draw(&ARROW, &(mvp * local), &Flat::new(LIGHT.on(&Material::matte(color), &(model * local))));
-    }
-
-    let middle = TextStyleBuilder::new().alignment(Alignment::Center).baseline(Baseline::Middle).build();
-    for (name, tip, _, color) in axes() {
-        let style = MonoTextStyle::new(&ascii::FONT_10X20, color.into());
-        label(scene, &mvp, tip, &Text::with_text_style(name, Point::zero(), style, middle));
-    }
-    // Hours around the ring.
-    let style = MonoTextStyleBuilder::new().font(&ascii::FONT_7X13_BOLD).text_color(Rgb565::WHITE).build();
-    for (k, hour) in ["12", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11"].into_iter().enumerate() {
-        let angle = Angle16((k * 65_536 / 12) as u16);
-        let ring = |v: i32| Scalar::from_bits((v * 3) >> 1);
-        let point = Vec3::new(ring(angle.sin().to_bits()), Scalar::from_bits(1 << 14), ring(-angle.cos().to_bits()));
-        label(scene, &mvp, point, &Text::with_text_style(hour, Point::zero(), style, middle));
-    }
-    note(scene, &mvp, style);
+/// The torus, its axes, and names.
+pub struct Labels {
+    mvp: Projective,
+    glaze: Gouraud<Sunlit>,
+    /// Matrix and shader of each arrow.
+    arrows: Kept<[(Projective, Flat<Sunlit>)]>,
 }
 
-/// Text in the world: centred on a point, at its depth.
+impl Labels {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        let model = Affine::translation(at(0, -150, -3900))
+            * Affine::rotation_x(Angle16::from_degrees(32))
+            * Affine::rotation_y(turn + Angle16::from_degrees(35));
+        let mvp = camera(screen, Scalar::ONE, Scalar::ONE * 12) * model;
+        let grow = Affine::scale(Scalar::from_bits((LENGTH << 16) / 1000));
+        let axes = axes();
+        let arrows = kept_list(axes.len(), |k| {
+            let (_, _, rotation, color) = axes[k];
+            let local = rotation * grow;
+            (mvp * local, Flat::new(LIGHT.on(&Material::matte(color), &(model * local))))
+        });
+        Self { mvp, glaze: Gouraud::new(LIGHT.on(&Material::matte(TORUS_COLOR), &model)), arrows }
+    }
+}
+
+impl<F: Framebuffer<Format = Rgb565>> Draw<F> for Labels {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        let Self { mvp, glaze, arrows } = self;
+        scene.draw(&torus::MESH, mvp, glaze);
+        for (mvp, shader) in &**arrows {
+            scene.draw(&ARROW, mvp, shader);
+        }
+
+        let middle = TextStyleBuilder::new().alignment(Alignment::Center).baseline(Baseline::Middle).build();
+        for (name, tip, _, color) in axes() {
+            let style = MonoTextStyle::new(&ascii::FONT_10X20, color.into());
+            label(scene, mvp, tip, &Text::with_text_style(name, Point::zero(), style, middle));
+        }
+        // Hours around the ring.
+        let style = MonoTextStyleBuilder::new().font(&ascii::FONT_7X13_BOLD).text_color(Rgb565::WHITE).build();
+        for (k, hour) in ["12", "1", "2", "3", "4", "5", "6", "7", "8", "9", "10", "11"].into_iter().enumerate() {
+            let angle = Angle16((k * 65_536 / 12) as u16);
+            let ring = |v: i32| Scalar::from_bits((v * 3) >> 1);
+            let [sine, cosine] = [angle.sin(), angle.cos()].map(Scalar::to_bits);
+            let point = Vec3::new(ring(sine), Scalar::from_bits(1 << 14), ring(-cosine));
+            label(scene, mvp, point, &Text::with_text_style(hour, Point::zero(), style, middle));
+        }
+        note(scene, mvp, style);
+    }
+}
+
+/// Draws text in the world: centred on a point, at its depth.
 fn label<F: Framebuffer<Format = Rgb565>>(
     scene: &mut Scene<'_, F>,
     mvp: &Projective,
@@ -93,7 +115,7 @@ fn label<F: Framebuffer<Format = Rgb565>>(
     }
 }
 
-/// A note on top of all, with a line to a point of the torus.
+/// Draws a note on top of all, with a line to a point of the torus.
 fn note<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, mvp: &Projective, style: MonoTextStyle<'_, Rgb565>) {
     let top_left: TextStyle = TextStyleBuilder::new().baseline(Baseline::Top).build();
     let text = Text::with_text_style("inner rim", Point::new(12, 12), style, top_left);

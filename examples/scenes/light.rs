@@ -1,7 +1,7 @@
 //! Scenes of light: materials under several lights, a landscape in fog, glass and sparks.
 
-use super::kept::kept;
-use super::{UNLIT, landscape, pot, tiles};
+use super::kept::{Kept, kept_list};
+use super::{Draw, UNLIT, draw_apart, landscape, pot, tiles};
 use zstrip::color::{PixelFormat, Rgba8888};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
@@ -9,28 +9,15 @@ use zstrip::light::{DirectionalLight, Lighting, LitMaterial, Material, Matte, Po
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology, sort_back_to_front, view_depth};
 use zstrip::shader::{
-    AddAlpha, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity, Phong, PhongNear,
+    Add, AddAlpha, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity, PhongNear,
 };
 use zstrip::span::{DepthState, Fragment, Shader};
 use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
-/// How the pot is shaded.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shading {
-    PerFace,
-    PerVertex,
-    PerFragment,
-    /// With point lights close by.
-    PerFragmentNear,
-    Matcap,
-}
-
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
-// Out of line, as in `super`: what matrices, lights and materials are made of is not on the stack while something is drawn.
-
-/// The transform to eye space of an eye that looks at `target`.
+/// Returns the transform to eye space of an eye that looks at `target`.
 const fn look(eye: Vec3, target: Vec3) -> Affine {
     match Affine::look_at(eye, target, Vec3::Y) {
         Ok(view) => view,
@@ -38,42 +25,18 @@ const fn look(eye: Vec3, target: Vec3) -> Affine {
     }
 }
 
-/// The numbers of a camera's matrix that are not always the same: a quarter of the matrix.
-#[derive(Clone, Copy)]
-struct Lens {
-    x: i64,
-    y: i64,
-    z: [i64; 2],
+/// Returns a camera with a vertical field of view of 45 degrees.
+#[inline(never)]
+fn camera(screen: Size, near: Scalar, far: Scalar) -> Projective {
+    Projective::perspective(Angle16::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY)
 }
 
-impl Lens {
-    #[inline(never)]
-    fn new(screen: Size, near: Scalar, far: Scalar) -> Self {
-        let camera =
-            Projective::perspective(Angle16::from_degrees(45), screen, near, far).unwrap_or(Projective::IDENTITY);
-        let [[x, ..], [_, y, ..], [.., z, w], _] = camera.to_rows();
-        Self { x, y, z: [z, w] }
-    }
-
-    /// For things that are a few units away.
-    fn close(screen: Size) -> Self {
-        Self::new(screen, Scalar::ONE, Scalar::from_bits(16 << 16))
-    }
-
-    /// Eye space → clip space.
-    fn camera(&self) -> Projective {
-        let [z, w] = self.z;
-        Projective::from_rows([[self.x, 0, 0, 0], [0, self.y, 0, 0], [0, 0, z, w], [0, 0, -1 << 32, 0]])
-    }
-
-    /// Takes what a matrix brings to eye space to clip space.
-    #[inline(never)]
-    fn seen(&self, model: impl FnOnce() -> Affine) -> Projective {
-        self.camera().compose_affine(&model())
-    }
+/// Returns the camera for things that are a few units away.
+fn close_camera(screen: Size) -> Projective {
+    camera(screen, Scalar::ONE, Scalar::from_bits(16 << 16))
 }
 
-/// A point on a circle about the y axis, radius and height in thousandths.
+/// Returns a point on a circle about the y axis, radius and height in thousandths.
 fn on_circle(angle: Angle16, radius: i32, height: i32) -> Vec3 {
     let along = |s: Scalar| (i64::from(s.to_bits()) * i64::from(radius) / 65_536) as i32;
     Vec3::from_milli(along(angle.cos()), height, along(angle.sin()))
@@ -83,22 +46,39 @@ fn on_circle(angle: Angle16, radius: i32, height: i32) -> Vec3 {
 static BY_NIGHT: Affine = look(Vec3::from_milli(0, 1750, 4300), Vec3::from_milli(120, 180, 0));
 
 /// A glazed pot on a tiled table, under the moon and two lamps.
-pub fn phong<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, shading: Shading) {
-    draw_backdrop(scene, &NIGHT);
-    table(scene, &BY_NIGHT, || {
-        let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
-        night(turn).on(&wood.vertex_colors(), &table_model(&BY_NIGHT), tiles::MESH.bounds())
-    });
-    match shading {
-        Shading::PerFace => pot(scene, turn, || Flat::new(glaze(turn))),
-        Shading::PerVertex => pot(scene, turn, || Gouraud::new(glaze(turn))),
-        Shading::PerFragment => pot(scene, turn, || Phong::new(sunlit_glaze(turn))),
-        Shading::PerFragmentNear => pot(scene, turn, || PhongNear::new(glaze(turn))),
-        Shading::Matcap => pot(scene, turn, || Matcap::<Rgb888, 64>::new(ball(), &pot_model(turn))),
+pub struct Night<S> {
+    table: Projective,
+    wood: PhongNear<1, 2>,
+    pot: Projective,
+    glaze: S,
+}
+
+impl<S> Night<S> {
+    /// Makes the scene with a shader for the pot: of [`glaze`], of [`sunlit_glaze`], or [`copper`].
+    pub fn new(screen: Size, turn: Angle16, glaze: S) -> Self {
+        let camera = close_camera(screen);
+        Self { table: camera * table_model(&BY_NIGHT), wood: wood(turn), pot: camera * pot_model(turn), glaze }
     }
 }
 
-/// The moon and the lamps, in eye space.
+impl<F: Framebuffer, S: Shader<F::Format>> Draw<F> for Night<S> {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        draw_backdrop(scene, &NIGHT);
+        draw_apart(scene, State::DEFAULT, &tiles::MESH, &self.table, &self.wood);
+        draw_apart(scene, BOTH_SIDES, pot::mesh(), &self.pot, &self.glaze);
+    }
+}
+
+// Each shader is made in a function that is not inlined: its temporaries leave the stack before the next one is made.
+
+/// Returns the shader of the table by night.
+#[inline(never)]
+fn wood(turn: Angle16) -> PhongNear<1, 2> {
+    let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
+    PhongNear::new(night(turn).on(&wood.vertex_colors(), &table_model(&BY_NIGHT), tiles::MESH.bounds()))
+}
+
+/// Returns the moon and the lamps, in eye space.
 fn night(turn: Angle16) -> Lighting<1, 2> {
     let lamp = |angle: Angle16, radius: i32, height: i32, color: Rgb888, range: i32| {
         PointLight::new(BY_NIGHT * on_circle(angle, radius, height), color, Scalar::from_bits(range << 16))
@@ -115,37 +95,36 @@ fn night(turn: Angle16) -> Lighting<1, 2> {
     }
 }
 
-/// Where the glazed pot is, in eye space.
+/// Returns where the glazed pot is, in eye space.
 fn pot_model(turn: Angle16) -> Affine {
     BY_NIGHT * Affine::rotation_y(turn + Angle16::from_degrees(-25))
 }
 
-/// What the pot is covered with.
+/// Returns the material of the pot.
 fn glazed() -> Material {
     Material::glossy(Rgb888::new(200, 60, 50), Rgb888::new(230, 220, 210), 64).two_sided()
 }
 
-/// The glaze under the night's lights.
-fn glaze(turn: Angle16) -> LitMaterial<1, 2> {
+/// Returns the glaze under the night's lights.
+#[inline(never)]
+pub fn glaze(turn: Angle16) -> LitMaterial<1, 2> {
     night(turn).on(&glazed(), &pot_model(turn), pot::mesh().bounds())
 }
 
-/// The glaze under a sun where the moon is.
-fn sunlit_glaze(turn: Angle16) -> LitMaterial<1, 0> {
+/// Returns the glaze under a sun where the moon is.
+pub fn sunlit_glaze(turn: Angle16) -> LitMaterial<1, 0> {
     let Lighting { ambient, directional: [moon], .. } = night(turn);
     let sun = DirectionalLight { color: Rgb888::new(235, 225, 210), ..moon };
     let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
     lighting.on(&glazed(), &pot_model(turn), pot::mesh().bounds())
 }
 
-/// The pot by a shader.
-#[inline(never)]
-fn pot<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, turn: Angle16, shader: impl FnOnce() -> S) {
-    let mvp = kept(|| Lens::close(scene.screen()).seen(|| pot_model(turn)));
-    scene.draw_with(BOTH_SIDES, pot::mesh(), &mvp, &*kept(shader));
+/// Returns a shader that mirrors a picture: the pot looks like polished copper.
+pub fn copper(turn: Angle16) -> Matcap<'static, Rgb888, 64> {
+    Matcap::new(ball(), &pot_model(turn))
 }
 
-/// A picture of a ball of polished copper in front of a horizon.
+/// Returns a picture of a ball of polished copper in front of a horizon.
 fn ball() -> &'static [[[u8; 3]; 64]; 64] {
     const { &picture() }
 }
@@ -182,7 +161,7 @@ const fn capped(v: i32) -> u8 {
 const MIST_NEAR: Scalar = Scalar::from_bits(1 << 14);
 const MIST_FAR: Scalar = Scalar::from_bits(28 << 16);
 
-/// Where a linear fog starts, and where nothing is left.
+/// The distances where a linear fog starts, and where it hides everything.
 const MIST_START: Scalar = Scalar::from_bits(4 << 16);
 const MIST_END: Scalar = Scalar::from_bits(19 << 16);
 
@@ -219,16 +198,44 @@ const SUN: Sunlit = Sun::from_channels(Vec3::from_milli(-800, 420, 300), [250, 2
     .on(&Matte::WHITE.vertex_colors(), &Affine::IDENTITY);
 
 /// A hilly landscape with a lake in the morning fog, seen from a bird's round flight.
-pub fn fog<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, mist: Mist) {
-    let fog = mist.table();
-    draw_backdrop(scene, &SKY);
-    let (lens, view) = (kept(|| Lens::new(scene.screen(), MIST_NEAR, MIST_FAR)), kept(|| flight(turn)));
-    hills(scene, &lens, &view, fog);
-    pines(scene, &lens, &view, fog);
-    lake(scene, &lens, &view, fog);
+pub struct Fog {
+    /// Of the ground and of the lake.
+    mvp: Projective,
+    hills: Fogged<'static, Gouraud<Sunlit>>,
+    /// A matrix for each tree.
+    trees: Kept<[Projective]>,
+    pines: Fogged<'static, Flat<Sunlit>>,
+    lake: Blend<Fogged<'static, Flat>, Opacity>,
 }
 
-/// World → the bird's eye space.
+impl Fog {
+    pub fn new(screen: Size, turn: Angle16, mist: Mist) -> Self {
+        let table = mist.table();
+        let mvp = camera(screen, MIST_NEAR, MIST_FAR) * flight(turn);
+        let places = landscape::trees();
+        let water = Fogged::new(Flat::unlit(Rgb888::new(96, 130, 158)), table, MORNING);
+        Self {
+            mvp,
+            hills: Fogged::new(Gouraud::new(SUN), table, MORNING),
+            trees: kept_list(places.len(), |k| mvp * Affine::translation(places[k])),
+            pines: Fogged::new(Flat::new(SUN), table, MORNING),
+            lake: Blend::new(water, Opacity(165)),
+        }
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Fog {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        draw_backdrop(scene, &SKY);
+        draw_apart(scene, State::DEFAULT, landscape::ground(), &self.mvp, &self.hills);
+        for mvp in &*self.trees {
+            draw_apart(scene, State::DEFAULT, &landscape::PINE, mvp, &self.pines);
+        }
+        draw_apart(scene, GLASS, &landscape::LAKE, &self.mvp, &self.lake);
+    }
+}
+
+/// Returns the transform from world space to the bird's eye space.
 #[inline(never)]
 fn flight(turn: Angle16) -> Affine {
     let [x, _, z] = on_circle(turn + Angle16::from_degrees(76), 8200, 0).to_bits().map(|c| c / 66);
@@ -238,30 +245,8 @@ fn flight(turn: Angle16) -> Affine {
     look(eye, on_circle(turn + Angle16::from_degrees(176), 3300, 700))
 }
 
-#[inline(never)]
-fn hills<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
-    let mvp = kept(|| lens.seen(|| *view));
-    scene.draw(landscape::ground(), &mvp, &*kept(|| Fogged::new(Gouraud::new(SUN), fog, MORNING)));
-}
-
-#[inline(never)]
-fn pines<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
-    let shader = kept(|| Fogged::new(Flat::new(SUN), fog, MORNING));
-    for tree in landscape::trees() {
-        let mvp = kept(|| lens.seen(|| *view).compose_affine(&Affine::translation(*tree)));
-        scene.draw(&landscape::PINE, &mvp, &*shader);
-    }
-}
-
-#[inline(never)]
-fn lake<F: Framebuffer>(scene: &mut Scene<'_, F>, lens: &Lens, view: &Affine, fog: &FogTable) {
-    let mvp = kept(|| lens.seen(|| *view));
-    let water = Fogged::new(Flat::unlit(Rgb888::new(96, 130, 158)), fog, MORNING);
-    scene.draw_with(GLASS, &landscape::LAKE, &mvp, &Blend::new(water, Opacity(165)));
-}
-
-/// What covers the screen: a colour at its top, one from `horizon` (in thousandths from -1000 to 1000) down, and between
-/// them a gradient.
+/// Makes a mesh that covers the screen: a colour at its top, another from `horizon` (in thousandths from -1000 to 1000)
+/// down, and between them a gradient.
 macro_rules! backdrop {
     ($top:expr, $below:expr, $horizon:expr) => {
         Mesh::constant(MeshData {
@@ -283,15 +268,14 @@ static SKY: Mesh<'static> = backdrop!([92, 122, 172], [214, 196, 188], 330);
 static NIGHT: Mesh<'static> = backdrop!([6, 8, 22], [44, 34, 66], 180);
 static STUDIO: Mesh<'static> = backdrop!([38, 40, 66], [150, 132, 140], 60);
 
-/// Behind all else.
-#[inline(never)]
+/// Draws a backdrop, behind all else.
 fn draw_backdrop<F: Framebuffer>(scene: &mut Scene<'_, F>, mesh: &Mesh<'_>) {
     static SCREEN: Projective = Projective::IDENTITY;
     let state = State { depth: DepthState::OFF, cull: Cull::None, ..State::DEFAULT };
-    scene.draw_with(state, mesh, &SCREEN, &UNLIT);
+    draw_apart(scene, state, mesh, &SCREEN, &UNLIT);
 }
 
-/// Transparent things: tested against depth, seen from both sides, leaving no depth.
+/// The state of transparent things: tested against depth, seen from both sides, leaving no depth.
 const GLASS: State = State { cull: Cull::None, depth: DepthState::TEST, ..State::DEFAULT };
 
 /// A pane of 1.5 × 1.5 about the origin.
@@ -315,28 +299,75 @@ const SPARKS: usize = 48;
 static BY_DAY: Affine = look(Vec3::from_milli(0, 1500, 4700), Vec3::from_milli(0, 330, 0));
 
 /// A glass pot on a lit table, between coloured panes, and a fountain of sparks.
-pub fn glass<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    // 1. What is opaque.
-    draw_backdrop(scene, &STUDIO);
-    table(scene, &BY_DAY, || {
-        let cloth = Material::matte(Rgb888::new(215, 210, 200));
-        day().on(&cloth.vertex_colors(), &table_model(&BY_DAY), tiles::MESH.bounds())
-    });
-    // 2. What is transparent, from back to front.
-    for k in back_to_front(scene.screen(), turn) {
-        match PANES.get(usize::from(k)) {
-            Some(color) => pane(scene, turn, k, *color),
-            None => {
-                glass_pot(scene, turn);
-                shine(scene, turn);
-            }
-        }
-    }
-    // 3. What is added.
-    sparks(scene, turn);
+pub struct Glass {
+    // The lists are dropped in this order: the one that was made last is first.
+    sparks: Kept<[(Projective, Blend<Ember, AddAlpha>)]>,
+    panes: Kept<[(Projective, Blend<Flat, Multiply>)]>,
+    table: Projective,
+    cloth: PhongNear<1, 1>,
+    pot: Projective,
+    body: Blend<Gouraud<LitMaterial<1, 1>>, Opacity>,
+    /// Highlights that no transparency dims.
+    gloss: Blend<PhongNear<1, 1>, Add>,
+    /// Panes, and the pot as number 4, from back to front.
+    order: [u16; 5],
 }
 
-/// Daylight and the lamp over the pot, in eye space.
+impl Glass {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        let camera = close_camera(screen);
+        let panes = kept_list(PANES.len(), |k| {
+            (camera * pane_model(turn, k as u16), Blend::new(Flat::unlit(PANES[k]), Multiply))
+        });
+        let sparks = kept_list(SPARKS, |k| {
+            let age = i32::from(turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16) >> 6);
+            let mvp = camera * Affine::translation(BY_DAY * spark(k, age));
+            (mvp, Blend::new(Ember { left: 1023 - age }, AddAlpha))
+        });
+        let pot = camera * glass_model(turn);
+        let mut order = [0, 1, 2, 3, 4];
+        sort_back_to_front(&mut order, |k| {
+            let mvp = panes.get(usize::from(*k)).map_or(&pot, |(mvp, _)| mvp);
+            view_depth(mvp, PANE.bounds())
+        });
+        Self {
+            sparks,
+            panes,
+            table: camera * table_model(&BY_DAY),
+            cloth: cloth(),
+            pot,
+            body: body(turn),
+            gloss: gloss(turn),
+            order,
+        }
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Glass {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        // 1. What is opaque.
+        draw_backdrop(scene, &STUDIO);
+        draw_apart(scene, State::DEFAULT, &tiles::MESH, &self.table, &self.cloth);
+        // 2. What is transparent, from back to front.
+        for k in self.order {
+            if let Some((mvp, color)) = self.panes.get(usize::from(k)) {
+                draw_apart(scene, GLASS, &PANE, mvp, color);
+                continue;
+            }
+            // The inner side of the pot, then its outer side.
+            for cull in [Cull::Front, Cull::Back] {
+                draw_apart(scene, State { cull, ..GLASS }, pot::mesh(), &self.pot, &self.body);
+            }
+            draw_apart(scene, State { cull: Cull::Back, ..GLASS }, pot::mesh(), &self.pot, &self.gloss);
+        }
+        // 3. What is added.
+        for (mvp, ember) in &*self.sparks {
+            draw_apart(scene, GLASS, &GLOW, mvp, ember);
+        }
+    }
+}
+
+/// Returns the daylight and the lamp over the pot, in eye space.
 fn day() -> Lighting<1, 1> {
     let (sky, lamp) = (Rgb888::new(90, 95, 115), Rgb888::new(255, 200, 120));
     Lighting {
@@ -347,93 +378,49 @@ fn day() -> Lighting<1, 1> {
     }
 }
 
-/// Object space of the table → eye space.
+/// Returns the transform from the table to eye space.
 fn table_model(view: &Affine) -> Affine {
     *view * Affine::translation(Vec3::from_milli(0, pot::TABLE, 0))
 }
 
-/// The table, of a material under its lights.
-#[inline(never)]
-fn table<F: Framebuffer, const P: usize>(
-    scene: &mut Scene<'_, F>,
-    view: &Affine,
-    wood: impl FnOnce() -> LitMaterial<1, P>,
-) {
-    let mvp = kept(|| Lens::close(scene.screen()).seen(|| table_model(view)));
-    scene.draw(&tiles::MESH, &mvp, &*kept(|| PhongNear::new(wood())));
-}
-
-/// Where a pane is, or the pot, the last number, in eye space.
-fn glass_model(turn: Angle16, k: u16) -> Affine {
-    if usize::from(k) == PANES.len() {
-        return BY_DAY * Affine::rotation_y(turn);
-    }
+/// Returns where a pane is, in eye space.
+fn pane_model(turn: Angle16, k: u16) -> Affine {
     let angle = turn + Angle16(k * 16_384);
     BY_DAY * Affine::translation(on_circle(angle, 2100, 210)) * Affine::rotation_y(Angle16(0x4000) - angle)
 }
 
-/// The order of the panes and the pot.
-#[inline(never)]
-fn back_to_front(screen: Size, turn: Angle16) -> [u16; 5] {
-    let lens = Lens::close(screen);
-    let mut order = [0, 1, 2, 3, 4];
-    sort_back_to_front(&mut order, |k| view_depth(&lens.seen(|| glass_model(turn, *k)), PANE.bounds()));
-    order
+/// Returns where the glass pot is, in eye space.
+fn glass_model(turn: Angle16) -> Affine {
+    BY_DAY * Affine::rotation_y(turn)
 }
 
+/// Returns the shader of the table by day.
 #[inline(never)]
-fn pane<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, k: u16, color: Rgb888) {
-    let mvp = kept(|| Lens::close(scene.screen()).seen(|| glass_model(turn, k)));
-    scene.draw_with(GLASS, &PANE, &mvp, &Blend::new(Flat::unlit(color), Multiply));
+fn cloth() -> PhongNear<1, 1> {
+    let cloth = Material::matte(Rgb888::new(215, 210, 200));
+    PhongNear::new(day().on(&cloth.vertex_colors(), &table_model(&BY_DAY), tiles::MESH.bounds()))
 }
 
-#[inline(never)]
-fn sparks<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let lens = Lens::close(scene.screen());
-    for k in 0..SPARKS {
-        let age = (turn.0.wrapping_mul(6).wrapping_add((k * 65_536 / SPARKS) as u16)) >> 6;
-        let mvp = kept(|| lens.seen(|| Affine::translation(BY_DAY * spark(k, i32::from(age)))));
-        let ember = Ember { left: 1023 - i32::from(age) };
-        scene.draw_with(GLASS, &GLOW, &mvp, &Blend::new(ember, AddAlpha));
-    }
-}
-
-/// The pot, of a material under the day's lights.
+/// Returns the pot's material under the day's lights.
 fn lit_pot(turn: Angle16, material: impl Into<Material>) -> LitMaterial<1, 1> {
-    day().on(material, &glass_model(turn, PANES.len() as u16), pot::mesh().bounds())
+    day().on(material, &glass_model(turn), pot::mesh().bounds())
 }
 
-/// Object space of the pot → clip space.
+/// Returns the glass of the pot.
 #[inline(never)]
-fn pot_seen(screen: Size, turn: Angle16) -> Projective {
-    Lens::close(screen).seen(|| glass_model(turn, PANES.len() as u16))
+fn body(turn: Angle16) -> Blend<Gouraud<LitMaterial<1, 1>>, Opacity> {
+    let glass = Material::matte(Rgb888::new(150, 205, 200)).two_sided();
+    Blend::new(Gouraud::new(lit_pot(turn, glass)), Opacity(70))
 }
 
-/// A pot of glass: its inner side and its outer side.
+/// Returns the highlights of the pot.
 #[inline(never)]
-fn glass_pot<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| pot_seen(scene.screen(), turn));
-    let shader = kept(|| {
-        let body = Material::matte(Rgb888::new(150, 205, 200)).two_sided();
-        Blend::new(Gouraud::new(lit_pot(turn, &body)), Opacity(70))
-    });
-    for cull in [Cull::Front, Cull::Back] {
-        scene.draw_with(State { cull, ..GLASS }, pot::mesh(), &mvp, &*shader);
-    }
+fn gloss(turn: Angle16) -> Blend<PhongNear<1, 1>, Add> {
+    let gloss = Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48);
+    Blend::new(PhongNear::new(lit_pot(turn, gloss)), Add)
 }
 
-/// Highlights that no transparency dims.
-#[inline(never)]
-fn shine<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| pot_seen(scene.screen(), turn));
-    let shader = kept(|| {
-        let gloss = Material::glossy(Rgb888::new(0, 0, 0), Rgb888::new(255, 250, 240), 48);
-        Blend::new(PhongNear::new(lit_pot(turn, &gloss)), zstrip::shader::Add)
-    });
-    scene.draw_with(State { cull: Cull::Back, ..GLASS }, pot::mesh(), &mvp, &*shader);
-}
-
-/// Where a spark is, `age` of 1024 steps after it left the lid: a throw in its own direction.
+/// Returns where a spark is, `age` of 1024 steps after it left the lid: a throw in its own direction.
 fn spark(k: usize, age: i32) -> Vec3 {
     let speed = 350 + (k * 37 % 29) as i32 * 55;
     let rise = 1700 + (k * 53 % 31) as i32 * 45;

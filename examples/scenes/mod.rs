@@ -1,7 +1,10 @@
-//! Scenes that the examples, the firmware and the tests share: the same geometry, and so the same picture, everywhere.
+//! The scenes that the examples, the firmware and the tests share, so that all of them draw equal pictures.
 //!
-//! All meshes are constants, computed by the compiler with the crate's own integer sine, and live in flash. Those that take
-//! it long are behind functions, with constants of their own: they are computed for the programs that draw them.
+//! A scene is a struct. Its constructor makes matrices, shaders and lights for one frame, outside of the closure that
+//! draws. [`Draw::draw`] only draws: a renderer calls the closure once or twice per strip.
+//!
+//! All meshes are constants in flash, computed by the compiler with the crate's own integer sine. A mesh that takes the
+//! compiler long is behind a function, so that only the programs that draw it wait for it.
 #![allow(dead_code)] // each program uses its part
 #![allow(long_running_const_eval)] // a landscape is computed
 
@@ -22,62 +25,98 @@ pub mod torus;
 pub mod water;
 pub mod wires;
 
-use kept::kept;
+use kept::{Kept, kept_drawing};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::frame::Renderer;
 use zstrip::light::{Material, Matte, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
-use zstrip::shader::{Flat, Gouraud};
+use zstrip::mesh::Mesh;
+use zstrip::shader::{Flat, Gouraud, PhongNear};
 use zstrip::span::Shader;
 use zstrip::target::{Stats, Strip};
 use zstrip::target::{WithDepth, WithRecords};
+use zstrip::texture::Bilinear;
 use zstrip::{Cull, Framebuffer, Scene, State};
 
-/// Something to draw.
+/// Draws what was made for a frame.
+pub trait Draw<F: Framebuffer> {
+    /// Draws the scene; called for every strip.
+    fn draw(&self, scene: &mut Scene<'_, F>);
+}
+
+/// Draws a mesh in a function of its own, which gives its stack back before the next mesh is drawn. Draws that are inlined
+/// into one function hold the stack of all of them at once.
+#[inline(never)]
+fn draw_apart<F: Framebuffer, S: Shader<F::Format>>(
+    scene: &mut Scene<'_, F>,
+    state: State,
+    mesh: &Mesh<'_>,
+    mvp: &Projective,
+    shader: &S,
+) {
+    scene.draw_with(state, mesh, mvp, shader);
+}
+
+/// The strips that [`frame`] draws into.
+pub type Target<'p> = Strip<'p, Rgb565, WithDepth, WithRecords>;
+
+/// A scene, ready to be drawn.
+pub type Drawing = dyn for<'p> Draw<Target<'p>>;
+
+/// A scene by its name.
 #[derive(Clone, Copy)]
 pub struct SceneInfo {
     /// Its name on the command line and in reports.
     pub name: &'static str,
-    /// Draws it, turned by an angle, on a screen of some size.
-    pub draw: fn(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>, Angle16),
+    /// Makes the scene of one frame for a screen of a size, turned by an angle.
+    pub make: fn(Size, Angle16) -> Kept<Drawing>,
 }
 
-/// Scenes of plain meshes, which the flash of a small chip holds, too; the first two are a torus flat and Gouraud shaded.
+/// Scenes of plain meshes, for the flash of a small chip as well; the first two are a torus, flat and Gouraud shaded.
 const PLAIN: [SceneInfo; 11] = [
-    SceneInfo { name: "torus_flat", draw: |scene, turn| torus_flat(scene, turn) },
-    SceneInfo { name: "torus_gouraud", draw: |scene, turn| torus_gouraud(scene, turn) },
-    SceneInfo { name: "room", draw: |scene, turn| room(scene, turn) },
-    SceneInfo { name: "intersections", draw: |scene, turn| intersections(scene, turn) },
-    SceneInfo { name: "soup", draw: |scene, turn| soup(scene, turn) },
-    SceneInfo { name: "far", draw: |scene, turn| far(scene, turn) },
-    SceneInfo { name: "near", draw: |scene, turn| near(scene, turn) },
-    SceneInfo { name: "tiny", draw: |scene, turn| tiny(scene, turn) },
-    SceneInfo { name: "cycle", draw: |scene, turn| cycle(scene, turn) },
-    SceneInfo { name: "slivers", draw: |scene, turn| slivers(scene, turn) },
-    SceneInfo { name: "field", draw: |scene, turn| field(scene, turn) },
+    SceneInfo { name: "torus_flat", make: |screen, turn| kept_drawing(|| Torus::flat(screen, turn)) },
+    SceneInfo { name: "torus_gouraud", make: |screen, turn| kept_drawing(|| Torus::gouraud(screen, turn)) },
+    SceneInfo { name: "room", make: |screen, turn| kept_drawing(|| Room::new(screen, turn)) },
+    SceneInfo { name: "intersections", make: |screen, turn| kept_drawing(|| Intersections::new(screen, turn)) },
+    SceneInfo { name: "soup", make: |screen, turn| kept_drawing(|| Soup::new(screen, turn)) },
+    SceneInfo { name: "far", make: |screen, turn| kept_drawing(|| Far::new(screen, turn)) },
+    SceneInfo { name: "near", make: |_, turn| kept_drawing(|| Near::new(turn)) },
+    SceneInfo { name: "tiny", make: |screen, turn| kept_drawing(|| Tiny::new(screen, turn)) },
+    SceneInfo { name: "cycle", make: |screen, turn| kept_drawing(|| Cycle::new(screen, turn)) },
+    SceneInfo { name: "slivers", make: |screen, turn| kept_drawing(|| Slivers::new(screen, turn)) },
+    SceneInfo { name: "field", make: |screen, turn| kept_drawing(|| Field::new(screen, turn)) },
 ];
 
 /// All the others.
 const OTHERS: &[SceneInfo] = if cfg!(any(small_ram = "bare", small_ram = "records")) { &[] } else { MANY };
 const MANY: &[SceneInfo] = &[
-    SceneInfo { name: "wires", draw: |scene, turn| wires::wires(scene, turn) },
+    SceneInfo { name: "wires", make: |screen, turn| kept_drawing(|| wires::Wires::new(screen, turn)) },
     SceneInfo {
         name: "crates",
-        draw: |scene, turn| textured::crates(scene, turn, textured::Look { bilinear: true, mips: true }),
+        make: |screen, turn| kept_drawing(|| textured::Crates::new(screen, turn, Bilinear, textured::Levels::All)),
     },
-    SceneInfo { name: "close", draw: |scene, turn| textured::close(scene, turn) },
-    SceneInfo { name: "water", draw: |scene, turn| water::water(scene, turn, 1) },
-    SceneInfo { name: "horizon", draw: |scene, turn| horizon::horizon(scene, turn + turn, turn + Angle16(2000)) },
-    SceneInfo { name: "overlay", draw: |scene, turn| overlay::draw(scene, turn) },
+    SceneInfo { name: "close", make: |screen, turn| kept_drawing(|| textured::Close::new(screen, turn)) },
+    SceneInfo { name: "water", make: |screen, turn| kept_drawing(|| water::Sea::new(screen, turn, 1)) },
+    SceneInfo {
+        name: "horizon",
+        make: |screen, turn| kept_drawing(|| horizon::Horizon::new(screen, turn + turn, turn + Angle16(2000))),
+    },
+    SceneInfo { name: "overlay", make: |screen, turn| kept_drawing(|| overlay::Markers::new(screen, turn)) },
     // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
     #[cfg(not(proof = "all"))]
-    SceneInfo { name: "dashboard", draw: |scene, turn| dashboard::draw(scene, turn) },
+    SceneInfo { name: "dashboard", make: |_, turn| kept_drawing(|| dashboard::Dashboard::new(turn)) },
     #[cfg(not(proof = "all"))]
-    SceneInfo { name: "labels", draw: |scene, turn| labels::draw(scene, turn) },
-    SceneInfo { name: "phong", draw: |scene, turn| light::phong(scene, turn, light::Shading::PerFragmentNear) },
-    SceneInfo { name: "fog", draw: |scene, turn| light::fog(scene, turn, light::Mist::Squared) },
-    SceneInfo { name: "glass", draw: |scene, turn| light::glass(scene, turn) },
+    SceneInfo { name: "labels", make: |screen, turn| kept_drawing(|| labels::Labels::new(screen, turn)) },
+    SceneInfo {
+        name: "phong",
+        make: |screen, turn| kept_drawing(|| light::Night::new(screen, turn, PhongNear::new(light::glaze(turn)))),
+    },
+    SceneInfo {
+        name: "fog",
+        make: |screen, turn| kept_drawing(|| light::Fog::new(screen, turn, light::Mist::Squared)),
+    },
+    SceneInfo { name: "glass", make: |screen, turn| kept_drawing(|| light::Glass::new(screen, turn)) },
 ];
 
 /// All scenes that there is room for.
@@ -94,25 +133,16 @@ pub const SCENES: &[SceneInfo] = &{
 /// Dark blue-grey.
 pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
 
-// What is on the stack while something is drawn is there in addition to all that drawing takes. So matrices and materials are
-// made in functions that are never inlined, what they are made of is gone when they are used, and they are kept elsewhere.
-
-/// A call that is not inlined: its result is made where it is to be.
-#[inline(never)]
-fn in_place<T>(make: impl FnOnce() -> T) -> T {
-    make()
-}
-
-/// A camera with a vertical field of view of 60 degrees.
+/// Returns a camera with a vertical field of view of 60 degrees.
 #[inline(never)]
 pub fn camera(screen: Size, near: Scalar, far: Scalar) -> Projective {
     Projective::perspective(Angle16::from_degrees(60), screen, near, far).unwrap_or(Projective::IDENTITY)
 }
 
-/// Object space → clip space: the camera of most scenes, and what it is multiplied by.
+/// Returns the camera of most scenes.
 #[inline(never)]
-fn seen(screen: Size, times: impl FnOnce(Projective) -> Projective) -> Projective {
-    times(camera(screen, Scalar::ONE, Scalar::from_bits(12 << 16)))
+pub fn usual_camera(screen: Size) -> Projective {
+    camera(screen, Scalar::ONE, Scalar::from_bits(12 << 16))
 }
 
 /// White light from the upper right, behind the viewer, beside a dim ambient one; in eye space.
@@ -121,11 +151,11 @@ pub const LIGHT: Sun = Sun::from_channels(Vec3::from_milli(400, 700, 600), [217;
 /// Colours of the vertices under [`LIGHT`].
 pub const LIT_COLORS: Sunlit = LIGHT.on(&Matte::WHITE.vertex_colors(), &Affine::IDENTITY);
 
-/// Colours of the mesh under [`LIGHT`], as they are in flat triangles, and without any light.
+/// Shaders of the vertices' colours: flat under [`LIGHT`], and interpolated without any light.
 static LIT: Flat<Sunlit> = Flat::new(LIT_COLORS);
 static UNLIT: Gouraud = Gouraud::vertex_colors();
 
-/// Where the torus is: tumbling, since a turn about its axis would not show.
+/// Returns where the torus is: tumbling, since a turn about its axis would not show.
 pub fn torus_model(turn: Angle16) -> Affine {
     Affine::translation(Vec3::from_ints(0, 0, -3))
         * Affine::rotation_x(Angle16::from_degrees(40))
@@ -133,30 +163,43 @@ pub fn torus_model(turn: Angle16) -> Affine {
         * Affine::rotation_z(turn)
 }
 
-/// Draws the torus with a shader made for its surface, of a colour under [`LIGHT`].
-pub fn torus_with<F: Framebuffer, S: Shader<F::Format>>(
-    scene: &mut Scene<'_, F>,
-    turn: Angle16,
-    color: Rgb888,
-    shader: impl FnOnce(Sunlit) -> S,
-) {
-    let mvp = kept(|| seen(scene.screen(), |camera| camera * torus_model(turn)));
-    scene.draw(&torus::MESH, &mvp, &in_place(|| shader(LIGHT.on(&Material::matte(color), &torus_model(turn)))));
+/// The torus, with a shader made for its light.
+pub struct Torus<S> {
+    mvp: Projective,
+    shader: S,
+}
+
+impl<S> Torus<S> {
+    /// Makes the torus, with a shader made for its surface: a colour under [`LIGHT`].
+    pub fn new(screen: Size, turn: Angle16, color: Rgb888, shader: impl FnOnce(Sunlit) -> S) -> Self {
+        let model = torus_model(turn);
+        Self { mvp: usual_camera(screen) * model, shader: shader(LIGHT.on(&Material::matte(color), &model)) }
+    }
 }
 
 /// Orange.
 pub const TORUS_COLOR: Rgb888 = Rgb888::new(255, 160, 64);
 
-pub fn torus_flat<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    torus_with(scene, turn, TORUS_COLOR, Flat::new);
+impl Torus<Flat<Sunlit>> {
+    pub fn flat(screen: Size, turn: Angle16) -> Self {
+        Self::new(screen, turn, TORUS_COLOR, Flat::new)
+    }
 }
 
-pub fn torus_gouraud<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    torus_with(scene, turn, TORUS_COLOR, Gouraud::new);
+impl Torus<Gouraud<Sunlit>> {
+    pub fn gouraud(screen: Size, turn: Angle16) -> Self {
+        Self::new(screen, turn, TORUS_COLOR, Gouraud::new)
+    }
 }
 
-/// Camera of the room: in a corner of it, with walls that pass through the near plane and far outside of the view. It
-/// looks to and fro, by 40 degrees.
+impl<F: Framebuffer, S: Shader<F::Format>> Draw<F> for Torus<S> {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw(&torus::MESH, &self.mvp, &self.shader);
+    }
+}
+
+/// Returns the camera of the room: in one of its corners, with walls that pass through the near plane and reach far
+/// outside of the view. It looks to and fro, by 40 degrees.
 #[inline(never)]
 pub fn room_camera(screen: Size, turn: Angle16) -> Projective {
     let eye = Vec3::from_milli(-1500, 300, 1500);
@@ -165,116 +208,168 @@ pub fn room_camera(screen: Size, turn: Angle16) -> Projective {
     camera(screen, Scalar::from_bits(1 << 13), Scalar::from_bits(16 << 16)) * view
 }
 
-/// Takes what a model matrix brings into the room to clip space.
-#[inline(never)]
-fn in_room(screen: Size, turn: Angle16, model: impl FnOnce() -> Affine) -> Projective {
-    room_camera(screen, turn) * model()
-}
-
 /// A room seen from inside, with a chequered floor, a pillar and a torus of half its size.
-pub fn room<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    walls(scene, turn);
-    pillar(scene, turn);
-    ring(scene, turn);
+pub struct Room {
+    walls: Projective,
+    pillar: Projective,
+    ring: Projective,
+    ring_shader: Gouraud<Sunlit>,
 }
 
-#[inline(never)]
-fn walls<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| room_camera(scene.screen(), turn));
-    scene.draw(&polygons::ROOM, &mvp, &UNLIT);
-    scene.draw(&polygons::FLOOR, &mvp, &LIT);
+impl Room {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        let walls = room_camera(screen, turn);
+        let ring = Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
+        Self {
+            walls,
+            pillar: walls * Affine::translation(Vec3::from_milli(800, 0, -600)),
+            ring: walls * (ring * Affine::scale(Scalar::from_bits(1 << 15))),
+            ring_shader: Gouraud::new(LIGHT.on(&Material::matte(Rgb888::new(90, 200, 120)), &ring)),
+        }
+    }
 }
 
-#[inline(never)]
-fn pillar<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| in_room(scene.screen(), turn, || Affine::translation(Vec3::from_milli(800, 0, -600))));
-    scene.draw(&polygons::PILLAR, &mvp, &LIT);
-}
-
-#[inline(never)]
-fn ring<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let model = || Affine::translation(Vec3::from_milli(-600, -250, -700)) * Affine::rotation_x(turn + turn + turn);
-    let mvp = kept(|| in_room(scene.screen(), turn, || model() * Affine::scale(Scalar::from_bits(1 << 15))));
-    let shader = kept(|| Gouraud::new(LIGHT.on(&Material::matte(Rgb888::new(90, 200, 120)), &model())));
-    scene.draw(&torus::MESH, &mvp, &*shader);
+impl<F: Framebuffer> Draw<F> for Room {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        draw_apart(scene, State::DEFAULT, &polygons::ROOM, &self.walls, &UNLIT);
+        draw_apart(scene, State::DEFAULT, &polygons::FLOOR, &self.walls, &LIT);
+        draw_apart(scene, State::DEFAULT, &polygons::PILLAR, &self.pillar, &LIT);
+        draw_apart(scene, State::DEFAULT, &torus::MESH, &self.ring, &self.ring_shader);
+    }
 }
 
 const BOTH_SIDES: State = State { cull: Cull::None, ..State::DEFAULT };
 
 /// Three squares through one another.
-pub fn intersections<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| {
-        seen(scene.screen(), |camera| {
-            camera
-                * Affine::translation(Vec3::from_ints(0, 0, -3))
-                * Affine::rotation_x(Angle16::from_degrees(40))
-                * Affine::rotation_y(turn + Angle16::from_degrees(25))
-        })
-    });
-    scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &mvp, &LIT);
-}
+pub struct Intersections(Projective);
 
-/// Random triangles of all sizes around the eye.
-pub fn soup<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| seen(scene.screen(), |camera| camera * Affine::rotation_y(turn)));
-    scene.draw_with(BOTH_SIDES, &soup::SOUP, &mvp, &UNLIT);
-}
-
-/// [`seen`] so far away, turned on the screen.
-fn turned_at(screen: Size, distance: i16, turn: Angle16) -> Projective {
-    seen(screen, |camera| camera * Affine::translation(Vec3::from_ints(0, 0, -distance)) * Affine::rotation_z(turn))
-}
-
-/// Triangles whose vertices are up to 30,000 px outside of the screen.
-pub fn far<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| turned_at(scene.screen(), 4, turn));
-    scene.draw_with(BOTH_SIDES, &soup::FAR, &mvp, &UNLIT);
-}
-
-/// Triangles in clip space, cut by the near plane or with vertices behind the eye.
-pub fn near<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    scene.draw_with(BOTH_SIDES, &soup::NEAR, &kept(|| turned(turn)), &UNLIT);
-}
-
-#[inline(never)]
-fn turned(turn: Angle16) -> Projective {
-    Projective::from(Affine::rotation_z(turn))
-}
-
-/// Many triangles of about 2 px.
-pub fn tiny<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| turned_at(scene.screen(), 4, turn));
-    scene.draw_with(BOTH_SIDES, soup::tiny(), &mvp, &LIT);
-}
-
-/// Three planks that each cover the next one: no order of drawing is right, only depth is.
-pub fn cycle<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| turned_at(scene.screen(), 3, turn));
-    scene.draw(&polygons::CYCLE, &mvp, &UNLIT);
-}
-
-/// Long triangles thinner than a pixel.
-pub fn slivers<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| turned_at(scene.screen(), 3, turn));
-    scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &mvp, &UNLIT);
-}
-
-/// A grid, a strip, a fan and quads side by side.
-pub fn field<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = kept(|| {
-        seen(scene.screen(), |camera| {
-            camera
-                * Affine::translation(Vec3::from_ints(0, 0, -3))
-                * Affine::rotation_x(Angle16::from_degrees(-20))
-                * Affine::rotation_z(turn)
-        })
-    });
-    for mesh in [&polygons::GRID, &polygons::STRIP, &polygons::FAN, &polygons::QUADS] {
-        scene.draw_with(BOTH_SIDES, mesh, &mvp, &UNLIT);
+impl Intersections {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        let at = usual_camera(screen) * Affine::translation(Vec3::from_ints(0, 0, -3));
+        Self(at * Affine::rotation_x(Angle16::from_degrees(40)) * Affine::rotation_y(turn + Angle16::from_degrees(25)))
     }
 }
 
-/// What a rendered scene was like.
+impl<F: Framebuffer> Draw<F> for Intersections {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw_with(BOTH_SIDES, &polygons::CROSSING, &self.0, &LIT);
+    }
+}
+
+/// Random triangles of all sizes around the eye.
+pub struct Soup(Projective);
+
+impl Soup {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        Self(usual_camera(screen) * Affine::rotation_y(turn))
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Soup {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw_with(BOTH_SIDES, &soup::SOUP, &self.0, &UNLIT);
+    }
+}
+
+/// Returns the matrix of something that is `distance` away and is turned about the view's direction.
+fn turned_at(screen: Size, distance: i16, turn: Angle16) -> Projective {
+    usual_camera(screen) * Affine::translation(Vec3::from_ints(0, 0, -distance)) * Affine::rotation_z(turn)
+}
+
+/// Triangles whose vertices are up to 30,000 px outside of the screen.
+pub struct Far(Projective);
+
+impl Far {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        Self(turned_at(screen, 4, turn))
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Far {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw_with(BOTH_SIDES, &soup::FAR, &self.0, &UNLIT);
+    }
+}
+
+/// Triangles in clip space, cut by the near plane or with vertices behind the eye.
+pub struct Near(Projective);
+
+impl Near {
+    pub fn new(turn: Angle16) -> Self {
+        Self(Projective::from(Affine::rotation_z(turn)))
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Near {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw_with(BOTH_SIDES, &soup::NEAR, &self.0, &UNLIT);
+    }
+}
+
+/// Many triangles of about 2 px.
+pub struct Tiny(Projective);
+
+impl Tiny {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        Self(turned_at(screen, 4, turn))
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Tiny {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw_with(BOTH_SIDES, soup::tiny(), &self.0, &LIT);
+    }
+}
+
+/// Three planks that each cover the next one: no order of drawing is right, only depth is.
+pub struct Cycle(Projective);
+
+impl Cycle {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        Self(turned_at(screen, 3, turn))
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Cycle {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw(&polygons::CYCLE, &self.0, &UNLIT);
+    }
+}
+
+/// Long triangles thinner than a pixel.
+pub struct Slivers(Projective);
+
+impl Slivers {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        Self(turned_at(screen, 3, turn))
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Slivers {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        scene.draw_with(BOTH_SIDES, &soup::SLIVERS, &self.0, &UNLIT);
+    }
+}
+
+/// A grid, a strip, a fan and quads side by side.
+pub struct Field(Projective);
+
+impl Field {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        let at = usual_camera(screen) * Affine::translation(Vec3::from_ints(0, 0, -3));
+        Self(at * Affine::rotation_x(Angle16::from_degrees(-20)) * Affine::rotation_z(turn))
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Field {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        for mesh in [&polygons::GRID, &polygons::STRIP, &polygons::FAN, &polygons::QUADS] {
+            scene.draw_with(BOTH_SIDES, mesh, &self.0, &UNLIT);
+        }
+    }
+}
+
+/// The hash and the counters of a frame.
 pub struct Report {
     /// FNV-1a 64 of all bytes of the frame, row by row, RGB565 with the low byte first.
     pub hash: u64,
@@ -307,19 +402,26 @@ pub fn draw(
     let Some(info) = SCENES.get(index) else {
         return Stats::default();
     };
-    frame([width, height], color, depth, records, |scene| (info.draw)(scene, Angle16(turn)), &mut sink)
+    let screen = Size::new(width as u32, height as u32);
+    let drawing = (info.make)(screen, Angle16(turn));
+    frame(screen, color, depth, records, &*drawing, &mut sink)
 }
 
-/// Renders what a closure draws.
-pub fn frame(
-    [width, height]: [usize; 2],
+/// Calls a function that is not inlined, so that its temporaries leave the stack before a frame is drawn.
+#[inline(never)]
+fn in_place<T>(make: impl FnOnce() -> T) -> T {
+    make()
+}
+
+/// Renders one frame of a scene.
+fn frame(
+    screen: Size,
     color: &mut [u16],
     depth: &mut [u16],
     records: &mut [u32],
-    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>),
+    drawing: &Drawing,
     sink: &mut impl FnMut(usize, &[u16]),
 ) -> Stats {
-    let screen = Size::new(width as u32, height as u32);
     let mut renderer = in_place(|| {
         Renderer::<Rgb565>::new(screen)
             .and_then(|renderer| renderer.with_depth(depth))
@@ -328,7 +430,7 @@ pub fn frame(
     let Ok(renderer) = &mut renderer else { return Stats::default() };
     let mut frame = renderer.begin(BACKGROUND);
     loop {
-        match frame.next_strip(color, &mut draw) {
+        match frame.next_strip(color, |scene| drawing.draw(scene)) {
             Ok(Some(strip)) => sink(strip.area().top_left.y as usize, strip.pixels()),
             Ok(None) => return frame.stats(),
             Err(_) => return Stats::default(),

@@ -1,12 +1,12 @@
-//! 2-D drawing among meshes with what the crate itself brings: areas and pixels, at depths and on top, without fonts or shapes.
+//! 2-D drawing among meshes without fonts and shapes: areas and pixels of embedded-graphics-core, at depths and on top.
 
-use super::{seen, torus_model, torus_with};
-use core::ops::Range;
+use super::{Draw, Torus};
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
 use zstrip::embedded_graphics_core::geometry::{Dimensions, Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{PixelColor, Rgb565, Rgb888};
 use zstrip::embedded_graphics_core::primitives::{PointsIter, Rectangle};
 use zstrip::embedded_graphics_core::{Drawable, Pixel};
+use zstrip::light::Sunlit;
 use zstrip::math::{Angle16, Projective, Vec3};
 use zstrip::shader::Gouraud;
 use zstrip::span::{Compare, DepthState};
@@ -41,19 +41,22 @@ impl<C: PixelColor> Drawable for Marker<C> {
     }
 }
 
-/// Draws a turning torus with markers around it, some of them behind it, and a ramp of colours below.
-pub fn draw<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    markers(scene, turn, 0..13);
-    torus_with(scene, turn, Rgb888::new(200, 90, 160), Gouraud::new);
-    markers(scene, turn, 13..24);
-    ramp(scene);
+/// A turning torus with markers around it, some of them behind it, and a ramp of colours below.
+pub struct Markers(Torus<Gouraud<Sunlit>>);
+
+impl Markers {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        Self(Torus::new(screen, turn, Rgb888::new(200, 90, 160), Gouraud::new))
+    }
 }
 
-#[inline(never)]
-fn markers<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, turn: Angle16, range: Range<u16>) {
-    let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
-    for k in range {
-        marker(scene, &mvp, k);
+impl<F: Framebuffer<Format = Rgb565>> Draw<F> for Markers {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        let Self(torus) = self;
+        (0..13).for_each(|k| marker(scene, &torus.mvp, k));
+        torus.draw(scene);
+        (13..24).for_each(|k| marker(scene, &torus.mvp, k));
+        ramp(scene);
     }
 }
 

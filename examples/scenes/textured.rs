@@ -1,13 +1,13 @@
 //! Textures in perspective: wooden crates on a tiled floor, behind a fence of holes.
 
-use super::kept::kept;
-use super::{LIGHT, camera};
+use super::kept::{Kept, kept_list};
+use super::{Draw, LIGHT, camera, draw_apart};
 use zstrip::embedded_graphics_core::geometry::Size;
-use zstrip::light::{Matte, NORMAL_ONE};
+use zstrip::light::{Matte, NORMAL_ONE, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
-use zstrip::shader::Textured;
-use zstrip::texture::{Bilinear, Filter, Image, MaskTexel, Nearest, Repeat, Rgb565Texel, Tile};
+use zstrip::shader::{LitTexture, Textured};
+use zstrip::texture::{Filter, Image, MaskTexel, Repeat, Rgb565Texel, Tile};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
 /// Sides of the crate's texture.
@@ -226,92 +226,92 @@ pub static FENCE: Mesh<'static> = Mesh::constant(MeshData {
     ]))
 });
 
-/// How textures are looked at.
-#[derive(Clone, Copy, Debug)]
-pub struct Look {
-    pub bilinear: bool,
-    pub mips: bool,
+/// The fence's texture.
+static WIRE_IMAGE: Image<'static, MaskTexel> = match Image::new(&WIRE, Size::new(16, 16), MaskTexel([150, 160, 170])) {
+    Ok(image) => image,
+    Err(_) => panic!("the wire has another size"),
+};
+
+/// Which levels of the floor's texture are used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Levels {
+    /// The mip chain.
+    All,
+    /// The largest one alone.
+    First,
 }
 
-/// World → eye: around the crates.
+/// Returns the matrix from world space to eye space, around the crates.
 fn around(turn: Angle16) -> Affine {
     Affine::rotation_x(Angle16::from_degrees(16))
         * Affine::translation(Vec3::from_milli(0, -1500, -3800))
         * Affine::rotation_y(turn)
 }
 
-/// Takes what a model matrix brings into the world to clip space.
-#[inline(never)]
-fn seen(screen: Size, turn: Angle16) -> Projective {
-    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * around(turn)
-}
-
-#[inline(never)]
-fn floor<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16, mips: bool, filter: G) {
-    let floor = if mips { Textured::mipmapped(floor_levels()).ok() } else { None };
-    let floor = floor.unwrap_or(Textured::new(&floor_levels()[0]));
-    scene.draw(&GROUND, &kept(|| seen(scene.screen(), turn)), &floor.wrap(Repeat).filter(filter));
-}
-
 /// Where the crates are, in thousandths, and how they are turned, in degrees.
 const CRATES: [[i32; 4]; 3] = [[-700, 500, 0, 20], [650, 500, -400, -35], [-100, 1500, -150, 50]];
 
-/// Object space of a crate → eye space.
-fn crate_model(turn: Angle16, [x, y, z, degrees]: [i32; 4]) -> Affine {
-    around(turn) * Affine::translation(Vec3::from_milli(x, y, z)) * Affine::rotation_y(Angle16::from_degrees(degrees))
+/// A crate: its matrix from object space to clip space, and its wood under the light.
+struct Crate<G> {
+    mvp: Projective,
+    wood: LitTexture<'static, Tile<'static, WOOD, WOOD>, Sunlit, Repeat, G>,
 }
 
-#[inline(never)]
-fn one_crate<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16, place: [i32; 4], filter: G) {
-    let wood = kept(|| Textured::new(&WOODEN).filter(filter).lit(LIGHT.on(&Matte::WHITE, &crate_model(turn, place))));
-    scene.draw(&CRATE, &kept(|| crate_seen(scene.screen(), turn, place)), &*wood);
+/// Crates on a floor, with a fence behind them.
+pub struct Crates<G> {
+    floor: Projective,
+    ground: Textured<'static, Level, Repeat, G>,
+    crates: Kept<[Crate<G>]>,
+    fence: Projective,
 }
 
-/// Object space of a crate → clip space.
-#[inline(never)]
-fn crate_seen(screen: Size, turn: Angle16, place: [i32; 4]) -> Projective {
-    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16)) * crate_model(turn, place)
-}
-
-fn with<F: Framebuffer, G: Filter>(scene: &mut Scene<'_, F>, turn: Angle16, mips: bool, filter: G) {
-    floor(scene, turn, mips, filter);
-    for place in CRATES {
-        one_crate(scene, turn, place, filter);
+impl<G: Filter> Crates<G> {
+    pub fn new(screen: Size, turn: Angle16, filter: G, levels: Levels) -> Self {
+        let camera = camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16));
+        let view = around(turn);
+        let mipmapped = if levels == Levels::All { Textured::mipmapped(floor_levels()).ok() } else { None };
+        let ground = mipmapped.unwrap_or(Textured::new(&floor_levels()[0]));
+        let floor = camera * view;
+        Self {
+            floor,
+            ground: ground.wrap(Repeat).filter(filter),
+            crates: kept_list(CRATES.len(), |k| {
+                let [x, y, z, degrees] = CRATES[k];
+                let place = Affine::translation(Vec3::from_milli(x, y, z));
+                let model = view * place * Affine::rotation_y(Angle16::from_degrees(degrees));
+                let wood = Textured::new(&WOODEN).filter(filter).lit(LIGHT.on(&Matte::WHITE, &model));
+                Crate { mvp: camera * model, wood }
+            }),
+            fence: floor * Affine::translation(Vec3::from_milli(0, 0, 1300)),
+        }
     }
 }
 
-/// Crates on a floor, behind a fence.
-pub fn crates<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16, look: Look) {
-    if look.bilinear {
-        with(scene, turn, look.mips, Bilinear);
-    } else {
-        with(scene, turn, look.mips, Nearest);
+impl<F: Framebuffer, G: Filter> Draw<F> for Crates<G> {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        draw_apart(scene, State::DEFAULT, &GROUND, &self.floor, &self.ground);
+        for Crate { mvp, wood } in &*self.crates {
+            draw_apart(scene, State::DEFAULT, &CRATE, mvp, wood);
+        }
+        let both_sides = State { cull: Cull::None, ..State::DEFAULT };
+        draw_apart(scene, both_sides, &FENCE, &self.fence, &Textured::new(&WIRE_IMAGE));
     }
-    fence(scene, turn);
 }
 
-/// A fence behind the crates, seen from both sides.
-#[inline(never)]
-fn fence<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let Ok(wire) = Image::new(&WIRE, Size::new(16, 16), MaskTexel([150, 160, 170])) else { return };
-    let state = State { cull: Cull::None, ..State::DEFAULT };
-    scene.draw_with(state, &FENCE, &kept(|| fence_seen(scene.screen(), turn)), &Textured::new(&wire));
-}
+/// A crate so close that perspective is strong, partly in front of the near plane.
+pub struct Close(Projective);
 
-#[inline(never)]
-fn fence_seen(screen: Size, turn: Angle16) -> Projective {
-    seen(screen, turn) * Affine::translation(Vec3::from_milli(0, 0, 1300))
-}
-
-/// A crate so close that perspective is strong, and some of it before the near plane.
-pub fn close<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    scene.draw(&CRATE, &kept(|| close_seen(scene.screen(), turn)), &Textured::new(&WOODEN));
-}
-
-#[inline(never)]
-fn close_seen(screen: Size, turn: Angle16) -> Projective {
-    camera(screen, Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16))
-        * (Affine::translation(Vec3::from_milli(0, 0, -1250))
+impl Close {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        let model = Affine::translation(Vec3::from_milli(0, 0, -1250))
             * Affine::rotation_x(Angle16::from_degrees(25))
-            * Affine::rotation_y(turn))
+            * Affine::rotation_y(turn);
+        Self(camera(screen, Scalar::from_bits(1 << 12), Scalar::from_bits(8 << 16)) * model)
+    }
+}
+
+impl<F: Framebuffer> Draw<F> for Close {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        draw_apart(scene, State::DEFAULT, &CRATE, &self.0, &Textured::new(&WOODEN));
+    }
 }

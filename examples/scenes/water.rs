@@ -1,16 +1,16 @@
 //! Water: waves by a vertex shader, a crate that floats on them.
 
-use super::kept::kept;
-use super::{LIGHT, camera, textured};
+use super::{Draw, LIGHT, camera, draw_apart, textured};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
-use zstrip::light::Matte;
+use zstrip::light::{Matte, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
-use zstrip::shader::Textured;
+use zstrip::shader::{LitTexture, Textured};
 use zstrip::span::{Fragment, Shader};
+use zstrip::texture::Tile;
 use zstrip::vertex::{VertexRef, VertexShader};
-use zstrip::{Framebuffer, Scene};
+use zstrip::{Framebuffer, Scene, State};
 
 /// Squares each way, of 1/4 each.
 const SQUARES: usize = 32;
@@ -101,26 +101,33 @@ impl<P: PixelFormat> Shader<P> for Water {
     }
 }
 
-/// Water with waves of a height in tenths, and a crate on it.
-pub fn water<F: Framebuffer>(scene: &mut Scene<'_, F>, time: Angle16, tenths: i32) {
-    let water = Water { time, height: tenths * 6554 };
-    surface(scene, &water);
-    floating(scene, water);
+/// Water, and a crate on it that goes up and down with the waves and leans with their slopes.
+pub struct Sea {
+    water: Water,
+    /// World → clip space.
+    surface: Projective,
+    /// Object space of the crate → clip space.
+    crate_mvp: Projective,
+    wood: LitTexture<'static, Tile<'static, 32, 32>, Sunlit>,
 }
 
-/// World → clip space.
-#[inline(never)]
-fn above(screen: Size) -> Projective {
-    camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(16 << 16))
-        * (Affine::rotation_x(Angle16::from_degrees(24)) * Affine::translation(Vec3::from_milli(0, -1400, -3000)))
+impl Sea {
+    /// Makes water with waves of a height in tenths.
+    pub fn new(screen: Size, time: Angle16, tenths: i32) -> Self {
+        let water = Water { time, height: tenths * 6554 };
+        let surface = camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(16 << 16))
+            * (Affine::rotation_x(Angle16::from_degrees(24)) * Affine::translation(Vec3::from_milli(0, -1400, -3000)));
+        let model = crate_model(water);
+        Self {
+            water,
+            surface,
+            crate_mvp: surface * model,
+            wood: Textured::new(&textured::WOODEN).lit(LIGHT.on(&Matte::WHITE, &model)),
+        }
+    }
 }
 
-#[inline(never)]
-fn surface<F: Framebuffer>(scene: &mut Scene<'_, F>, water: &Water) {
-    scene.draw(&SURFACE, &kept(|| above(scene.screen())), water);
-}
-
-/// The crate goes up and down with the water, and leans with its slopes.
+/// Returns where the crate is.
 fn crate_model(water: Water) -> Affine {
     let (height, along_x, along_z) = water.wave(0, 0);
     let leaning =
@@ -130,14 +137,9 @@ fn crate_model(water: Water) -> Affine {
         * Affine::rotation_y(Angle16::from_degrees(30))
 }
 
-/// Object space of the crate → clip space.
-#[inline(never)]
-fn crate_seen(screen: Size, water: Water) -> Projective {
-    above(screen) * crate_model(water)
-}
-
-#[inline(never)]
-fn floating<F: Framebuffer>(scene: &mut Scene<'_, F>, water: Water) {
-    let wood = kept(|| Textured::new(&textured::WOODEN).lit(LIGHT.on(&Matte::WHITE, &crate_model(water))));
-    scene.draw(&textured::CRATE, &kept(|| crate_seen(scene.screen(), water)), &*wood);
+impl<F: Framebuffer> Draw<F> for Sea {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        draw_apart(scene, State::DEFAULT, &SURFACE, &self.surface, &self.water);
+        draw_apart(scene, State::DEFAULT, &textured::CRATE, &self.crate_mvp, &self.wood);
+    }
 }

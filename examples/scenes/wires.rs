@@ -1,6 +1,7 @@
 //! Lines and points in space: a wireframe with its hidden lines removed, axes, a cloud of points.
 
-use super::{Rgb888, seen, torus, torus_model};
+use super::{Draw, Rgb888, torus, torus_model, usual_camera};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::math::{Angle16, Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Points, Positions, Vertices};
 use zstrip::shader::{DepthOnly, Flat, Gouraud};
@@ -56,39 +57,25 @@ pub const BEHIND_LINES: State = State { bias: DepthBias { constant: 1, slope: Sc
 /// Lines that lie behind something.
 const HIDDEN: State = State { depth: DepthState { compare: Compare::Greater, write: false }, ..State::DEFAULT };
 
-/// The torus as a wireframe, with hidden lines removed.
-pub fn wires<F: Framebuffer>(scene: &mut Scene<'_, F>, turn: Angle16) {
-    let mvp = seen(scene.screen(), |camera| camera * torus_model(turn));
-    torus_lines(scene, &mvp);
-    axes(scene, &mvp);
-    hidden_axes(scene, &mvp);
-    spiral_points(scene, &mvp);
-    thread(scene, &mvp);
+/// The torus as a wireframe, with hidden lines removed, its axes, and points around it.
+pub struct Wires(Projective);
+
+impl Wires {
+    pub fn new(screen: Size, turn: Angle16) -> Self {
+        Self(usual_camera(screen) * torus_model(turn))
+    }
 }
 
-#[inline(never)]
-fn torus_lines<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    scene.draw_with(BEHIND_LINES, &torus::MESH, mvp, &DepthOnly);
-    scene.draw_lines(torus::lines(), mvp, &Flat::unlit(Rgb888::new(150, 220, 255)), &Thin);
-}
-
-#[inline(never)]
-fn axes<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    scene.draw_lines_with(State::DEFAULT, &AXES, mvp, &Gouraud::vertex_colors(), &Thick::px(2));
-}
-
-#[inline(never)]
-fn hidden_axes<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    scene.draw_lines_with(HIDDEN, &AXES, mvp, &Flat::vertex_colors(), &Dashed::EVEN);
-}
-
-#[inline(never)]
-fn spiral_points<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    scene.draw_points(&SPIRAL, mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), Pixels::from_num(3));
-}
-
-#[inline(never)]
-fn thread<F: Framebuffer>(scene: &mut Scene<'_, F>, mvp: &Projective) {
-    let blended = State { depth: DepthState { compare: Compare::Less, write: false }, ..State::DEFAULT };
-    scene.draw_lines_with(blended, &THREAD, mvp, &Flat::unlit(Rgb888::new(255, 120, 60)), &Smooth::px(1));
+impl<F: Framebuffer> Draw<F> for Wires {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        let Self(mvp) = self;
+        // Depths first: they hide the lines at the back.
+        scene.draw_with(BEHIND_LINES, &torus::MESH, mvp, &DepthOnly);
+        scene.draw_lines(torus::lines(), mvp, &Flat::unlit(Rgb888::new(150, 220, 255)), &Thin);
+        scene.draw_lines(&AXES, mvp, &Gouraud::vertex_colors(), &Thick::px(2));
+        scene.draw_lines_with(HIDDEN, &AXES, mvp, &Flat::vertex_colors(), &Dashed::EVEN);
+        scene.draw_points(&SPIRAL, mvp, &Flat::unlit(Rgb888::new(255, 200, 60)), Pixels::from_num(3));
+        let blended = State { depth: DepthState { compare: Compare::Less, write: false }, ..State::DEFAULT };
+        scene.draw_lines_with(blended, &THREAD, mvp, &Flat::unlit(Rgb888::new(255, 120, 60)), &Smooth::px(1));
+    }
 }
