@@ -22,12 +22,12 @@
 
 #[doc(no_inline)]
 pub use crate::{
-    color::Rgb565Be,
+    color::{PixelFormat, Rgb565Be},
     frame::{FrameError, FramebufferRenderer, Renderer},
-    light::{DirectionalLight, Lighting, Material, Sun},
+    light::{DirectionalLight, Lighting, Material, PointLight, Sun, Viewer},
     math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3},
     mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices},
-    scene::{Cull, Scene, State, Thick, Thin},
+    scene::{Cull, Scene, Smooth, State, Thick, Thin, Winding},
     shader::{Flat, Gouraud, Phong, Textured},
     target::{Framebuffer, StripPixels, WithDepth, WithRecords, WithoutDepth, WithoutRecords},
 };

@@ -40,7 +40,8 @@ impl core::error::Error for RendererError {}
 pub enum FrameError<E = Infallible> {
     /// The sink, or the display, failed. The frame is over.
     Sink(E),
-    /// The closure drew something else than in its call before. The frame is over.
+    /// The closure drew something else than in its call before. Noticed only while records are replayed: in strips that
+    /// are drawn without records, the picture is torn instead. The frame is over.
     SceneChanged {
         /// Number of the first draw that differed, counted from 0.
         draw: u16,

@@ -55,7 +55,7 @@ use embedded_graphics_core::primitives::Rectangle;
 /// # }
 /// # fn buffer() -> &'static mut [u16] { Box::leak(Box::new([0; WIDTH * ROWS])) }
 /// const WIDTH: usize = 64;
-/// const ROWS: usize = RamBudget::even_rows(60, 8) as usize; // 6: all strips of 60 rows are alike
+/// const ROWS: usize = RamBudget::even_rows(60, 8) as usize; // 60 rows make ten strips of 6
 /// let mut renderer = Renderer::<Rgb565Be>::new(Size::new(64, 60))?.with_depth(&mut depth)?;
 /// let (mut free, other) = (buffer(), buffer()); // on a microcontroller from `static_cell`
 /// let mut panel = Panel::new(other);
@@ -71,8 +71,13 @@ use embedded_graphics_core::primitives::Rectangle;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
-/// The transfer sends the whole buffer here, so buffer and strip must be equally long, the last strip of a frame too:
-/// [`RamBudget::even_rows`](super::RamBudget::even_rows) finds such a height.
+/// In a field of a struct, the buffer is drawn into as `&mut *self.free`, and sent as `core::mem::take(&mut
+/// self.free)`. An 8-bit transfer takes the pixels as bytes: [`bytemuck::cast_slice_mut`]. After the loop, the last
+/// transfer still runs.
+///
+/// Where the strip height does not divide the screen's, the last strip is shorter than the buffer. It lies at the
+/// front, so the transfer sends the first `strip.pixels().len()` pixels. A transfer that can only send whole buffers
+/// needs a height that divides: [`RamBudget::even_rows`](super::RamBudget::even_rows) finds one.
 ///
 /// # Async
 ///
@@ -151,7 +156,8 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
     ///
     /// # Errors
     /// [`FrameError::BufferTooShort`] if `buffer` does not hold the strip; the frame can go on with another one.
-    /// [`FrameError::SceneChanged`] if `draw` drew something else than before in this frame; the frame is over.
+    /// [`FrameError::SceneChanged`] if `draw` drew something else than before in this frame; the frame is over. It is
+    /// noticed only while records are replayed: without records, the picture is torn instead.
     pub fn next_strip<'c>(
         &mut self,
         buffer: &'c mut [P::Raw],

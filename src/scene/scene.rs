@@ -37,6 +37,26 @@ pub(crate) struct Target<'a, F> {
 }
 
 /// The object that a frame is drawn through; see [`Renderer::frame`](crate::frame::Renderer::frame).
+///
+/// A function that draws into scenes of any renderer takes `&mut Scene<'_, impl Framebuffer>`. One that is given a
+/// shader, or draws embedded-graphics text, names the format:
+///
+/// ```
+/// use zstrip::{color::PixelFormat, prelude::*, span::Shader};
+///
+/// fn twice<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, mesh: &Mesh, mvps: &[Projective; 2], shader: &S) {
+///     mvps.iter().for_each(|mvp| scene.draw(mesh, mvp, shader));
+/// }
+///
+/// fn label<F: Framebuffer<Format: PixelFormat<Color = Rgb565>>>(scene: &mut Scene<'_, F>) {
+///     scene.overlay(); // .draw(&Text::new(...))
+/// }
+///
+/// struct Screen<'b> {
+///     renderer: Renderer<'b, Rgb565Be, WithDepth, WithRecords>,
+///     color: &'b mut [u16],
+/// }
+/// ```
 #[derive(Debug)]
 pub struct Scene<'a, F> {
     pub(crate) screen: (u16, u16),

@@ -17,6 +17,8 @@ pub enum Cull {
 }
 
 /// Direction in which the corners of a front face go round on the screen, with y up.
+///
+/// A solid that looks hollow, or lit from the wrong side, is wound the other way.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Winding {

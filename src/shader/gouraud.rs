@@ -9,6 +9,8 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// Gouraud shading: colours of the [`Surface`] at the vertices, interpolated linearly on the screen.
 ///
+/// It takes the normals of the mesh. Without normals, a mesh shows the ambient light only.
+///
 /// ```
 /// use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, WebColors};
 /// use zstrip::light::{Material, Sun};

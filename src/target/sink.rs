@@ -46,6 +46,9 @@ impl<'c, P: PixelFormat> StripPixels<'c, P> {
 
     /// Gives back the part of the buffer that holds the strip, for as long as the buffer was lent: `'static` for a DMA
     /// transfer, if the buffer was handed over as `'static`.
+    ///
+    /// The rest of a longer buffer cannot be joined to it again. So a `'static` buffer is lent (`&mut *buffer`) where
+    /// the last strip of a frame is shorter than the others, and only then moved into the transfer.
     #[must_use]
     pub const fn into_pixels(self) -> &'c mut [P::Raw] {
         self.pixels
@@ -58,7 +61,10 @@ impl<'c, P: PixelFormat> StripPixels<'c, P> {
     }
 }
 
-/// Takes the strips of a frame, from top to bottom. A closure will do.
+/// Takes the strips of a frame, from top to bottom.
+///
+/// A closure will do. Where its error type is not known otherwise, it ends in `Ok::<(),
+/// core::convert::Infallible>(())`.
 pub trait StripSink<P: PixelFormat> {
     /// The error of a sink; it ends the frame.
     type Error;
