@@ -24,14 +24,14 @@ pub struct Affine {
 const ONE: i32 = 1 << 16;
 
 impl Default for Affine {
-    /// [`IDENTITY`](Affine::IDENTITY).
+    /// Returns [`IDENTITY`](Affine::IDENTITY).
     fn default() -> Self {
         Self::IDENTITY
     }
 }
 
 impl Affine {
-    /// Leaves everything where it is.
+    /// The transform that leaves everything where it is.
     pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0]] };
 
     /// Makes a transform of the three rows of its matrix and its translation.
@@ -61,28 +61,28 @@ impl Affine {
         Self { rows: [[f[0], 0, 0, 0], [0, f[1], 0, 0], [0, 0, f[2], 0]] }
     }
 
-    /// Rotates about the x axis, y towards z.
+    /// Rotates about the x axis, from y towards z.
     #[must_use]
     pub const fn rotation_x(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[ONE, 0, 0, 0], [0, c, -s, 0], [0, s, c, 0]] }
     }
 
-    /// Rotates about the y axis, z towards x.
+    /// Rotates about the y axis, from z towards x.
     #[must_use]
     pub const fn rotation_y(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[c, 0, s, 0], [0, ONE, 0, 0], [-s, 0, c, 0]] }
     }
 
-    /// Rotates about the z axis, x towards y.
+    /// Rotates about the z axis, from x towards y.
     #[must_use]
     pub const fn rotation_z(angle: Angle16) -> Self {
         let (s, c) = (angle.sin().to_bits(), angle.cos().to_bits());
         Self { rows: [[c, -s, 0, 0], [s, c, 0, 0], [0, 0, ONE, 0]] }
     }
 
-    /// Rotates counter-clockwise about `axis` as seen from its tip; the identity when the axis is zero.
+    /// Rotates counter-clockwise about `axis`, as seen from its tip. The result is the identity if the axis is zero.
     ///
     /// # Source
     /// Rodrigues' formula; entries within 2⁻¹⁴.
@@ -98,7 +98,7 @@ impl Affine {
         while i < 3 {
             let mut j = 0;
             while j < 3 {
-                // Below 2³² · 2¹⁷.
+                // The product is below 2³² · 2¹⁷.
                 let outer = n[i] as i64 * n[j] as i64 * (ONE as i64 - c);
                 rows[i][j] += ((outer + (1 << 31)) >> 32) as i32;
                 j += 1;
@@ -114,7 +114,8 @@ impl Affine {
         Self { rows }
     }
 
-    /// Returns the view transform of a camera at `eye` that looks at `target`: world to eye coordinates, looking along -z.
+    /// Returns the view transform of a camera at `eye` that looks at `target`. It takes world coordinates to eye
+    /// coordinates, in which the camera looks along -z.
     ///
     /// # Errors
     /// [`ProjectionError::DegenerateView`] if `eye == target`, or `up` is zero or parallel to the view direction.
@@ -160,7 +161,7 @@ impl Affine {
 
     /// Returns the inverse of a rigid transform (rotation and translation only): the transposed matrix.
     ///
-    /// Of a transform that scales or shears it is not the inverse.
+    /// For a transform that scales or shears, the result is not the inverse.
     #[must_use]
     pub const fn inverse_rigid(&self) -> Self {
         let r = &self.rows;
@@ -180,12 +181,12 @@ impl Affine {
 
     /// Returns the transform that undoes this one.
     ///
-    /// `None` where there is none (the determinant is 0), or where an entry of it does not fit 16.16. For rotations and
-    /// translations [`inverse_rigid`](Self::inverse_rigid) is much shorter.
+    /// Returns `None` if there is no inverse (the determinant is 0), or if one of its entries does not fit 16.16. For
+    /// rotations and translations [`inverse_rigid`](Self::inverse_rigid) is much shorter.
     ///
     /// # Format
-    /// Each entry is that of the exact inverse of these entries, rounded to nearest: within 2⁻¹⁷. Minors are below 2⁶³, the
-    /// determinant below 2⁹⁶, what is divided below 2¹¹⁴.
+    /// Each entry is that of the exact inverse of the stored entries, rounded to nearest: within 2⁻¹⁷. Minors are
+    /// below 2⁶³, the determinant is below 2⁹⁶, and numerators are below 2¹¹⁴.
     ///
     /// # Source
     /// Cramer's rule.
@@ -220,7 +221,8 @@ impl Affine {
         while i < 3 {
             let a = &adjugate[i];
             let moved = a[0] * r[0][3] as i128 + a[1] * r[1][3] as i128 + a[2] * r[2][3] as i128;
-            // Raw: minor / 2³² over determinant / 2⁴⁸, times 2¹⁶; the translation's product has 16 bits more already.
+            // In raw bits: minor / 2³² over determinant / 2⁴⁸, times 2¹⁶. The product with the translation has 16
+            // more bits already.
             let numerators = [a[0] << 32, a[1] << 32, a[2] << 32, -(moved << 16)];
             let mut j = 0;
             while j < 4 {
@@ -246,7 +248,7 @@ impl Affine {
         )
     }
 
-    /// Returns `M v`: a direction, which the translation does not touch.
+    /// Returns `M v`, for a direction `v`, which the translation does not move.
     #[must_use]
     pub const fn transform_vector(&self, vector: Vec3) -> Vec3 {
         let v = vector.to_bits();
@@ -267,14 +269,14 @@ impl Affine {
         [self.rows[0][j], self.rows[1][j], self.rows[2][j]]
     }
 
-    /// Row `i` times `v`, a quarter of it in 32.32, so that the sum of three products fits 64 bits.
+    /// Returns a quarter of row `i` times `v`, in 32.32. The quarter makes the sum of three products fit 64 bits.
     const fn row_times(&self, i: usize, v: [i32; 3]) -> i64 {
         let r = &self.rows[i];
         ((r[0] as i64 * v[0] as i64) >> 2) + ((r[1] as i64 * v[1] as i64) >> 2) + ((r[2] as i64 * v[2] as i64) >> 2)
     }
 }
 
-/// `num / den` rounded to nearest; `None` for a zero `den`, and what does not fit 32 bits.
+/// Returns `num / den`, rounded to nearest; `None` if `den` is zero or the quotient does not fit 32 bits.
 const fn quotient(num: i128, den: i128) -> Option<i32> {
     let (num, den) = if den < 0 { (-num, -den) } else { (num, den) };
     match (2 * num + den).checked_div_euclid(2 * den) {
@@ -285,7 +287,7 @@ const fn quotient(num: i128, den: i128) -> Option<i32> {
 
 impl Mul<Vec3> for Affine {
     type Output = Vec3;
-    /// [`transform_point`](Affine::transform_point).
+    /// Returns [`transform_point`](Affine::transform_point).
     fn mul(self, point: Vec3) -> Vec3 {
         self.transform_point(point)
     }

@@ -6,8 +6,8 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// An angle in binary units: 65,536 make one turn, and arithmetic wraps as angles do.
 ///
-/// Named by its 16 bits and not plainly `Angle`, because embedded-graphics has an `Angle` of its own, an `f32`, in its prelude:
-/// both preludes may be imported side by side.
+/// It is named by its 16 bits, since embedded-graphics' prelude has an `Angle` of its own, an `f32`. So both preludes
+/// may be imported side by side.
 ///
 /// ```
 /// use zstrip::math::{Angle16, Scalar};
@@ -20,7 +20,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Angle16(pub u16);
 
-/// π/2 and the Taylor coefficients of sin(πx/2), signs alternating, in 2.30.
+/// Taylor coefficients of sin(πx/2), from π/2 on, without their alternating signs, in 2.30.
 ///
 /// The first term left out is (π/2)¹³/13! < 2⁻²⁴, at x = 1.
 const SINE: [i64; 6] = [1_686_629_713, 693_598_668, 85_569_306, 5_026_995, 172_272, 3_864];
@@ -29,14 +29,15 @@ impl Angle16 {
     /// No rotation.
     pub const ZERO: Self = Self(0);
 
-    /// Returns the angle of whole degrees, of any number of turns, rounded to the nearest unit.
+    /// Returns the angle of a whole number of degrees, over any number of turns, rounded to the nearest unit.
     #[must_use]
     pub const fn from_degrees(degrees: i32) -> Self {
         let reduced = degrees.rem_euclid(360) as u32;
         Self(((reduced * 65_536 + 180) / 360) as u16)
     }
 
-    /// Returns the angle of degrees with a fraction, of any number of turns, rounded to the nearest unit, halves up.
+    /// Returns the angle of degrees with a fraction, over any number of turns, rounded to the nearest unit, halves
+    /// up.
     ///
     /// ```
     /// use zstrip::math::{Angle16, Scalar};
@@ -55,26 +56,26 @@ impl Angle16 {
         Scalar::from_bits(self.0 as i32 * 360)
     }
 
-    /// Sine, exact at quarter turns.
+    /// Returns the sine, exact at quarter turns.
     ///
     /// # Format
-    /// 16.16, error at most 2⁻¹⁶, half of it rounding.
+    /// 16.16. The error is at most 2⁻¹⁶, half of which is rounding.
     #[must_use]
     pub const fn sin(self) -> Scalar {
         Scalar::from_bits(((self.sin_q30() + (1 << 13)) >> 14) as i32)
     }
 
-    /// Cosine; see [`sin`](Self::sin).
+    /// Returns the cosine; see [`sin`](Self::sin) for its error.
     #[must_use]
     pub const fn cos(self) -> Scalar {
         Self(self.0.wrapping_add(0x4000)).sin()
     }
 
-    /// Sine in 2.30, error below 2⁻²³.
+    /// Returns the sine in 2.30, with an error below 2⁻²³.
     pub(crate) const fn sin_q30(self) -> i64 {
         let quarter = self.0 >> 14;
         let offset = (self.0 & 0x3FFF) as i64;
-        // x in 0..=1, 30 fractional bits: the distance from the zero crossing in quarter turns.
+        // x in 0..=1, with 30 fractional bits, is the distance from the zero crossing in quarter turns.
         let x = if quarter & 1 == 0 { offset } else { 0x4000 - offset } << 16;
         let x2 = (x * x) >> 30;
         let mut sum = 0;
@@ -90,7 +91,7 @@ impl Angle16 {
         if quarter >= 2 { -sine } else { sine }
     }
 
-    /// Cosine in 2.30, error below 2⁻²³.
+    /// Returns the cosine in 2.30, with an error below 2⁻²³.
     pub(crate) const fn cos_q30(self) -> i64 {
         Self(self.0.wrapping_add(0x4000)).sin_q30()
     }

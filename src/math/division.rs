@@ -1,16 +1,16 @@
-//! Exact division, where the core may have no divider, or numbers are longer than it takes.
+//! Exact division for cores that have no divider, and for numbers that are longer than a divider takes.
 
 use super::reciprocal::SMALL_CORE;
 use core::num::NonZeroU32;
 
-/// `num / den`, rounded down, and the remainder.
+/// Returns `num / den`, rounded down, and the remainder.
 #[inline]
 pub(crate) fn divided(num: u32, den: NonZeroU32) -> (u32, u32) {
     if SMALL_CORE { divided_bit_by_bit(num, den) } else { (num / den, num % den) }
 }
 
-/// As many rounds as the quotient has bits: what lines and strips divide gives few, and a small program need not link the
-/// compiler's longer routine.
+/// Divides in as many rounds as the quotient has bits. The quotients of lines and strips have few bits, and a small
+/// program need not link the compiler's longer routine.
 #[inline(never)]
 fn divided_bit_by_bit(num: u32, den: NonZeroU32) -> (u32, u32) {
     let (mut rest, mut quotient) = (num, 0);
@@ -30,7 +30,7 @@ fn divided_bit_by_bit(num: u32, den: NonZeroU32) -> (u32, u32) {
     (quotient, rest)
 }
 
-/// `num / den` and the remainder, for quotients below 2³² and divisors below 2³¹.
+/// Returns `num / den` and the remainder, for quotients below 2³² and divisors below 2³¹.
 #[inline]
 pub(crate) fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
     match u32::try_from(num) {
@@ -39,8 +39,9 @@ pub(crate) fn divide(num: u64, den: NonZeroU32) -> (u32, u32) {
     }
 }
 
-/// The same bit by bit, the remainder above the quotient: rare, and no 64-bit division to link. The quotient's bits come in from
-/// below where those of `num` leave.
+/// Divides 64 bits by 32, bit by bit, and returns the remainder above the quotient. The bits of the quotient come in
+/// from below as those of `num` leave at the top. It is rarely called, and a small program need not link a 64-bit
+/// division.
 #[cold]
 #[inline(never)]
 fn long_divide(mut num: u64, den: u32) -> u64 {
@@ -53,25 +54,26 @@ fn long_divide(mut num: u64, den: u32) -> u64 {
     num
 }
 
-/// Lower and upper word.
+/// Returns the lower and the upper word.
 #[inline]
 fn split(num: u64) -> (u32, u32) {
     (num as u32, (num >> 32) as u32)
 }
 
-/// ⌊n 2³² / den⌋ modulo 2⁶⁴ for n = `high` 2³² + `low`, 0 < den < 2⁵¹.
+/// Returns ⌊n 2³² / den⌋ modulo 2⁶⁴ for n = `high` 2³² + `low`, 0 < den < 2⁵¹.
 ///
-/// Long division, bit by bit: it is rare, and wider divisions are code that small programs need not link.
+/// This is long division, bit by bit. It is rarely called, and small programs need not link the code of wider
+/// divisions.
 #[inline(never)]
 pub(crate) fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
-    // ⌊-n / d⌋ = !⌊(n - 1) / d⌋, and !n = -n - 1 in all bits, those still to come included.
+    // ⌊-n / d⌋ = !⌊(n - 1) / d⌋. !n = -n - 1 holds for all bits, those of the words still to come included.
     let flip = (high >> 63) as u32;
     let mut rest = 0_u64;
     let mut quotient = 0_u64;
     for word in [(high >> 32) as u32, high as u32, low, 0] {
         let mut word = word ^ flip;
         if rest == 0 && u64::from(word) < den {
-            // Nothing but zeros.
+            // All 32 bits of the quotient are 0: the word becomes the rest.
             rest = word.into();
             word = 0;
         } else if den >> 31 == 0 {

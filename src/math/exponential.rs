@@ -1,6 +1,6 @@
 //! The exponential function of negative numbers, for fog.
 
-/// Entry `k` is 2³¹ e^(-2^(4 - k)), rounded: factors for the bits 20 to 1 of a 16.16 exponent.
+/// Factors for the bits 20 to 1 of a 16.16 exponent: entry `k` is 2³¹ e^(-2^(4 - k)), rounded.
 static FACTORS: [u32; 20] = [
     242,
     720_401,
@@ -24,14 +24,14 @@ static FACTORS: [u32; 20] = [
     2_147_418_113,
 ];
 
-/// e^-`x`.
+/// Returns e^-`x`.
 ///
 /// # Format
-/// `x` 16.16, 0 or more (negative ones count as 0); result 0.16 with 65,536 for 1, off by less than 0.6. From 32 on it is 0.
-/// Up to 20 products: made for tables.
+/// `x` is 16.16; negative ones count as 0. The result is 0.16, with 65,536 for 1, and off by less than 0.6. From x =
+/// 32 on it is 0. It takes up to 20 products, so it is meant for filling tables.
 ///
 /// # Source
-/// e^-(a + b) = e^-a e^-b, over the bits of `x`.
+/// e^-(a + b) = e^-a e^-b, multiplied over the bits of `x`.
 pub const fn exp_negative(x: i32) -> u32 {
     if x <= 0 {
         return 1 << 16;
@@ -39,7 +39,7 @@ pub const fn exp_negative(x: i32) -> u32 {
     if x >= 32 << 16 {
         return 0;
     }
-    // 1.31
+    // The product is in 1.31.
     let mut product = 1_u64 << 31;
     let mut k = 0;
     while k < FACTORS.len() {
@@ -48,7 +48,7 @@ pub const fn exp_negative(x: i32) -> u32 {
         }
         k += 1;
     }
-    // The lowest bit: e^-2⁻¹⁶ is 1 - 2⁻¹⁶, but for 2⁻³³.
+    // The lowest bit: e^-2⁻¹⁶ is 1 - 2⁻¹⁶, within 2⁻³³.
     if x & 1 != 0 {
         product -= product >> 16;
     }

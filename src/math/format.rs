@@ -2,15 +2,16 @@
 
 use fixed::types::{I16F16, I24F8, I32F32};
 
-/// Object and world coordinates, lengths, factors: 16.16, -32768 to 32767.99998 in steps of 2⁻¹⁶.
+/// Object and world coordinates, lengths and factors: 16.16, from -32768 to 32767.99998 in steps of 2⁻¹⁶.
 ///
-/// Its operators are those of the crate `fixed`, and overflow as integers do: a sum, difference or product that does not fit
-/// panics where overflow checks are on (debug builds), and wraps where they are off (release builds). Division by 0 panics in
-/// both. [`Vec3`](crate::math::Vec3), [`Affine`](crate::math::Affine) and [`Projective`](crate::math::Projective) saturate
-/// instead, and so does [`SaturatingScalar`]; `Scalar::checked_add` and its kind tell.
+/// Its operators are those of the crate `fixed`, and overflow as integers do. A sum, difference or product that does
+/// not fit panics where overflow checks are on (debug builds), and wraps where they are off (release builds).
+/// Division by 0 panics in both. [`Vec3`](crate::math::Vec3), [`Affine`](crate::math::Affine),
+/// [`Projective`](crate::math::Projective) and [`SaturatingScalar`] saturate instead. `Scalar::checked_add` and its
+/// kind return `None`.
 pub type Scalar = I16F16;
 
-/// A [`Scalar`] whose operators saturate: at ±32,768 a sum stays there, instead of a panic or a wrong sign.
+/// A [`Scalar`] whose operators saturate: a sum beyond ±32,768 stops there, with no panic and no wrong sign.
 ///
 /// ```
 /// use zstrip::fixed::Saturating;
@@ -23,8 +24,9 @@ pub type SaturatingScalar = fixed::Saturating<Scalar>;
 /// Entries of a [`Projective`](crate::math::Projective) matrix: 32.32.
 pub type Wide = I32F32;
 
-/// Positions and lengths on the screen, in pixels: 24.8, that is whole pixels and 256ths of one, ±8,388,607.99.
+/// Positions and lengths on the screen, in pixels: 24.8, which is whole pixels and 256ths of a pixel, within
+/// ±8,388,607.99.
 ///
-/// Drawing is exact within ±32,767 px of the screen's top left corner. Whole pixels are written `Pixels::from_num(3)`, in
-/// constants `Pixels::const_from_int(3)`; a pixel and a half is `Pixels::from_bits(384)`.
+/// Drawing is exact within ±32,767 px of the screen's top left corner. Write whole pixels as `Pixels::from_num(3)`,
+/// in constants as `Pixels::const_from_int(3)`, and a pixel and a half as `Pixels::from_bits(384)`.
 pub type Pixels = I24F8;

@@ -1,14 +1,15 @@
-//! Inverse square roots without a divider: a table and its chords, for making vectors of length 1.
+//! Inverse square roots without a divider, for making vectors of length 1: a table, and chords between its entries.
 
-/// Entry `n & 255` is 2¹⁹ / √n for n in 64..=256, lowered by half of what the chord to the next entry lies above the curve.
-/// (65,536 is kept as 65,535.)
+/// Roots: entry `n & 255` is 2¹⁹ / √n for n in 64..=256, lowered by half of the largest height of the chord to the
+/// next entry above the curve. (65,536 is kept as 65,535.)
 static ROOTS: [u16; 256] = roots();
 
 const fn roots() -> [u16; 256] {
     let mut table = [u16::MAX; 256];
     let mut n = 64_u64;
     while n <= 256 {
-        // Eight times the root. A chord of f = n^(-1/2) over a unit of n is at most f'' / 8 = f · 3 / (32 n²) too high.
+        // `root` is eight times the root. A chord of f = n^(-1/2) over a unit of n is at most f'' / 8 = f · 3 / (32
+        // n²) too high.
         let root = ((1_u64 << 44) / n).isqrt();
         let value = (root - root * 3 / (64 * n * n) + 4) >> 3;
         table[(n & 255) as usize] = if value > u16::MAX as u64 { u16::MAX } else { value as u16 };
@@ -17,11 +18,11 @@ const fn roots() -> [u16; 256] {
     table
 }
 
-/// 2²³ / √`x`.
+/// Returns 2²³ / √`x`.
 ///
 /// # Format
-/// `x` in 2¹⁴..=2¹⁶; the result is in 2¹⁵..2¹⁶, and off by less than 1.4, and so by a relative 2⁻¹⁵ (tested for all `x`). Any other
-/// `x` gives some number below 2¹⁶.
+/// `x` in 2¹⁴..=2¹⁶; the result is in 2¹⁵..2¹⁶. It is off by less than 1.4, so by a relative 2⁻¹⁵ (tested for all
+/// `x`). Any other `x` gives some number below 2¹⁶.
 #[inline]
 pub const fn inverse_sqrt(x: u32) -> u32 {
     let n = x as usize >> 8;
@@ -29,12 +30,12 @@ pub const fn inverse_sqrt(x: u32) -> u32 {
     here.wrapping_sub((here.wrapping_sub(next).wrapping_mul(x & 0xFF).wrapping_add(128)) >> 8) & 0xFFFF
 }
 
-/// The vector of length 1 in the direction of `v`, 2.14; zero for zero.
+/// Returns the vector of length 1 in the direction of `v`, in 2.14; zero for zero.
 ///
 /// # Format
-/// Components below 2¹⁵ in magnitude, in any unit. Each component of the result is within 1.5 of the exact one if the length
-/// is at least 2¹¹; for shorter vectors it is as exact as their components are. Some 35 instructions and no loop where the
-/// length is in 2¹⁴..=2¹⁵; a few more for each factor of two from there.
+/// Components are below 2¹⁵ in magnitude, in any unit. Each component of the result is within 1.5 of the exact one if
+/// the length is at least 2¹¹; for shorter vectors it is as exact as their components are. It takes some 35
+/// instructions and no loop if the length is in 2¹⁴..=2¹⁵, and a few more for each factor of two above or below.
 #[inline]
 pub fn unit_vector(v: [i32; 3]) -> [i32; 3] {
     let [x, y, z] = v;
@@ -43,15 +44,16 @@ pub fn unit_vector(v: [i32; 3]) -> [i32; 3] {
     if q.wrapping_sub(1 << 28) <= (1 << 30) - (1 << 28) { divide_by_root(v, q) } else { unit_vector_of_any_length(v) }
 }
 
-/// `v` / √`q` in 2.14, for the sum `q` of its squares in 2²⁸..=2³⁰.
+/// Returns `v` / √`q` in 2.14, where `q`, in 2²⁸..=2³⁰, is the sum of the squares of `v`.
 #[inline(always)]
 fn divide_by_root([x, y, z]: [i32; 3], q: u32) -> [i32; 3] {
-    // 2³⁰ / √q; components times that are at most 2³⁰ and a little.
+    // The factor is 2³⁰ / √q. Its product with a component is at most 2³⁰ and a little.
     let factor = inverse_sqrt((q + (1 << 13)) >> 14) as i32;
     let component = |c: i32| c.wrapping_mul(factor).wrapping_add(1 << 15) >> 16;
     [component(x), component(y), component(z)]
 }
 
+/// Returns [`unit_vector`] for any length: shifts the vector until its length is in 2¹⁴..=2¹⁵.
 #[inline(never)]
 fn unit_vector_of_any_length(v: [i32; 3]) -> [i32; 3] {
     let [mut x, mut y, mut z] = v;
@@ -113,7 +115,7 @@ mod tests {
             worst_length = worst_length.max((exact - 16_384.0).abs());
         }
         println!("worst component off by {worst:.3} / 2^14, worst length by {worst_length:.3} / 2^14");
-        // The largest components there are, which are halved first, and zero.
+        // The largest components that are allowed, which the function halves first; and zero.
         assert_eq!(unit_vector([32_767; 3]), [9459; 3]);
         assert_eq!(unit_vector([0; 3]), [0; 3]);
         assert_eq!(unit_vector([0, -1, 0]), [0, -16_384, 0]);

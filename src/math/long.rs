@@ -65,7 +65,7 @@ impl Long {
         self.plus(self)
     }
 
-    /// Compares numbers that are not negative.
+    /// Compares two numbers, neither of them negative.
     const fn cmp(self, other: Self) -> Ordering {
         let mut k = 5;
         while k > 0 {
@@ -77,15 +77,15 @@ impl Long {
         Ordering::Equal
     }
 
-    /// Returns `numerator` · 2⁶⁴ / `denominator`, rounded to nearest, halves away from 0; `None` if it leaves 64 bits or the
-    /// denominator is zero.
+    /// Returns `numerator` · 2⁶⁴ / `denominator`, rounded to nearest, halves away from 0. Returns `None` if the
+    /// result does not fit 64 bits, or the denominator is zero.
     ///
     /// # Format
-    /// Magnitudes below 2³¹⁷.
+    /// Both magnitudes are below 2³¹⁷.
     pub(super) const fn ratio(numerator: Self, denominator: Self) -> Option<i64> {
         let negative = numerator.is_negative() != denominator.is_negative();
         let (mut rest, divisor) = (numerator.magnitude(), denominator.magnitude());
-        // The quotient has 63 bits.
+        // Beyond this the quotient would have more than 63 bits.
         if !matches!(rest.doubled().cmp(divisor), Ordering::Less) {
             return None;
         }

@@ -1,7 +1,7 @@
-//! The doorway for floats: `micromath` vectors and quaternions and `f32` matrices become fixed-point ones.
+//! Conversions from floats: `micromath` vectors and quaternions and `f32` matrices become fixed-point ones.
 //!
-//! The only file that knows floats, and it takes them apart rather than calculating with them: a float is an integer
-//! times a power of two, so that conversions are exact up to one rounding and link no float routine.
+//! This is the only file that knows floats. It takes them apart and does not calculate with them: a float is an
+//! integer times a power of two. So conversions are exact up to one rounding, and link no float routine.
 
 use super::affine::Affine;
 use super::projective::Projective;
@@ -10,26 +10,26 @@ use core::fmt;
 use micromath::Quaternion;
 use micromath::vector::F32x3;
 
-/// Why floats could not be converted. Components are numbered in reading order: row by row, from 0.
+/// An error in floats to be converted. Components are numbered in reading order: row by row, from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum FloatError {
     /// A component is infinite or not a number.
     NotFinite {
-        /// Which component.
+        /// Number of the component.
         index: usize,
-        /// What it is.
+        /// Value of the component.
         value: f32,
     },
     /// A component is too large for its fixed-point format.
     OutOfRange {
-        /// Which component.
+        /// Number of the component.
         index: usize,
-        /// What it is.
+        /// Value of the component.
         value: f32,
     },
-    /// All four components of a quaternion are zero: it is no rotation.
+    /// All four components of a quaternion are zero, so that it stands for no rotation.
     ZeroQuaternion,
 }
 
@@ -67,7 +67,8 @@ impl Parts {
         Ok(Self { mantissa, exponent })
     }
 
-    /// In units of 2^-`fraction_bits`, rounded to nearest, halves up; `None` where 63 bits may not do.
+    /// Returns the float in units of 2^-`fraction_bits`, rounded to nearest, halves up. Returns `None` where it may
+    /// not fit 63 bits.
     fn fixed(self, fraction_bits: i32) -> Option<i64> {
         let shift = self.exponent + fraction_bits;
         if self.mantissa == 0 {
@@ -82,18 +83,18 @@ impl Parts {
     }
 }
 
-/// One component as raw 16.16, to nearest.
+/// Converts one component to raw 16.16, rounded to nearest.
 fn scalar(index: usize, value: f32) -> Result<i32, FloatError> {
     let fixed = Parts::of(index, value)?.fixed(16);
     fixed.and_then(|bits| i32::try_from(bits).ok()).ok_or(FloatError::OutOfRange { index, value })
 }
 
-/// One component as raw 32.32, to nearest.
+/// Converts one component to raw 32.32, rounded to nearest.
 fn wide(index: usize, value: f32) -> Result<i64, FloatError> {
     Parts::of(index, value)?.fixed(32).ok_or(FloatError::OutOfRange { index, value })
 }
 
-/// A vector, each component rounded to the nearest 2⁻¹⁶.
+/// Converts a vector, each component rounded to the nearest 2⁻¹⁶.
 ///
 /// # Errors
 /// When a component is not finite, or not within ±32,768.
@@ -113,7 +114,7 @@ impl TryFrom<F32x3> for Vec3 {
     }
 }
 
-/// Three rows of a matrix with the translation as fourth column, each entry rounded to the nearest 2⁻¹⁶.
+/// Converts three rows of a matrix, with the translation as fourth column, each entry rounded to the nearest 2⁻¹⁶.
 ///
 /// # Errors
 /// When an entry is not finite, or not within ±32,768.
@@ -133,7 +134,7 @@ impl TryFrom<[[f32; 4]; 3]> for Affine {
     }
 }
 
-/// Four rows of a matrix, each entry rounded to the nearest 2⁻³².
+/// Converts four rows of a matrix, each entry rounded to the nearest 2⁻³².
 ///
 /// Clip space is that of [`Projective`], 0 ≤ z ≤ w: a matrix made for OpenGL maps depth to -w..w instead.
 ///
@@ -153,12 +154,13 @@ impl TryFrom<[[f32; 4]; 4]> for Projective {
     }
 }
 
-/// The rotation that a quaternion stands for, whatever its length: `new(w, x, y, z)` with w the real part.
+/// Converts a quaternion of any length to the rotation that it stands for. `new(w, x, y, z)` has the real part w
+/// first.
 ///
 /// # Format
-/// Components are rounded to 21 bits of the largest one, which moves an entry by at most 4 · 2⁻²⁰; entries are rounded
-/// to 2⁻¹⁶ after that. So each is within 2⁻¹⁶ of the exact rotation. The sum of the squares and the numerators are at
-/// most 2⁴⁴, which leaves room for the 17 bits that numerators are moved up.
+/// Components are rounded to 21 bits of the largest one, which moves an entry by at most 4 · 2⁻²⁰. Entries are
+/// rounded to 2⁻¹⁶ after that. So each is within 2⁻¹⁶ of the exact rotation. The sum of the squares and the
+/// numerators are at most 2⁴⁴, which leaves room for the 17 bits by which numerators are shifted up.
 ///
 /// # Errors
 /// When a component is not finite, or all are zero.
@@ -168,7 +170,8 @@ impl TryFrom<Quaternion> for Affine {
     fn try_from(q: Quaternion) -> Result<Self, FloatError> {
         let [w, x, y, z] = q.to_array();
         let parts = [Parts::of(0, w)?, Parts::of(1, x)?, Parts::of(2, y)?, Parts::of(3, z)?];
-        // The power of two just above the largest component; the common scale makes it 2²¹.
+        // `top` is the exponent of the power of two just above the largest component. The common scale makes that
+        // power 2²¹.
         let bits = |p: &Parts| p.exponent + 64 - p.mantissa.unsigned_abs().leading_zeros() as i32;
         let Some(top) = parts.iter().filter(|p| p.mantissa != 0).map(bits).max() else {
             return Err(FloatError::ZeroQuaternion);
@@ -176,7 +179,7 @@ impl TryFrom<Quaternion> for Affine {
         let [w, x, y, z] = parts.map(|p| p.fixed(21 - top).unwrap_or(0));
         let (ww, xx, yy, zz) = (w * w, x * x, y * y, z * z);
         let norm = ww + xx + yy + zz;
-        // n / norm in 16.16, to nearest.
+        // Returns n / norm in 16.16, rounded to nearest.
         let entry = |n: i64| ((n << 17) + norm).div_euclid(2 * norm) as i32;
         let row = |a, b, c| Vec3::from_bits([entry(a), entry(b), entry(c)]);
         Ok(Self::from_rows(

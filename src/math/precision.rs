@@ -1,18 +1,20 @@
-//! How far apart two things must be to differ in 16-bit depth, and where to put the near plane so that they do.
+//! Precision of 16-bit depth: the distance that two things must be apart to differ in depth, and the near plane that
+//! makes a given distance enough.
 
 use super::error::ProjectionError;
 use super::format::{Scalar, Wide};
 use core::fmt;
 
-/// Steps of depth.
+/// Steps of 16-bit depth.
 const STEPS: i128 = 65_535;
 
 /// Precision of 16-bit depth at any distance, for a perspective camera's near and far distance.
 ///
-/// Depth is far (d - near) / ((far - near) d): half of all steps lie between near and twice near. At distance d a step is
-/// about d² (far - near) / (65,535 near far), so it is the near plane that counts; far hardly does, once it is far.
+/// Depth is far (d - near) / ((far - near) d), so half of all steps lie between near and twice near. At distance d a
+/// step is about d² (far - near) / (65,535 near far). So the near plane decides; the far plane hardly matters once it
+/// is far.
 ///
-/// The classic sum is that of a flight simulator, near plane at 1 m, far plane at 50 km:
+/// The classic example is a flight simulator with its near plane at 1 m and its far plane at 50 km:
 ///
 /// | distance | near 1 m | near 10 m | near 100 m | uniform |
 /// |---|---|---|---|---|
@@ -21,10 +23,12 @@ const STEPS: i128 = 65_535;
 /// | 10 km | 1.7 km | 155 m | 15 m | 76 cm |
 /// | 50 km, and nearer | 14 km | 1.8 km | 190 m | 76 cm |
 ///
-/// With the near plane at the pilot's nose, a hangar 1 km away and what is 15 m behind it fight, and clouds 10 km away are all at
-/// one distance. A near plane at 10 m mends the one, the cockpit being drawn by a camera of its own in front of everything;
-/// for the other, there is [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform). The marks on the runway want a
-/// [bias](crate::span::DepthBias) in any case.
+/// With the near plane at the pilot's nose, a hangar 1 km away and a wall 15 m behind it share one depth, and so do
+/// all clouds from 10 km on.
+/// - A near plane at 10 m mends the hangar. The cockpit then gets a camera of its own, and is drawn in front of
+///   everything.
+/// - [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform) mends the clouds.
+/// - The marks on the runway need a [bias](crate::span::DepthBias) in any case.
 ///
 /// ```
 /// use zstrip::math::{DepthPrecision, Scalar};
@@ -53,7 +57,7 @@ pub enum PrecisionError {
         /// Distance of the far plane.
         far: Scalar,
     },
-    /// The size of a step is not above 0.
+    /// The size of a bin is not above 0.
     Bin {
         /// The size asked for.
         bin: Scalar,
@@ -90,7 +94,7 @@ impl fmt::Display for PrecisionError {
 
 impl core::error::Error for PrecisionError {}
 
-/// num / den rounded to nearest, both positive; 0 for a `den` of 0.
+/// Returns `num / den`, rounded to nearest, for two positive numbers; 0 for a `den` of 0.
 const fn rounded(num: i128, den: i128) -> i128 {
     match (2 * num + den).checked_div_euclid(2 * den) {
         Some(quotient) => quotient,
@@ -102,7 +106,7 @@ impl DepthPrecision {
     /// Takes the distances of a camera's near and far plane.
     ///
     /// # Errors
-    /// When `near ≤ 0` or `near ≥ far`, as the camera's.
+    /// When `near ≤ 0` or `near ≥ far`, as for the camera itself.
     pub const fn new(near: Scalar, far: Scalar) -> Result<Self, ProjectionError> {
         if near.to_bits() <= 0 {
             return Err(ProjectionError::NearNotPositive { near });
@@ -117,8 +121,8 @@ impl DepthPrecision {
         (self.near.to_bits() as i128, self.far.to_bits() as i128)
     }
 
-    /// Returns the depth of things at `distance` along the camera's axis, rounded to nearest; 0 in front of the near plane, 65,535 beyond
-    /// the far one.
+    /// Returns the depth of things at `distance` along the camera's axis, rounded to nearest. It is 0 in front of the
+    /// near plane, 65,535 beyond the far plane.
     #[must_use]
     pub const fn depth(&self, distance: Scalar) -> u16 {
         let (n, f) = self.planes();
@@ -132,10 +136,10 @@ impl DepthPrecision {
         }
     }
 
-    /// Where depth is `halves` / 2 steps, 32.32, rounded to nearest; from near to far.
+    /// Returns the distance at which depth is `halves` / 2 steps, in 32.32, rounded to nearest, within near and far.
     ///
     /// # Format
-    /// 2 · 65,535 n f 2¹⁶ has 95 bits; the divisor is not below 2 · 65,535 n.
+    /// 2 · 65,535 n f 2¹⁶ has 95 bits. The divisor is not below 2 · 65,535 n.
     const fn boundary(&self, halves: i128) -> i128 {
         let (n, f) = self.planes();
         let halves = if halves < 0 { 0 } else { halves };
@@ -151,22 +155,24 @@ impl DepthPrecision {
         Scalar::from_bits(((self.boundary(2 * depth as i128) + (1 << 15)) >> 16) as i32)
     }
 
-    /// Returns the size of the range of distances that share one depth with `distance`: things that far apart may share a
-    /// depth, things twice as far apart do not.
+    /// Returns the size of the range of distances that share one depth with `distance`. Two things this far apart may
+    /// share a depth; two things twice as far apart do not.
     #[must_use]
     pub const fn bin(&self, distance: Scalar) -> Wide {
         let depth = self.depth(distance) as i128;
         Wide::from_bits((self.boundary(2 * depth + 1) - self.boundary(2 * depth - 1)) as i64)
     }
 
-    /// Returns the size of a step of depth for [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform), at any distance, rounded up.
+    /// Returns the size of a step of depth for [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform), at any
+    /// distance, rounded up.
     #[must_use]
     pub const fn uniform_bin(&self) -> Wide {
         let (n, f) = self.planes();
         Wide::from_bits(((((f - n) << 16) + STEPS - 1) / STEPS) as i64)
     }
 
-    /// Returns the smallest near distance, or a trifle above it, with which the [`bin`](Self::bin) at `distance` is at most `bin`.
+    /// Returns the smallest near distance, or a trifle above it, for which the [`bin`](Self::bin) at `distance` is at
+    /// most `bin`.
     ///
     /// # Errors
     /// When `distance` is not in 0..=far, `bin` is not above 0, or the near plane would be beyond `distance`.
@@ -178,7 +184,8 @@ impl DepthPrecision {
         if b <= 0 {
             return Err(PrecisionError::Bin { bin });
         }
-        // A bin from d- to d+ has the size (f - n) d- d+ / (65,535 n f), and d- ≤ d, d+ ≤ d + b. Rounded up.
+        // A bin from d- to d+ has the size (f - n) d- d+ / (65,535 n f), with d- ≤ d and d+ ≤ d + b. Near is rounded
+        // up.
         let product = d * (d + b);
         let den = b * f * STEPS + product;
         let near = match (f * product + den - 1).checked_div(den) {
@@ -186,7 +193,7 @@ impl DepthPrecision {
             None => f,
         };
         if near > d {
-            // Below far, which is below 2³¹.
+            // `near` is below far, which is below 2³¹.
             return Err(PrecisionError::TooFine { near: Scalar::from_bits(near as i32), distance });
         }
         Ok(Scalar::from_bits(near as i32))

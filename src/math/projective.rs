@@ -29,7 +29,7 @@ pub struct Projective {
 
 const ONE: i64 = 1 << 32;
 
-/// `value` saturated to 64 bits.
+/// Saturates `value` to 64 bits.
 const fn saturate(value: i128) -> i64 {
     if value > i64::MAX as i128 {
         i64::MAX
@@ -40,8 +40,7 @@ const fn saturate(value: i128) -> i64 {
     }
 }
 
-/// `num / den` in 32.32, rounded to nearest, of two numbers in the same format; 0 for a
-/// zero `den`.
+/// Returns `num / den` in 32.32, rounded to nearest, for two numbers in one format; 0 for a zero `den`.
 const fn ratio(num: i128, den: i128) -> i64 {
     let (num, den) = if den < 0 { (-num, -den) } else { (num, den) };
     match ((num << 33) + den).checked_div_euclid(2 * den) {
@@ -50,20 +49,20 @@ const fn ratio(num: i128, den: i128) -> i64 {
     }
 }
 
-/// `b[s] c[t] - b[t] c[s]`: below 2¹²⁷, since no product but that of two -2⁶³ reaches 2¹²⁶.
+/// Returns `b[s] c[t] - b[t] c[s]`. It is below 2¹²⁷, since no product but that of two -2⁶³ reaches 2¹²⁶.
 const fn minor_of(b: [i64; 4], c: [i64; 4], s: usize, t: usize) -> i128 {
     b[s] as i128 * c[t] as i128 - b[t] as i128 * c[s] as i128
 }
 
 impl Default for Projective {
-    /// [`IDENTITY`](Projective::IDENTITY).
+    /// Returns [`IDENTITY`](Projective::IDENTITY).
     fn default() -> Self {
         Self::IDENTITY
     }
 }
 
 impl Projective {
-    /// Leaves everything where it is.
+    /// The transform that leaves everything where it is.
     pub const IDENTITY: Self = Self { rows: [[ONE, 0, 0, 0], [0, ONE, 0, 0], [0, 0, ONE, 0], [0, 0, 0, ONE]] };
 
     /// Makes a transform of rows of raw 32.32 bits.
@@ -78,7 +77,7 @@ impl Projective {
         self.rows
     }
 
-    /// Lends the rows.
+    /// Returns the rows by reference.
     pub(crate) const fn rows(&self) -> &[[i64; 4]; 4] {
         &self.rows
     }
@@ -91,8 +90,8 @@ impl Projective {
 
     /// Makes a perspective camera at the origin that looks along -z.
     ///
-    /// `field_of_view` is the vertical opening angle, `aspect` width and height of the screen or viewport, or any two numbers in their ratio. Depth is
-    /// 0 at distance `near` and 1 at `far`.
+    /// `field_of_view` is the vertical opening angle. `aspect` is the size of the screen or viewport, or any two
+    /// numbers in the ratio of its width and height. Depth is 0 at distance `near` and 1 at `far`.
     ///
     /// # Errors
     /// When `near ≤ 0`, `near ≥ far`, the angle is not in 0..180°, or the aspect has a zero.
@@ -120,13 +119,14 @@ impl Projective {
         let (sin, cos) = (half.sin_q30() as i128, half.cos_q30() as i128);
         let x = ratio(cos * aspect.height as i128, sin * aspect.width as i128);
         let y = ratio(cos, sin);
-        // z = far (-ze - near) / (far - near), w = -ze: 0 on the near plane, w on the far one.
+        // z = far (-ze - near) / (far - near), w = -ze: z is 0 on the near plane, and w on the far plane.
         let a = ratio(f, n - f);
         let b = ratio(f * n, (n - f) << 16);
         Ok(Self { rows: [[x, 0, 0, 0], [0, y, 0, 0], [0, 0, a, b], [0, 0, -ONE, 0]] })
     }
 
-    /// An orthographic camera that looks along -z: the box `left..right`, `bottom..top`, `-far..-near` fills clip space.
+    /// Makes an orthographic camera that looks along -z. It maps the box `left..right`, `bottom..top`, `-far..-near`
+    /// to all of clip space.
     ///
     /// # Errors
     /// When two opposite sides coincide, or `near ≥ far`. `near` may be negative here.
@@ -168,7 +168,7 @@ impl Projective {
                 let mut sum = 0_i128;
                 let mut k = 0;
                 while k < 4 {
-                    // 64 × 64 bits: a quarter of each product keeps the sum of four within 128.
+                    // Products have 64 + 64 bits. A quarter of each keeps the sum of four within 128.
                     sum += (self.rows[i][k] as i128 * first.rows[k][j] as i128) >> 2;
                     k += 1;
                 }
@@ -180,13 +180,13 @@ impl Projective {
         Self { rows }
     }
 
-    /// Returns the transform that undoes this one: from the screen back to the world, for instance.
+    /// Returns the transform that undoes this one, for instance to go from the screen back to the world.
     ///
-    /// `None` where there is none (the determinant is 0), or where an entry of it does not fit 32.32.
+    /// Returns `None` if there is no inverse (the determinant is 0), or if one of its entries does not fit 32.32.
     ///
     /// # Format
-    /// Each entry is that of the exact inverse of these entries, rounded to nearest: within 2⁻³³. Determinants are taken in
-    /// 320 bits: some thousand instructions, for a call per frame or per touch.
+    /// Each entry is that of the exact inverse of the stored entries, rounded to nearest: within 2⁻³³. Determinants
+    /// are computed in 320 bits. This takes some thousand instructions, for a call per frame or per touch.
     ///
     /// # Source
     /// Cramer's rule.
@@ -194,7 +194,7 @@ impl Projective {
     /// ```
     /// use zstrip::embedded_graphics_core::geometry::Size;
     /// use zstrip::math::{Angle16, Projective, Scalar, Vec3};
-    /// let lens = Projective::perspective(Angle16::from_degrees(60), Size::new(4, 3), Scalar::ONE, Scalar::from_num(9))?;
+    /// let lens = Projective::perspective(Angle16::from_degrees(60), Size::new(4, 3), Scalar::ONE, 9.into())?;
     /// // A point of clip space, divided by its w before: on the near plane, in the middle of the picture.
     /// let [x, y, z, w] = lens.inverse().unwrap().transform_point(Vec3::ZERO);
     /// assert_eq!((x / w, y / w), (0.into(), 0.into()));
@@ -227,7 +227,7 @@ impl Projective {
         while i < 4 {
             let mut j = 0;
             while j < 4 {
-                // Raw: cofactor / 2⁹⁶ over determinant / 2¹²⁸, times 2³².
+                // In raw bits: cofactor / 2⁹⁶ over determinant / 2¹²⁸, times 2³².
                 rows[i][j] = match Long::ratio(cofactors[j][i], determinant) {
                     Some(entry) => entry,
                     None => return None,
@@ -242,9 +242,9 @@ impl Projective {
     /// Returns the signed determinant of the matrix without a row and a column.
     ///
     /// # Format
-    /// Minors of 2×2 are below 2¹²⁷, six of their products with entries below 2¹⁹³.
+    /// Minors of 2×2 are below 2¹²⁷. The determinant is a sum of six products of a minor and an entry, below 2¹⁹³.
     const fn cofactor(&self, row: usize, column: usize) -> Long {
-        // Cyclic order keeps the sign of 3×3 determinants, and makes that of the others (-1)^(row + column).
+        // Cyclic order keeps the sign of 3×3 determinants. It makes the sign of 4×4 determinants (-1)^(row + column).
         let (a, b, c) = (self.rows[(row + 1) & 3], self.rows[(row + 2) & 3], self.rows[(row + 3) & 3]);
         let (p, q, r) = ((column + 1) & 3, (column + 2) & 3, (column + 3) & 3);
         let sum = Long::of(minor_of(b, c, q, r))
@@ -261,7 +261,8 @@ impl Projective {
         self.compose(&Self::from_affine(model))
     }
 
-    /// Returns the clip coordinates of a point: x, y, z, w, rounded to nearest and saturating. Divided by w they are its place in clip space.
+    /// Returns the clip coordinates x, y, z, w of a point, rounded to nearest and saturating. Divided by w, they are
+    /// the point's place in clip space.
     #[must_use]
     pub const fn transform_point(&self, point: Vec3) -> [Wide; 4] {
         let p = point.to_bits();
@@ -269,7 +270,7 @@ impl Projective {
         let mut i = 0;
         while i < 4 {
             let r = &self.rows[i];
-            // 64 + 32 bits each: no sum of four leaves 128.
+            // Products have 64 + 32 bits: no sum of four leaves 128.
             let sum = r[0] as i128 * p[0] as i128
                 + r[1] as i128 * p[1] as i128
                 + r[2] as i128 * p[2] as i128
@@ -280,7 +281,7 @@ impl Projective {
         result
     }
 
-    /// Makes a 4×4 matrix of an affine transform.
+    /// Converts an affine transform to a 4×4 matrix.
     #[must_use]
     pub const fn from_affine(model: &Affine) -> Self {
         let a = model.to_rows();

@@ -1,22 +1,25 @@
-//! Reciprocals without a divider: a table, two Newton steps, and a proven bound.
+//! Reciprocals and divisions on cores without a divider: a table of seeds, up to two Newton steps, and a proven bound
+//! of the error for each function. The file also has wide products and leading zeros for cores that lack the
+//! instructions.
 
-/// Whether the core multiplies 32 × 32 bits to 32 only, so that a wide product is best put together by hand: Armv6-M,
-/// recognized by its lack of compare-and-swap. (`__aeabi_lmul` takes three times as long.)
+/// True for cores that multiply 32 × 32 bits to the lower 32 only: Armv6-M, recognized by its lack of
+/// compare-and-swap. On these, a wide product is put together by hand, since `__aeabi_lmul` takes three times as
+/// long.
 pub(crate) const SMALL_CORE: bool = cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
-/// High word of a 32 × 32 bit product, rounded down.
+/// Returns the high word of a 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high(a: u32, b: u32) -> u32 {
     if SMALL_CORE { mul_high_by_halves(a, b) } else { ((a as u64 * b as u64) >> 32) as u32 }
 }
 
-/// High word of a signed by unsigned 32 × 32 bit product, rounded down.
+/// Returns the high word of a signed by unsigned 32 × 32 bit product, rounded down.
 #[inline(always)]
 pub const fn mul_high_signed(a: i32, b: u32) -> i32 {
     if SMALL_CORE { mul_high_signed_by_halves(a, b) } else { ((a as i64 * b as i64) >> 32) as i32 }
 }
 
-/// The product of two numbers: a third of what the compiler's own routine takes on small cores.
+/// Multiplies two numbers to 64 bits, in a third of the time that the compiler's own routine takes on small cores.
 #[inline]
 pub(crate) fn mul_wide(a: i32, b: i32) -> i64 {
     if SMALL_CORE { product_by_halves(a, b) } else { i64::from(a) * i64::from(b) }
@@ -24,26 +27,27 @@ pub(crate) fn mul_wide(a: i32, b: i32) -> i64 {
 
 #[inline(never)]
 fn product_by_halves(a: i32, b: i32) -> i64 {
-    // `b` is taken for b + 2³² where it is negative.
+    // The routine takes a negative `b` for b + 2³².
     let high = mul_high_signed_by_halves(a, b as u32).wrapping_sub(a & b >> 31);
     i64::from(high) << 32 | i64::from(a.wrapping_mul(b) as u32)
 }
 
-/// [`mul_high_signed`] out of line: where speed does not matter.
+/// Returns [`mul_high_signed`], out of line: for places where size counts and speed does not.
 #[inline(never)]
 pub fn mul_high_outlined(a: i32, b: u32) -> i32 {
     mul_high_signed(a, b)
 }
 
-/// [`mul_high`] from [`mul_high_signed`], which takes `a` for a - 2³² when its top bit is set: b is missing then.
+/// Returns [`mul_high`] by means of [`mul_high_signed_by_halves`]. That takes `a` for a - 2³² when its top bit is
+/// set, so b is added then.
 ///
-/// Four products by themselves would be recognized by the compiler and replaced by a call to `__aeabi_lmul`.
+/// The compiler would recognize four unsigned products in a row, and replace them by a call to `__aeabi_lmul`.
 #[inline(always)]
 const fn mul_high_by_halves(a: u32, b: u32) -> u32 {
     (mul_high_signed_by_halves(a as i32, b) as u32).wrapping_add(b & (a as i32 >> 31) as u32)
 }
 
-/// [`mul_high_signed`] from four products of 16 bits, the upper half of `a` with its sign.
+/// Returns [`mul_high_signed`], from four products of 16 bits. The upper half of `a` keeps its sign.
 #[inline(always)]
 const fn mul_high_signed_by_halves(a: i32, b: u32) -> i32 {
     let (a1, a0, b1, b0) = (a >> 16, a as u32 & 0xFFFF, b >> 16, b & 0xFFFF);
@@ -63,14 +67,14 @@ static BYTE_ZEROS: [u8; 256] = {
     table
 };
 
-/// Leading zeros of a byte, from a table: for cores that have no instruction for it.
+/// Counts the leading zeros of a byte by a table, for cores that have no instruction for it.
 #[inline(always)]
 pub(crate) const fn byte_zeros(x: u8) -> u32 {
     BYTE_ZEROS[x as usize] as u32
 }
 
-/// Leading zeros, by two comparisons and a table where cores have no instruction for it: a third of what the compiler's own
-/// routine takes.
+/// Counts leading zeros. Where cores have no instruction for it, this takes two comparisons and a table: a third of
+/// the time of the compiler's own routine.
 #[inline(always)]
 pub(crate) const fn leading_zeros(x: u32) -> u32 {
     if !SMALL_CORE {
@@ -79,7 +83,7 @@ pub(crate) const fn leading_zeros(x: u32) -> u32 {
     leading_zeros_by_table(x)
 }
 
-/// The same out of line, of 64 bits: where speed does not matter.
+/// Counts the leading zeros of 64 bits, out of line: for places where size counts and speed does not.
 #[inline(never)]
 pub(crate) const fn leading_zeros_long(x: u64) -> u32 {
     if !SMALL_CORE {
@@ -96,7 +100,8 @@ const fn leading_zeros_by_table(x: u32) -> u32 {
     zeros + byte_zeros(x as u8)
 }
 
-/// Entry `i` is 2³¹ / m rounded, m the middle of the i-th 256th of 2¹⁵..2¹⁶: the seed of [`reciprocal`].
+/// Seeds of [`reciprocal`]: entry `i` is 2³¹ / m rounded, where m is the middle of the i-th of 256 equal parts of
+/// 2¹⁵..2¹⁶.
 static SEED: [u16; 256] = seed();
 
 const fn seed() -> [u16; 256] {
@@ -111,64 +116,67 @@ const fn seed() -> [u16; 256] {
     table
 }
 
-/// 2⁶³ / `x` for a normalized `x`.
+/// Returns 2⁶³ / `x` for a normalized `x`.
 ///
 /// # Format
-/// `x` in 2³¹..2³² (top bit set); the result is in 2³¹..2³², saturated at `u32::MAX`. The relative error is below 2⁻²⁹:
-/// the seed is within 2⁻⁹ (half a table step) + 2⁻¹⁶ (its rounding) of the reciprocal; one Newton step squares that to
-/// below 2⁻¹⁷·⁹, to which the 16-bit view of `x` adds 2⁻¹⁶ and cut bits 2⁻²²; the second step squares the sum, below
-/// 2⁻¹⁵·⁶, to 2⁻³¹·², to which cut bits of the correction add at most 2⁻¹⁵ · 2⁻¹⁵·⁶ + 2⁻³¹.
+/// `x` in 2³¹..2³² (top bit set); the result is in 2³¹..2³², saturated at `u32::MAX`. The relative error is below
+/// 2⁻²⁹:
+/// - The seed is within 2⁻⁹ (half a table step) + 2⁻¹⁶ (its rounding) of the reciprocal.
+/// - The first Newton step squares that to below 2⁻¹⁷·⁹. The 16-bit view of `x` adds 2⁻¹⁶, and cut bits add 2⁻²².
+/// - The second step squares this sum, which is below 2⁻¹⁵·⁶, to 2⁻³¹·². Cut bits of the correction add at most 2⁻¹⁵
+///   · 2⁻¹⁵·⁶ + 2⁻³¹.
 ///
 /// # Source
 /// Newton's iteration r' = r (2 - x r).
 #[inline(never)]
 pub const fn reciprocal(x: u32) -> u32 {
-    // Only a caller's error could leave the top bit clear; it would cost precision, nothing else.
+    // Only an error of the caller could leave the top bit clear. It would cost precision, nothing else.
     let x = x | 1 << 31;
     let r0 = SEED[(x >> 23) as usize & 0xFF] as u32;
-    // First step in 16 bits: x16 = x / 2¹⁶ rounded, in 2¹⁵..=2¹⁶; x16 r0 is near 2³¹, its defect below 2²²·¹.
+    // First step, in 16 bits: x16 = x / 2¹⁶ rounded, in 2¹⁵..=2¹⁶. x16 r0 is near 2³¹, and its defect is below 2²²·¹.
     let x16 = (x >> 16) + ((x >> 15) & 1);
     let defect = (1_i32 << 31).wrapping_sub((x16 * r0) as i32);
     let r1 = (r0 << 16).wrapping_add((((r0 as i32) * (defect >> 8)) >> 7) as u32);
     let r1 = saturated(r1);
-    // Second step: the defect of x r1 / 2³² from 2³¹ is below 2¹⁵·⁵, the top of r1 has 15 bits.
+    // Second step: the defect, which is the distance of x r1 / 2³² from 2³¹, is below 2¹⁵·⁵. The top of r1 has 15
+    // bits.
     let defect = (1_i32 << 31).wrapping_sub(mul_high(x, r1) as i32);
     let correction = ((r1 >> 17) as i32 * defect) >> 14;
     saturated(r1.wrapping_add(correction as u32))
 }
 
-/// What is near 2³¹..2³², kept below 2³² if it has passed that by its error, as that of 2³¹ may.
+/// Saturates a number near 2³¹..2³² at 2³² - 1. Only the reciprocal of 2³¹ can pass 2³², by its error.
 #[inline(always)]
 const fn saturated(r: u32) -> u32 {
     r | (((r >> 30) as i32 - 1) >> 31) as u32
 }
 
-/// A number to divide others by: a reciprocal of 16 bits, and what is wrong with it.
+/// A divisor, kept as a reciprocal of 16 bits and the defect of that reciprocal.
 ///
-/// Cheaper than [`reciprocal`] where products of 32 × 32 bits are not at hand.
+/// It is cheaper than [`reciprocal`] on cores that have no product of 32 × 32 bits.
 #[derive(Clone, Copy, Debug)]
 pub struct Divisor {
-    /// Brings the divisor to 2³¹..2³².
+    /// Shift that brings the divisor to 2³¹..2³².
     shift: u32,
-    /// 2⁴⁷ / x of the divisor x there, within 2⁻¹⁴·⁹: in 2¹⁵..=2¹⁶.
+    /// 2⁴⁷ / x within 2⁻¹⁴·⁹, where x is the shifted divisor: in 2¹⁵..=2¹⁶.
     reciprocal: i32,
-    /// 2³¹ - x `reciprocal` / 2¹⁶: below 2¹⁶·¹.
+    /// Defect of the reciprocal, 2³¹ - x `reciprocal` / 2¹⁶: below 2¹⁶·¹.
     defect: i32,
 }
 
 impl Divisor {
-    /// Of a number, which is not 0.
+    /// Makes a divisor of a number that is not 0.
     #[inline(always)]
     pub fn new(q: u32) -> Self {
         let shift = leading_zeros(q) & 31;
         Self { shift, ..Self::of_normalized(q << shift) }
     }
 
-    /// [`new`](Self::new) of a number with its top bit set.
+    /// Makes a divisor of a number whose top bit is set.
     #[inline(always)]
     pub fn of_normalized(x: u32) -> Self {
         let r0 = SEED[(x >> 23) as usize & 0xFF] as i32;
-        // The first step of `reciprocal`, rounded to 16 bits.
+        // As the first step of `reciprocal`, rounded to 16 bits.
         let x16 = (x >> 16) + ((x >> 15) & 1);
         let defect = (1_i32 << 31).wrapping_sub((x16 as i32).wrapping_mul(r0));
         let r = r0 + ((r0 * (defect >> 8) + (1 << 22)) >> 23);
@@ -180,11 +188,12 @@ impl Divisor {
         Self { shift: 0, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(product as i32) }
     }
 
-    /// `n` / x as 1.31 for an `x` with its top bit set.
+    /// Returns `n` / x in 1.31, for an `x` with its top bit set.
     ///
     /// # Format
-    /// |n| ≤ x / 2. Off by -5..=3 units: less than 1 each for two cuts, 1.1 for the rounding of the correction's factor, half of
-    /// one for the defect's, and twice the second of two steps' 2⁻²⁹·⁸.
+    /// |n| ≤ x / 2. The error is in -5..=3 units: less than 1 for each of two cuts, 1.1 for the rounding of the
+    /// correction's factor, 1/2 for the rounding of the defect, and twice 2⁻²⁹·⁸, which is the error after the second
+    /// of two Newton steps.
     #[inline(always)]
     pub const fn divide_normalized(&self, n: i32) -> i32 {
         if SMALL_CORE { self.divide_by_halves(n) } else { self.divide_by_words(n) }
@@ -197,7 +206,8 @@ impl Divisor {
         h.wrapping_add((h.wrapping_add(1 << 15) >> 16).wrapping_mul(self.defect) >> 15)
     }
 
-    /// The same in two instructions, each of 32 by 16 bits: the reciprocal less 2¹⁶ fits 16 bits and a sign.
+    /// Divides as [`divide_by_halves`](Self::divide_by_halves) does, bit for bit, by two instructions that multiply
+    /// 32 by 16 bits. The reciprocal less 2¹⁶ fits 16 bits and a sign.
     #[inline(always)]
     const fn divide_by_words(&self, n: i32) -> i32 {
         let h = n.wrapping_add(((n as i64 * (self.reciprocal as i16) as i64) >> 16) as i32);
@@ -205,11 +215,11 @@ impl Divisor {
         h.wrapping_add((((self.defect << 1) as i64 * top as i64) >> 16) as i32)
     }
 
-    /// `n` / x as 1.31 for an `x` with its top bit set and `n` ≤ x; exact for an `x` of one bit.
+    /// Returns `n` / x in 1.31, for an `x` with its top bit set and `n` ≤ x. It is exact for an `x` of one bit.
     ///
     /// # Format
-    /// Off by -7..=3 units: less than 1 each for two cuts, 2.2 for the rounding of the correction's factor, 1 for the defect's,
-    /// and the second of two steps' 2⁻²⁹·⁸.
+    /// The error is in -7..=3 units: less than 1 for each of two cuts, 2.2 for the rounding of the correction's
+    /// factor, 1 for the rounding of the defect, and 2⁻²⁹·⁸, which is the error after the second of two Newton steps.
     #[inline(always)]
     pub const fn fraction_normalized(&self, n: u32) -> u32 {
         let r = self.reciprocal as u32;
@@ -221,16 +231,18 @@ impl Divisor {
         h.wrapping_add_signed((((h + (1 << 16)) >> 17) as i32).wrapping_mul(self.defect) >> 14)
     }
 
-    /// `n` / q as 1.31.
+    /// Returns `n` / q in 1.31.
     ///
     /// # Format
-    /// |n| ≤ q / 2. Off by less than 6 units: twice the second of two steps' 2⁻²⁹·⁸, and bits cut.
+    /// |n| ≤ q / 2. The error is less than 6 units: twice 2⁻²⁹·⁸, which is the error after the second of two Newton
+    /// steps, and the bits that are cut.
     #[inline(always)]
     pub fn divide(&self, n: i32) -> i32 {
         self.divide_shifted(n << self.shift)
     }
 
-    /// The same for an `n` that has been shifted already by as much as the divisor lacks to 2³¹.
+    /// Returns `n` / q in 1.31 as [`divide`](Self::divide) does, for an `n` that is already shifted by the divisor's
+    /// own shift.
     #[inline(always)]
     pub fn divide_shifted(&self, n: i32) -> i32 {
         let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
@@ -239,22 +251,22 @@ impl Divisor {
     }
 }
 
-/// [`Divisor`] for numbers below 2¹⁶.
+/// A divisor below 2¹⁶: shorter than a [`Divisor`].
 #[derive(Clone, Copy, Debug)]
 pub struct ShortDivisor {
     shift: u32,
-    /// 2⁴⁷ / x of the divisor x, brought to 2³¹..2³², in 2¹⁵..=2¹⁶, and what is wrong with it: 2³¹ - x `reciprocal` / 2¹⁶,
-    /// below 2¹⁵·¹.
+    /// 2⁴⁷ / x, in 2¹⁵..=2¹⁶, where x is the divisor shifted to 2³¹..2³²; and the defect of this reciprocal, 2³¹ - x
+    /// `reciprocal` / 2¹⁶, below 2¹⁵·¹.
     reciprocal: i32,
     defect: i32,
 }
 
 impl ShortDivisor {
-    /// Of a number that is not 0.
+    /// Makes a divisor of a number that is not 0.
     ///
     /// # Format
-    /// The table is within 2⁻⁹ where the reciprocal is near 2¹⁶, within 2⁻¹⁰ where it is near 2¹⁵; a step of Newton's squares
-    /// that, to 1/4 or 1/32 of a unit, and rounds by 1/2: times x16 below 2¹⁵·¹.
+    /// The table is within 2⁻⁹ where the reciprocal is near 2¹⁶, within 2⁻¹⁰ where it is near 2¹⁵. One Newton step
+    /// squares that to 1/4 or 1/32 of a unit, and rounds by 1/2. The defect is this sum times x16, below 2¹⁵·¹.
     #[inline(always)]
     pub const fn new(q: u32) -> Self {
         let shift = leading_zeros(q) & 31;
@@ -265,17 +277,17 @@ impl ShortDivisor {
         Self { shift, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(x16.wrapping_mul(r)) }
     }
 
-    /// How many bits bring the divisor to 2³¹..2³².
+    /// Returns the number of bits that the divisor is shifted by to reach 2³¹..2³².
     #[inline(always)]
     pub const fn shift(&self) -> u32 {
         self.shift
     }
 
-    /// `n` / q · 2^(47 - shift), 47 - shift fractional bits.
+    /// Returns `n` / q · 2^(47 - shift): the quotient with 47 - shift fractional bits.
     ///
     /// # Format
-    /// |n| ≤ 2¹⁴: the result is below 2³⁰ and a little. Off by less than 0.55 for rounding and 2⁻³¹·⁸ of itself, and then rounded
-    /// down.
+    /// |n| ≤ 2¹⁴: the result is below 2³⁰ and a little. Before it is rounded down, it is off by less than 0.55 for
+    /// rounding and by 2⁻³¹·⁸ of its value.
     #[inline(always)]
     pub const fn divide(&self, n: i32) -> i32 {
         let h = n.wrapping_mul(self.reciprocal);
@@ -283,23 +295,23 @@ impl ShortDivisor {
     }
 }
 
-/// [`Divisor`], with what the table knows for a reciprocal.
+/// A divisor whose reciprocal comes straight from the table: shorter and less exact than a [`Divisor`].
 #[derive(Clone, Copy, Debug)]
 pub struct CoarseDivisor {
-    /// 2⁴⁷ / x within 2⁻⁹: 16 bits.
+    /// 2⁴⁷ / x within 2⁻⁹, in 16 bits.
     reciprocal: i32,
-    /// 2²⁵ - x `reciprocal` / 2²²: below 2¹⁶·¹.
+    /// Defect of the reciprocal, 2²⁵ - x `reciprocal` / 2²²: below 2¹⁶·¹.
     defect: i32,
 }
 
 impl CoarseDivisor {
-    /// Of a number with its top bit set.
+    /// Makes a divisor of a number whose top bit is set.
     #[inline(always)]
     pub fn of_normalized(x: u32) -> Self {
         let r = SEED[(x >> 23) as usize & 0xFF] as u32;
         let defect = if SMALL_CORE {
             let product = (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16);
-            // 2³¹ without its bit: the difference fits 31 bits.
+            // The subtraction from 2³¹ is a negation without that bit: the difference fits 31 bits.
             (product.wrapping_neg() << 1) as i32 >> 7
         } else {
             (1_i32 << 31).wrapping_sub(mul_high(x, r << 16) as i32) >> 6
@@ -307,10 +319,11 @@ impl CoarseDivisor {
         Self { reciprocal: r as i32, defect }
     }
 
-    /// `n` / x as 1.31.
+    /// Returns `n` / x in 1.31.
     ///
     /// # Format
-    /// |n| < x / 4. Off by less than 2⁻¹⁸ of the quotient, the square of the table's error, and 192 units for bits cut.
+    /// |n| < x / 4. The error is less than 2⁻¹⁸ of the quotient, which is the square of the table's error, and 192
+    /// units for the bits that are cut.
     #[inline(always)]
     pub fn divide_normalized(&self, n: i32) -> i32 {
         if SMALL_CORE {
@@ -318,7 +331,8 @@ impl CoarseDivisor {
             let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
             h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 9)
         } else {
-            // The same in two instructions, each of 32 by 16 bits: the reciprocal less 2¹⁶ fits 16 bits and a sign.
+            // Bit for bit as above, by two instructions that multiply 32 by 16 bits: the reciprocal less 2¹⁶ fits 16
+            // bits and a sign.
             let times = |a: i32, b: i16| ((i64::from(a) * i64::from(b)) >> 16) as i32;
             let h = n.wrapping_add(times(n, self.reciprocal as i16));
             h.wrapping_add(times(self.defect << 7, (h >> 16) as i16))
@@ -405,7 +419,7 @@ mod tests {
         assert!(worst.0 > -1.55 && worst.1 < 0.55, "{worst:?}");
     }
 
-    /// Worst relative error over `count` inputs from a multiplicative walk, against exact division.
+    /// Returns the worst relative error over `inputs`, against exact division.
     fn worst(inputs: impl Iterator<Item = u32>) -> f64 {
         inputs
             .map(|x| {

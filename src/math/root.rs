@@ -1,12 +1,14 @@
 //! Square roots without a divider.
 
-/// The square root, rounded down.
+/// Returns the square root, rounded down.
 ///
-/// Bit by bit: shorter than `u32::isqrt`, whose table and divisions small programs need not link.
+/// It is found bit by bit. This is less code than `u32::isqrt`, whose table and divisions small programs need not
+/// link.
 pub const fn isqrt(square: u32) -> u32 {
     let (mut rest, mut root, mut bit) = (square, 0, 1 << 30);
     while bit != 0 {
-        // (root + bit)² exceeds root² by this, all of it shifted up by as many bits as are still to come.
+        // `step` is the amount by which (root + bit)² exceeds root². All of it is shifted up by the number of bits
+        // still to come.
         let step = root + bit;
         root >>= 1;
         if rest >= step {

@@ -3,7 +3,7 @@
 use super::format::Scalar;
 use core::ops::{Add, AddAssign, Div, DivAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
-/// A point or direction: three [`Scalar`]s. Arithmetic saturates, so nothing here can panic or wrap.
+/// A point or direction of three [`Scalar`]s. Its arithmetic saturates, so nothing here can panic or wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Vec3 {
     /// Right.
@@ -14,7 +14,7 @@ pub struct Vec3 {
     pub z: Scalar,
 }
 
-/// `value`, a 16.16 in 64 bits, saturated to 32.
+/// Saturates `value`, a 16.16 in 64 bits, to 32.
 pub(super) const fn saturate(value: i64) -> Scalar {
     if value > i32::MAX as i64 {
         Scalar::MAX
@@ -47,7 +47,7 @@ impl Vec3 {
         Self::from_bits([(x as i32) << 16, (y as i32) << 16, (z as i32) << 16])
     }
 
-    /// Makes a vector of thousandths: a readable way to write constants, rounded down to 2⁻¹⁶.
+    /// Makes a vector of thousandths, rounded down to 2⁻¹⁶: a readable way to write constants.
     #[must_use]
     pub const fn from_milli(x: i32, y: i32, z: i32) -> Self {
         Self::new(
@@ -94,7 +94,8 @@ impl Vec3 {
         if root > i32::MAX as u64 { Scalar::MAX } else { Scalar::from_bits(root as i32) }
     }
 
-    /// Returns the vector of length 1 in its direction, each component within 2⁻¹⁵; `None` for the zero vector.
+    /// Returns the vector of length 1 in the direction of this one, each component within 2⁻¹⁵; `None` for the zero
+    /// vector.
     #[must_use]
     pub const fn normalized(self) -> Option<Self> {
         let bits = self.to_bits();
@@ -105,7 +106,7 @@ impl Vec3 {
         }
         let shift = widest.leading_zeros();
         let a = [(bits[0] as i64) << shift, (bits[1] as i64) << shift, (bits[2] as i64) << shift];
-        // |a| <= 2³², so the squares are taken of a / 4.
+        // |a| ≤ 2³², so the squares are those of a / 4.
         let b = [a[0] >> 2, a[1] >> 2, a[2] >> 2];
         let length = ((b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) as u64).isqrt() as i64;
         if length == 0 {
@@ -125,7 +126,7 @@ impl Vec3 {
     }
 }
 
-/// `a b - c d` of 16.16 numbers: the products are halved so that the difference fits 64 bits.
+/// Returns `a b - c d` of 16.16 numbers. The products are halved, so that the difference fits 64 bits.
 const fn minor(a: i32, b: i32, c: i32, d: i32) -> Scalar {
     saturate((((a as i64 * b as i64) >> 1) - ((c as i64 * d as i64) >> 1)) >> 15)
 }
@@ -178,7 +179,8 @@ impl MulAssign<Scalar> for Vec3 {
 
 impl Div<Scalar> for Vec3 {
     type Output = Self;
-    /// Divides each component, rounded towards 0. Divided by 0, a component becomes the largest or smallest number, 0 stays 0.
+    /// Divides each component, rounded towards 0. Division by 0 gives the largest or the smallest number, and 0 for
+    /// 0.
     fn div(self, divisor: Scalar) -> Self {
         let quotient = |component: Scalar| match (i64::from(component.to_bits()) << 16)
             .checked_div(i64::from(divisor.to_bits()))

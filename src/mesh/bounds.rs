@@ -2,9 +2,9 @@
 
 use crate::math::Vec3;
 
-/// Holds all of a mesh, or of a part of it: an axis-aligned box by centre and half size.
+/// The bounds of a mesh or of a part of it: an axis-aligned box, by its centre and half its size.
 ///
-/// Raw 16.16; the half size is rounded up, so that nothing sticks out.
+/// The numbers are 16.16. The half size is rounded up, so that nothing sticks out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Bounds {
     /// Middle of the box.
@@ -15,8 +15,8 @@ pub struct Bounds {
 
 /// A node of a hierarchy of bounds, flattened in depth-first order.
 ///
-/// A node that is out of view is skipped with everything below it: traversal goes on at `skip`. A node whose `triangles`
-/// are not empty is a leaf that draws them. No recursion, no stack.
+/// A node that is out of view is skipped together with everything below it: the traversal goes on at `skip`. A node
+/// whose `triangles` are not 0 is a leaf, and draws them. So the traversal needs no recursion and no stack.
 ///
 /// ```text
 ///        0            nodes: 0 1 2 3 4
@@ -37,14 +37,15 @@ pub struct BoundsNode {
     pub triangles: u16,
 }
 
-/// The box between two corners, in 64-bit raw 16.16, its half size rounded up.
+/// Returns the box between two corners, given as 64-bit raw 16.16. Half its size is rounded up.
 pub(super) const fn bounding_box(min: [i64; 3], max: [i64; 3]) -> Bounds {
     let mut center = [0; 3];
     let mut half = [0; 3];
     let mut k = 0;
     while k < 3 {
         center[k] = clamp_bits((min[k] + max[k]) >> 1);
-        // The centre may have been clamped or rounded: cover both ends from where it is.
+        // The centre may have been clamped or rounded. The half size covers both ends, measured from the stored
+        // centre.
         let (up, down) = (max[k] - center[k] as i64, center[k] as i64 - min[k]);
         half[k] = clamp_bits(if up > down { up } else { down });
         k += 1;

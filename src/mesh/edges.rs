@@ -1,14 +1,15 @@
-//! Edges of a mesh, each once: what its wireframe draws.
+//! Edges of a mesh, each once, for drawing its wireframe: a mesh comes in, pairs of vertex numbers go out, in
+//! ascending order and without doubles.
 
 use super::mesh::Mesh;
 use core::fmt;
 
-/// An error of [`edges`]: the edges of a mesh do not fit.
+/// The error of [`edges`] when the edges of a mesh do not fit the room.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct EdgesError {
-    /// Number of edges there is room for.
+    /// Number of edges that there is room for.
     pub room: usize,
 }
 
@@ -20,12 +21,12 @@ impl fmt::Display for EdgesError {
 
 impl core::error::Error for EdgesError {}
 
-/// Finds the edges of a mesh, each once however many triangles share it, by the numbers of its vertices, the lower one first;
-/// they come in ascending order.
+/// Finds the edges of a mesh, each once, however many triangles share it. An edge is the numbers of its two vertices,
+/// the lower one first. Edges come in ascending order.
 ///
-/// It is `const`, so that edges may lie in flash beside their mesh, and draws on no memory but the room that is lent: as
-/// many places as there are edges will do, though three a triangle are faster. Diagonals of
-/// [quads](crate::mesh::Topology::Quads) are no edges.
+/// It is `const`, so that edges may lie in flash beside their mesh. It uses no memory but `room`. As many places as
+/// there are edges are enough, though three places per triangle are faster. Diagonals of
+/// [quads](crate::mesh::Topology::Quads) are not edges.
 ///
 /// ```
 /// use zstrip::mesh::{Lines, Mesh, MeshData, Positions, edges};
@@ -42,10 +43,10 @@ impl core::error::Error for EdgesError {}
 /// ```
 ///
 /// # Errors
-/// When there is too little room.
+/// If `room` is too short.
 pub const fn edges<'e>(mesh: &Mesh<'_>, room: &'e mut [[u16; 2]]) -> Result<&'e mut [[u16; 2]], EdgesError> {
     let quads = matches!(mesh.data().topology, crate::mesh::Topology::Quads);
-    // Entries, and how many of them are in order: the rest may be there twice.
+    // `count` entries are in the list. The first `sorted` of them are in order and single; the others may be doubles.
     let (mut count, mut sorted) = (0, 0);
     let mut triangle = 0;
     while let Some([a, b, c]) = mesh.triangle(triangle) {
@@ -56,7 +57,8 @@ pub const fn edges<'e>(mesh: &Mesh<'_>, room: &'e mut [[u16; 2]]) -> Result<&'e 
                 1 => (b, c),
                 _ => (c, a),
             };
-            // (0, 1, 2) and (0, 2, 3): the diagonal is the last side of the one, the first of the other.
+            // A quad is (0, 1, 2) and (0, 2, 3): the diagonal is the last side of the first triangle, and the first
+            // side of the second.
             let diagonal = quads && side == if triangle & 1 == 0 { 2 } else { 0 };
             side += 1;
             let edge = if from < to { [from, to] } else { [to, from] };
@@ -79,11 +81,11 @@ pub const fn edges<'e>(mesh: &Mesh<'_>, room: &'e mut [[u16; 2]]) -> Result<&'e 
         triangle += 1;
     }
     count = each_once(room, count);
-    // `each_once` yields no more than it was given.
+    // `each_once` returns no more than it was given.
     Ok(if count <= room.len() { room.split_at_mut(count).0 } else { room })
 }
 
-/// Whether the first `sorted` entries, in ascending order, hold an edge.
+/// Returns true if the first `sorted` entries, which are in ascending order, hold an edge.
 const fn holds(list: &[[u16; 2]], sorted: usize, edge: [u16; 2]) -> bool {
     let (mut low, mut high) = (0, sorted);
     while low < high {
@@ -101,15 +103,15 @@ const fn key([a, b]: [u16; 2]) -> u32 {
     (a as u32) << 16 | b as u32
 }
 
-/// An entry; edge (0, 0), which there is not, past the end.
+/// Returns an entry; past the end, the edge (0, 0), which no mesh has.
 const fn get(list: &[[u16; 2]], at: usize) -> [u16; 2] {
     if at < list.len() { list[at] } else { [0; 2] }
 }
 
-/// Sorts the first `count` entries and leaves out what is there twice: how many are left.
+/// Sorts the first `count` entries, removes doubles, and returns the number that is left.
 ///
 /// # Source
-/// Williams 1964, "Heapsort": in place, and fast for any order.
+/// Williams 1964, "Heapsort": it sorts in place, and is fast for any order.
 const fn each_once(list: &mut [[u16; 2]], count: usize) -> usize {
     let list = if count < list.len() { list.split_at_mut(count).0 } else { list };
     let mut root = list.len() / 2;
@@ -139,9 +141,9 @@ const fn each_once(list: &mut [[u16; 2]], count: usize) -> usize {
     kept
 }
 
-/// Puts an item into a heap, at `root` or below, where those below are in order.
+/// Puts an item into a heap at `root` or below it, where the entries below `root` are in heap order.
 ///
-/// The compiler runs it for edges in flash, step by step: the loop does little.
+/// The compiler interprets this function for edges in flash, so the loop does little per round.
 const fn sink(heap: &mut [[u16; 2]], mut root: usize, item: [u16; 2]) {
     let sunk = key(item);
     let mut child = 2 * root + 1;

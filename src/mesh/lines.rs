@@ -1,4 +1,4 @@
-//! Lines and points: vertices as a mesh has them, and how they are joined.
+//! Lines and points: vertices like those of a mesh, and how they are joined, checked once.
 
 use super::bounds::Bounds;
 use super::mesh::{Mesh, MeshData, MeshError, Positions};
@@ -21,22 +21,22 @@ pub struct Vertices<'a> {
     pub positions: Positions<'a>,
     /// Unit normals per vertex, 2.14 ([`NORMAL_ONE`](crate::light::NORMAL_ONE) is 1).
     pub normals: Option<&'a [[i16; 3]]>,
-    /// Colours per vertex: red, green, blue, a byte each as they lie in flash.
+    /// Colours per vertex: red, green and blue, a byte each, as they lie in flash.
     pub colors: Option<&'a [[u8; 3]]>,
     /// Texture coordinates per vertex, u to the right and v down, 1 = the whole texture.
     pub uvs: Option<&'a [[Scalar; 2]]>,
-    /// Bounds, where they are known better than a pass over the positions would find.
+    /// Bounds, if they are known: they save a pass over the positions.
     pub bounds: Option<Bounds>,
 }
 
 impl<'a> Vertices<'a> {
-    /// Positions and nothing else.
+    /// Makes vertices with positions and nothing else.
     #[must_use]
     pub const fn new(positions: Positions<'a>) -> Self {
         Self { positions, normals: None, colors: None, uvs: None, bounds: None }
     }
 
-    /// Checks the slices: a mesh without triangles.
+    /// Checks the slices, and returns them as a mesh without triangles.
     const fn mesh(&self) -> Result<Mesh<'a>, MeshError> {
         Mesh::new(MeshData {
             indices: Some(&[]),
@@ -49,10 +49,10 @@ impl<'a> Vertices<'a> {
     }
 }
 
-/// How vertices, or indices, form lines.
+/// Topology of lines: the way in which vertices, or indices, form lines.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LineTopology {
-    /// Two for each line.
+    /// Two vertices for each line.
     #[default]
     Pairs,
     /// Each vertex after the first makes a line with its predecessor.
@@ -80,9 +80,9 @@ pub enum LineTopology {
 pub struct Lines<'a> {
     vertices: Mesh<'a>,
     indices: Option<&'a [u16]>,
-    /// Number of indices, or of vertices without them.
+    /// Number of indices, or of vertices if there are no indices.
     ends: usize,
-    /// Ends from one line to the next: 1 or 2.
+    /// Step from the first end of a line to that of the next: 1 or 2.
     step: usize,
     count: usize,
 }
@@ -90,10 +90,11 @@ pub struct Lines<'a> {
 impl<'a> Lines<'a> {
     /// Checks the slices against each other and finds the bounds, unless they are given.
     ///
-    /// `indices` are vertex numbers, joined as `topology` says; without them the vertices are joined as they stand.
+    /// `indices` are vertex numbers, joined as `topology` says. Without indices, vertices are joined in the order in
+    /// which they stand.
     ///
     /// # Errors
-    /// The first thing found wrong, with the offending index or count.
+    /// The first mistake found, with the offending index or count.
     pub const fn new(
         vertices: Vertices<'a>,
         topology: LineTopology,
@@ -128,10 +129,10 @@ impl<'a> Lines<'a> {
         Ok(Self { vertices, indices, ends, step, count })
     }
 
-    /// Makes `const` and `static` lines as [`new`](Self::new) does: those that are wrong do not compile.
+    /// Makes `const` and `static` lines as [`new`](Self::new) does. Lines with a mistake do not compile.
     ///
     /// # Panics
-    /// When the lines are wrong. Called at run time instead of in a constant, prefer [`new`](Self::new).
+    /// When the lines have a mistake. At run time, outside of constants, prefer [`new`](Self::new).
     #[must_use]
     pub const fn constant(vertices: Vertices<'a>, topology: LineTopology, indices: Option<&'a [u16]>) -> Self {
         match Self::new(vertices, topology, indices) {
@@ -165,7 +166,7 @@ impl<'a> Lines<'a> {
             return None;
         }
         let (from, mut to) = (n * self.step, n * self.step + 1);
-        // Only a loop has a line that begins at the last end.
+        // Only a loop has a line that begins at the last end; it goes back to the first.
         if to == self.ends {
             to = 0;
         }
@@ -192,7 +193,7 @@ impl<'a> Points<'a> {
     /// Checks the slices against each other and finds the bounds, unless they are given. Each vertex is a point.
     ///
     /// # Errors
-    /// The first thing found wrong, with the offending count.
+    /// The first mistake found, with the offending count.
     pub const fn new(vertices: Vertices<'a>) -> Result<Self, MeshError> {
         match vertices.mesh() {
             Ok(vertices) => Ok(Self { vertices }),
@@ -200,10 +201,10 @@ impl<'a> Points<'a> {
         }
     }
 
-    /// Makes `const` and `static` points as [`new`](Self::new) does: those that are wrong do not compile.
+    /// Makes `const` and `static` points as [`new`](Self::new) does. Points with a mistake do not compile.
     ///
     /// # Panics
-    /// When the points are wrong. Called at run time instead of in a constant, prefer [`new`](Self::new).
+    /// When the points have a mistake. At run time, outside of constants, prefer [`new`](Self::new).
     #[must_use]
     pub const fn constant(vertices: Vertices<'a>) -> Self {
         match Self::new(vertices) {

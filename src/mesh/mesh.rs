@@ -10,7 +10,8 @@ use core::fmt;
 /// Positions of the vertices of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Positions<'a> {
-    /// Fractions of a cube, 6 bytes per vertex: position = `offset` + `scale` · q / 32,768. The fastest and smallest.
+    /// Fractions of a cube, 6 bytes per vertex: position = `offset` + `scale` · q / 32,768. This is the fastest and
+    /// smallest format.
     Quantized {
         /// Fractions, 1.15.
         points: &'a [[i16; 3]],
@@ -26,7 +27,8 @@ pub enum Positions<'a> {
 }
 
 impl Positions<'_> {
-    /// The numbers of a position as they are, 0 past the end; 0 for the w of those without.
+    /// Returns the stored numbers of a position. It returns 0 past the end, and 0 as the w of positions that have
+    /// none.
     #[inline(never)]
     pub(crate) fn numbers(&self, index: usize) -> [i32; 4] {
         match self {
@@ -43,17 +45,18 @@ impl Positions<'_> {
     }
 }
 
-/// How vertices, or indices, form triangles. A counter-clockwise triangle (y up) is a front face.
+/// Topology of a mesh: the way in which vertices, or indices, form triangles. A counter-clockwise triangle (y up) is
+/// a front face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Topology {
-    /// Three for each triangle.
+    /// Three vertices for each triangle.
     #[default]
     Triangles,
     /// Each vertex after the second makes a triangle with its two predecessors; every other triangle is turned round.
     Strip,
     /// Each vertex after the second makes a triangle with its predecessor and the first.
     Fan,
-    /// Four for each quad, corners in order; drawn as (0, 1, 2) and (0, 2, 3).
+    /// Four vertices for each quad, corners in order; drawn as (0, 1, 2) and (0, 2, 3).
     Quads,
 }
 
@@ -73,27 +76,27 @@ pub enum Topology {
 pub struct MeshData<'a> {
     /// Vertex positions, at most 65,535.
     pub positions: Positions<'a>,
-    /// How vertices form triangles.
+    /// Topology: the way in which vertices form triangles.
     pub topology: Topology,
-    /// Vertex numbers in drawing order; without them the vertices are drawn as they stand.
+    /// Vertex numbers in drawing order. Without them, vertices are drawn in the order in which they stand.
     pub indices: Option<&'a [u16]>,
     /// Unit normals per vertex, 2.14 ([`NORMAL_ONE`](crate::light::NORMAL_ONE) is 1).
     pub normals: Option<&'a [[i16; 3]]>,
-    /// Unit normals per triangle, 2.14, for flat shading; computed from the positions where absent.
+    /// Unit normals per triangle, 2.14, for flat shading. Without them, they are computed from the positions.
     pub face_normals: Option<&'a [[i16; 3]]>,
-    /// Colours per vertex: red, green, blue, a byte each, as they lie in flash.
+    /// Colours per vertex: red, green and blue, a byte each, as they lie in flash.
     pub colors: Option<&'a [[u8; 3]]>,
     /// Texture coordinates per vertex, u to the right and v down, 1 = the whole texture.
     pub uvs: Option<&'a [[Scalar; 2]]>,
-    /// Bounds, where they are known better than a pass over the positions would find.
+    /// Bounds, if they are known: they save a pass over the positions.
     pub bounds: Option<Bounds>,
-    /// A hierarchy of bounds over the triangles; see [`BoundsNode`]. Each triangle belongs into one leaf, whose bounds and
-    /// those of the nodes above have to hold it: what is in no leaf is not drawn.
+    /// A hierarchy of bounds over the triangles; see [`BoundsNode`]. Each triangle belongs into one leaf. The bounds
+    /// of this leaf and of all nodes above it must hold the triangle. Triangles in no leaf are not drawn.
     pub hierarchy: Option<&'a [BoundsNode]>,
 }
 
 impl<'a> MeshData<'a> {
-    /// A list of triangles: positions and nothing else.
+    /// Makes a list of triangles with positions and nothing else.
     #[must_use]
     pub const fn new(positions: Positions<'a>) -> Self {
         Self {
@@ -132,11 +135,11 @@ pub enum MeshError {
         /// Number of triangles.
         triangles: usize,
     },
-    /// The indices (or vertices, without indices) are not as many as whole triangles, quads or lines take.
+    /// The number of indices (of vertices, without indices) does not make up whole triangles, quads or lines.
     Incomplete {
         /// Number of indices.
         indices: usize,
-        /// Indices of one triangle, quad or line; of a strip, fan or loop, the fewest that it has.
+        /// Indices of one triangle, quad or line. For a strip, fan or loop: the smallest number that it can have.
         unit: usize,
     },
     /// An index points past the last vertex.
@@ -148,28 +151,28 @@ pub enum MeshError {
         /// Number of vertices.
         vertices: usize,
     },
-    /// The normals are not as many as the vertices.
+    /// The number of normals is not that of the vertices.
     Normals {
         /// Number of normals.
         normals: usize,
         /// Number of vertices.
         vertices: usize,
     },
-    /// The face normals are not as many as the triangles.
+    /// The number of face normals is not that of the triangles.
     FaceNormals {
         /// Number of face normals.
         face_normals: usize,
         /// Number of triangles.
         triangles: usize,
     },
-    /// The colours are not as many as the vertices.
+    /// The number of colours is not that of the vertices.
     Colors {
         /// Number of colours.
         colors: usize,
         /// Number of vertices.
         vertices: usize,
     },
-    /// The texture coordinates are not as many as the vertices.
+    /// The number of texture coordinates is not that of the vertices.
     Uvs {
         /// Number of texture coordinates.
         uvs: usize,
@@ -181,14 +184,14 @@ pub enum MeshError {
         /// The scale.
         scale: Scalar,
     },
-    /// A node of the hierarchy does not skip forward within it, or its triangles are out of range.
+    /// A node of the hierarchy does not skip forward to a node or to the end, or its triangles are out of range.
     Hierarchy {
         /// Number of the node.
         node: usize,
         /// Number of nodes.
         nodes: usize,
     },
-    /// The given bounds do not hold a vertex.
+    /// A vertex is outside of the given bounds.
     Bounds {
         /// Number of the vertex.
         vertex: usize,
@@ -228,7 +231,7 @@ impl fmt::Display for MeshError {
 
 impl core::error::Error for MeshError {}
 
-/// Returns an error when there is a slice, and its length is not `expected`.
+/// Returns an error if there is a slice and its length is not `expected`.
 macro_rules! check_length {
     ($slice:expr, $expected:expr, $error:ident { $found:ident, $count:ident }) => {
         if let Some(slice) = $slice {
@@ -243,7 +246,7 @@ impl<'a> Mesh<'a> {
     /// Checks the slices against each other and finds the bounds, unless they are given.
     ///
     /// # Errors
-    /// The first thing found wrong, with the offending index or count.
+    /// The first mistake found, with the offending index or count.
     pub const fn new(data: MeshData<'a>) -> Result<Self, MeshError> {
         let vertices = match data.positions {
             Positions::Quantized { points, scale, .. } => {
@@ -307,10 +310,10 @@ impl<'a> Mesh<'a> {
         Ok(Self { data, bounds, triangles: triangles as u16 })
     }
 
-    /// Makes a `const` or `static` mesh as [`new`](Self::new) does: one that is wrong does not compile.
+    /// Makes a `const` or `static` mesh as [`new`](Self::new) does. A mesh with a mistake does not compile.
     ///
     /// # Panics
-    /// When the mesh is wrong. Called at run time instead of in a constant, prefer [`new`](Self::new).
+    /// When the mesh has a mistake. At run time, outside of constants, prefer [`new`](Self::new).
     #[must_use]
     pub const fn constant(data: MeshData<'a>) -> Self {
         match Self::new(data) {
@@ -331,29 +334,30 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Returns the number of triangles, after strips, fans and quads are taken apart.
+    /// Returns the number of triangles that the strip, fan, quads or list consists of.
     #[must_use]
     pub const fn triangle_count(&self) -> usize {
         self.triangles as usize
     }
 
-    /// Returns the slices.
+    /// Returns the slices that the mesh borrows.
     #[must_use]
     pub const fn data(&self) -> &MeshData<'a> {
         &self.data
     }
 
-    /// Returns the box around all vertices, in object space; w of homogeneous positions does not count.
+    /// Returns the box around all vertices, in object space. The w of homogeneous positions is ignored.
     #[must_use]
     pub const fn bounds(&self) -> &Bounds {
         &self.bounds
     }
 
-    /// Returns the vertex numbers of triangle `n` in drawing order, winding kept; `None` past the last.
+    /// Returns the vertex numbers of triangle `n` in drawing order, with the winding kept; `None` past the last
+    /// triangle.
     #[inline]
     #[must_use]
     pub const fn triangle(&self, n: usize) -> Option<[u16; 3]> {
-        // The usual mesh, by the shortest way.
+        // The usual kind of mesh, a list with indices, takes the shortest way.
         if let (Topology::Triangles, Some(indices)) = (self.data.topology, self.data.indices) {
             return match indices.split_at_checked(3 * n) {
                 Some((_, [a, b, c, ..])) => Some([*a, *b, *c]),
@@ -363,7 +367,7 @@ impl<'a> Mesh<'a> {
         self.any_triangle(n)
     }
 
-    /// [`triangle`](Self::triangle), of any mesh in the same way.
+    /// Returns [`triangle`](Self::triangle) for a mesh of any topology, with or without indices.
     #[inline(never)]
     pub(crate) const fn any_triangle(&self, n: usize) -> Option<[u16; 3]> {
         if n >= self.triangles as usize {
@@ -371,7 +375,7 @@ impl<'a> Mesh<'a> {
         }
         let at = match self.data.topology {
             Topology::Triangles => [3 * n, 3 * n + 1, 3 * n + 2],
-            // Odd triangles of a strip swap the first two corners, so that all face the same way.
+            // Odd triangles of a strip swap their first two corners, so that all triangles face the same way.
             Topology::Strip => [n + (n & 1), n + 1 - (n & 1), n + 2],
             Topology::Fan => [0, n + 1, n + 2],
             Topology::Quads => {
@@ -388,7 +392,7 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    /// Returns the position of a vertex, rounded to 16.16 and saturated; `Homogeneous` positions without their w.
+    /// Returns the position of a vertex, rounded to 16.16 and saturated. `Homogeneous` positions lose their w.
     #[must_use]
     pub fn position(&self, vertex: usize) -> Vec3 {
         match self.data.positions {
@@ -407,7 +411,7 @@ impl<'a> Mesh<'a> {
     }
 }
 
-/// Coordinates of a vertex as they are stored.
+/// Returns the coordinates of a vertex as they are stored.
 const fn stored(positions: &Positions<'_>, vertex: usize) -> [i64; 3] {
     match positions {
         Positions::Quantized { points, .. } => {
@@ -425,7 +429,8 @@ const fn stored(positions: &Positions<'_>, vertex: usize) -> [i64; 3] {
     }
 }
 
-/// Stored coordinates times the unit, 2⁻³¹, and the origin, raw 16.16, are the exact position.
+/// Returns the unit, in 2⁻³¹, and the origin, in raw 16.16. Stored coordinates times the unit, plus the origin, are
+/// the exact position.
 const fn unit_and_origin(positions: &Positions<'_>) -> (i64, [i64; 3]) {
     match positions {
         Positions::Quantized { scale, offset, .. } => {
@@ -436,7 +441,7 @@ const fn unit_and_origin(positions: &Positions<'_>) -> (i64, [i64; 3]) {
     }
 }
 
-/// Returns the first vertex that is not in the box, give or take the rounding of quantized positions.
+/// Returns the first vertex that is outside of the box, with a tolerance for the rounding of quantized positions.
 const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) -> Option<usize> {
     let (unit, origin) = unit_and_origin(positions);
     let (center, half) = (bounds.center.to_bits(), bounds.half.to_bits());
@@ -458,7 +463,7 @@ const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) ->
 
 /// Finds the box of all positions.
 ///
-/// The compiler runs it for `static` meshes of many vertices, step by step: loops over them do little.
+/// The compiler interprets this function for `static` meshes of many vertices, so its loops do little per round.
 const fn find_bounds(positions: &Positions<'_>, vertices: usize) -> Bounds {
     if vertices == 0 {
         return bounding_box([0; 3], [0; 3]);
@@ -488,7 +493,7 @@ const fn find_bounds(positions: &Positions<'_>, vertices: usize) -> Bounds {
         }
         k += 1;
     }
-    // Rounded outwards: quantized positions are rounded wherever they are used.
+    // The box is rounded outwards, since quantized positions are rounded wherever they are used.
     let mut axis = 0;
     while axis < 3 {
         min[axis] = ((min[axis] * unit) >> 15) + origin[axis];

@@ -3,33 +3,35 @@
 use super::bounds::Bounds;
 use crate::math::Projective;
 
-/// Returns the distance of the middle of `bounds` along the axis of a camera, as `mvp` sees it: w of its centre, 32.32, saturated.
+/// Returns the distance of the middle of `bounds` along the axis of the camera of `mvp`: the w of its centre, 32.32,
+/// saturated.
 #[must_use]
 pub fn view_depth(mvp: &Projective, bounds: &Bounds) -> i64 {
     let [x, y, z] = bounds.center.to_bits();
     let row = mvp.to_rows()[3];
-    // Entries of 32.32 by coordinates of 16.16, the upper half of the entry and the lower one.
+    // Entries are 32.32, coordinates are 16.16. The upper and the lower half of an entry are multiplied apart.
     let times = |entry: i64, c: i32| {
         (entry >> 16).saturating_mul(i64::from(c)).saturating_add(((entry & 0xFFFF) * i64::from(c)) >> 16)
     };
     times(row[0], x).saturating_add(times(row[1], y)).saturating_add(times(row[2], z)).saturating_add(row[3])
 }
 
-/// Sorts draws, or numbers of draws, by their depth, the farthest first; those of one depth keep their order.
+/// Sorts draws, or numbers of draws, by their depth, the farthest first. Draws of equal depth keep their order.
 ///
-/// Blending needs this order, since a colour is mixed with the one that is already there; adding and multiplying alone do not.
-/// A scene without a depth buffer needs it for all of its draws. Sort once per frame, before the frame's closure, which has to
-/// draw in one order each time it is called:
+/// Blending needs this order, since a colour is mixed with the one that is already there. Blending that only adds or
+/// only multiplies does not. A scene without a depth buffer needs the order for all of its draws. Sort once per
+/// frame, outside of the frame's closure, since each call of the closure must draw in one order:
 ///
 /// 1. everything opaque, in any order, best from front to back;
-/// 2. everything transparent, from back to front, with [`DepthState::TEST`](crate::span::DepthState::TEST): opaque things in
-///    front hide it, and it hides nothing;
+/// 2. everything transparent, from back to front, with [`DepthState::TEST`](crate::span::DepthState::TEST): opaque
+///    things in front hide it, and it hides nothing;
 /// 3. light that is added, such as sparks.
 ///
-/// Closed meshes that are transparent are best drawn twice, back faces first.
+/// A closed transparent mesh is best drawn twice, its back faces first.
 ///
-/// Insertion sort: it needs no memory, and `depth` is called once per comparison. Starting from the order of the previous frame, a
-/// list that is still sorted takes one comparison per draw. For tens or hundreds of draws, not for thousands.
+/// This is an insertion sort. It needs no memory, and calls `depth` once per comparison. If the list starts in the
+/// order of the previous frame and is still sorted, it takes one comparison per draw. It suits tens or hundreds of
+/// draws, not thousands.
 ///
 /// ```
 /// use zstrip::mesh::sort_back_to_front;
