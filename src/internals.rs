@@ -1,5 +1,5 @@
-//! Parts of the crate that its own tests, examples and measurements look at. They are no part of its interface: they change
-//! without notice.
+//! Parts of the crate that its own tests, examples and measurements use. They are not part of its interface, and
+//! change without notice.
 
 pub use crate::raster::{Line, PixelRect, spans, square};
 pub use crate::vertex::clip::{ClipVertex, DepthSlab, Outcode, clip_triangle, weighted};

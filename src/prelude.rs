@@ -1,7 +1,7 @@
 //! Names that a first program needs: `use zstrip::prelude::*;`.
 //!
-//! It may stand beside `use embedded_graphics::prelude::*;`: a name that both have is one item. That is why binary angles are
-//! called [`Angle16`]: embedded-graphics' prelude has an `Angle`, an `f32`.
+//! It may stand beside `use embedded_graphics::prelude::*;`: a name that is in both is one item. Binary angles are
+//! called [`Angle16`], since embedded-graphics' prelude has an `Angle`, an `f32`.
 //!
 //! ```
 //! use zstrip::prelude::*;

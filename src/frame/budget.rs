@@ -3,7 +3,7 @@
 use crate::color::PixelFormat;
 use crate::target::records_len;
 
-/// Bytes of the buffers a frame is drawn with; `const`, so that a program can assert that they fit.
+/// Bytes of the buffers that a frame is drawn with. It is `const`, so that a program can assert that they fit.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb565;
@@ -31,7 +31,7 @@ impl RamBudget {
         Self { color: pixels * size_of::<P::Raw>(), depth: pixels * 2, records: 0, rows }
     }
 
-    /// Leaves out the depth buffer: for what is drawn in the painter's order, and for 2-D drawing.
+    /// Leaves out the depth buffer, for scenes drawn from back to front and for 2-D drawing.
     #[must_use]
     pub const fn without_depth(self) -> Self {
         Self { depth: 0, ..self }

@@ -11,7 +11,7 @@ use embedded_graphics_core::geometry::Size;
 #[derive(Clone, Copy, Debug)]
 struct Grid {
     viewport: Viewport,
-    /// Rows that the depth buffer holds, or of the screen if those are fewer.
+    /// Rows that the depth buffer holds, or rows of the screen if they are fewer.
     most_rows: u16,
     /// Strips of the frame at hand.
     strips: StripRows,
@@ -38,7 +38,7 @@ impl Grid {
         self.strips.of(u32::from(self.viewport.height() - row) - 1) as u16 + 1
     }
 
-    /// Returns the first row of a number of strips that begin at `row`, and the row behind their last one.
+    /// Returns the first row of a number of strips that begin at `row`, and the row after their last one.
     fn band(&self, row: u16, strips: u16) -> (u16, u16) {
         let end = u32::from(row) + u32::from(strips) * u32::from(self.strips.rows);
         (row, end.min(u32::from(self.viewport.height())) as u16)
@@ -153,8 +153,8 @@ impl Engine<'_> {
     /// Draws the next strip, which has `rows` rows, into `framebuffer`, which holds the background already. Fails with
     /// the number of the draw that differed.
     ///
-    /// If it is not in the records, a band that begins with it is recorded first: all the rest of the screen, or half
-    /// of what was tried last, until it fits. Where not even one strip does, it is drawn directly.
+    /// If the strip is not in the records, a band that begins with it is recorded first: all the rest of the screen,
+    /// or half of the band tried last, until it fits. If not even one strip fits, the strip is drawn directly.
     #[inline]
     pub(super) fn next_strip<F: Framebuffer>(
         &mut self,
@@ -170,7 +170,7 @@ impl Engine<'_> {
         loop {
             let phase = if F::RECORDS { self.begin_walk(progress, rows) } else { Phase::Direct };
             if let Some(draw) = self.walk(progress, framebuffer, rows, phase, draw) {
-                // What is left in the records is of no use: the frame is over.
+                // The rest of the records is of no use: the frame is over.
                 progress.row = self.grid.viewport.height();
                 return Err(draw);
             }
@@ -223,7 +223,7 @@ impl Engine<'_> {
             draws: 0,
             changed: None,
         };
-        // Records that cannot even hold the lists need no walk to overflow.
+        // Records too short for the lists have overflowed already, and need no walk.
         if !scene.overflowed() {
             scene.stats.walks = scene.stats.walks.wrapping_add(1);
             draw(&mut scene);

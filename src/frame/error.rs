@@ -1,4 +1,4 @@
-//! Why a renderer could not be built, and why a frame ended early.
+//! Errors of renderers that could not be built, and of frames that ended early.
 
 use crate::vertex::ViewportError;
 use core::convert::Infallible;
@@ -40,14 +40,13 @@ impl core::error::Error for RendererError {}
 pub enum FrameError<E = Infallible> {
     /// The sink, or the display, failed. The frame is over.
     Sink(E),
-    /// The closure drew something else than in its call before. Noticed only while records are replayed: in strips that
-    /// are drawn without records, the picture is torn instead. The frame is over.
+    /// The closure did not draw the same as in an earlier call for this frame. The frame is over.
     SceneChanged {
         /// Number of the first draw that differed, counted from 0.
         draw: u16,
     },
-    /// The colour buffer does not hold the strip; for the first strip of a frame: not one row. Nothing was drawn: the
-    /// frame goes on with the next buffer that is long enough.
+    /// The colour buffer does not hold the strip, or not one row if the strip is the first of a frame. Nothing was
+    /// drawn. The frame goes on with the next buffer that is long enough.
     BufferTooShort {
         /// Pixels that the buffer holds.
         pixels: usize,

@@ -37,9 +37,9 @@ use embedded_graphics_core::primitives::Rectangle;
 ///
 /// # DMA
 ///
-/// A DMA transfer wants a `'static` buffer of its own, so two of them take turns. The frame only borrows the one that
-/// is free (`&mut *free`): when the strip is drawn, or when there is none, or when it failed, the buffer is the
-/// caller's again, and moves into the transfer.
+/// A DMA transfer needs a `'static` buffer of its own, so two of them take turns. The frame only borrows the free one
+/// (`&mut *free`). After each call, whether it returned a strip, none or an error, the buffer is the caller's again,
+/// and moves into the transfer.
 ///
 /// ```
 /// # use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb888, RgbColor}, primitives::Rectangle};
@@ -168,8 +168,8 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
 
     /// Draws the next strip.
     ///
-    /// The closure is called through a pointer, about once per strip: however many closures a program has, this
-    /// function is linked once.
+    /// The closure is called through a pointer, about once per strip. So this function is linked once, however many
+    /// closures a program has.
     pub(super) fn draw_strip<'c>(
         &mut self,
         buffer: &'c mut [P::Raw],
@@ -196,7 +196,7 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
         Ok(Some(StripPixels::new(area, pixels)))
     }
 
-    /// Returns what was done so far.
+    /// Returns the counters of the work done so far.
     #[must_use]
     pub const fn stats(&self) -> Stats {
         self.progress.stats

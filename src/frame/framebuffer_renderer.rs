@@ -48,15 +48,16 @@ impl<'b> FramebufferRenderer<'b> {
 }
 
 impl<'b, D: DepthChoice> FramebufferRenderer<'b, D> {
-    /// Lends memory for records; see [`records_len`](crate::target::records_len). They only matter where depth makes
-    /// the frame be drawn in strips. The framebuffer's type says if they are used: [`Framebuffer::RECORDS`].
+    /// Lends memory for records; see [`records_len`](crate::target::records_len). They only matter if the depth
+    /// buffer is shorter than the screen, so that the frame is drawn in strips. The framebuffer's type says if they
+    /// are used: [`Framebuffer::RECORDS`].
     #[must_use]
     pub fn with_records(self, records: &'b mut [u32]) -> Self {
         Self { engine: self.engine.with_records(records), choice: PhantomData }
     }
 
-    /// Draws a frame over `background`. The framebuffer must be one with or without depth ([`Framebuffer::DEPTH`]) as
-    /// the renderer is; another does not compile:
+    /// Draws a frame over `background`. The framebuffer's type ([`Framebuffer::DEPTH`]) and the renderer must agree
+    /// on whether there is depth. If they do not, the call does not compile:
     ///
     /// ```compile_fail
     /// # use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb565, Rgb888, RgbColor}};

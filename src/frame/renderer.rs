@@ -16,9 +16,9 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// Draws frames in strips of the screen.
 ///
-/// It borrows a depth buffer and memory for records, if it is to have them, and says by its type which of them it has.
-/// Colours it does not hold: each frame, or each strip, is drawn into a buffer of the caller. The strip is as high as
-/// this buffer and the depth buffer allow.
+/// It borrows a depth buffer and memory for records, if it is given them, and its type says which of them it has. It
+/// holds no colours: each frame, or each strip, is drawn into a buffer of the caller. The strip is as high as this
+/// buffer and the depth buffer allow.
 ///
 /// ```
 /// use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors}};
@@ -77,8 +77,8 @@ impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithoutRecords> {
     /// [`records_len`](crate::target::records_len). It may be of any length: with less, the scene is transformed more
     /// often.
     ///
-    /// Without records it is transformed once per strip, and a program is some KB smaller than one that lends empty
-    /// records.
+    /// Without records the scene is transformed once per strip, and a program is some KB smaller than one that lends
+    /// empty records.
     #[must_use]
     pub fn with_records(self, records: &'b mut [u32]) -> Renderer<'b, P, D, WithRecords> {
         Renderer { engine: self.engine.with_records(records), choices: PhantomData }
@@ -105,8 +105,8 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
     /// matrices and shaders are made once, outside of it.
     ///
     /// # Errors
-    /// The display's own; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not hold one
-    /// row. The next frame starts afresh.
+    /// The display's own error; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not
+    /// hold one row. The next frame starts afresh.
     pub fn frame<T: DrawTarget<Color = P::Color>>(
         &mut self,
         display: &mut T,
@@ -136,8 +136,8 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
     /// Draws a frame, strip by strip through `buffer`, and hands each finished strip to a sink.
     ///
     /// # Errors
-    /// The sink's own; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not hold one row.
-    /// The next frame starts afresh.
+    /// The sink's own error; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not hold
+    /// one row. The next frame starts afresh.
     pub fn frame_to<K: StripSink<P>>(
         &mut self,
         mut sink: K,

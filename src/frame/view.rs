@@ -1,4 +1,4 @@
-//! 3-D among embedded-graphics' own things: a frame as something that can be drawn.
+//! A frame as an embedded-graphics drawable, to stand among other drawables.
 
 use super::error::FrameError;
 use super::renderer::Renderer;
@@ -40,7 +40,7 @@ use embedded_graphics_core::primitives::Rectangle;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct FrameView<'v, 'b, P: PixelFormat, F, D = WithoutDepth, R = WithoutRecords> {
-    /// Taken out while the view is drawn, as `draw` has only a shared reference.
+    /// Renderer and buffer, taken out while the view is drawn, as `draw` has only a shared reference.
     tools: Cell<Option<Tools<'v, 'b, P, D, R>>>,
     area: Rectangle,
     background: Rgb888,
@@ -80,7 +80,7 @@ where
     type Color = P::Color;
     type Output = Result<Stats, FrameError>;
 
-    /// Draws a frame. A view that its own closure draws draws nothing.
+    /// Draws a frame. If a view's closure draws the view itself, that draws nothing.
     fn draw<T: DrawTarget<Color = P::Color>>(&self, target: &mut T) -> Result<Self::Output, T::Error> {
         let Some((renderer, buffer)) = self.tools.take() else {
             return Ok(Ok(Stats::default()));

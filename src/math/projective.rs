@@ -194,7 +194,8 @@ impl Projective {
     /// ```
     /// use zstrip::embedded_graphics_core::geometry::Size;
     /// use zstrip::math::{Angle16, Projective, Scalar, Vec3};
-    /// let lens = Projective::perspective(Angle16::from_degrees(60), Size::new(4, 3), Scalar::ONE, 9.into())?;
+    /// let (near, far) = (Scalar::ONE, Scalar::from_num(9));
+    /// let lens = Projective::perspective(Angle16::from_degrees(60), Size::new(4, 3), near, far)?;
     /// // A point of clip space, divided by its w before: on the near plane, in the middle of the picture.
     /// let [x, y, z, w] = lens.inverse().unwrap().transform_point(Vec3::ZERO);
     /// assert_eq!((x / w, y / w), (0.into(), 0.into()));

@@ -1,30 +1,31 @@
 //! Types that say which buffers a renderer has beside its colours: a program links only the loops that it needs.
 
-/// Says by its type if there is a depth buffer: [`WithDepth`] or [`WithoutDepth`].
+/// Choice of a depth buffer, said by a type: [`WithDepth`] or [`WithoutDepth`].
 pub trait DepthChoice: sealed::Sealed {
     /// True if there is a depth buffer.
     const DEPTH: bool;
 }
 
-/// Says by its type if there may be records: [`WithRecords`] or [`WithoutRecords`].
+/// Choice of records, said by a type: [`WithRecords`] or [`WithoutRecords`].
 pub trait RecordsChoice: sealed::Sealed {
     /// True if there may be records.
     const RECORDS: bool;
 }
 
-/// There is a depth buffer.
+/// Marks a renderer or strip with a depth buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct WithDepth;
 
-/// There is no depth buffer: every depth test passes, and what is drawn later covers what is there.
+/// Marks a renderer or strip without a depth buffer: every depth test passes, and later drawings cover earlier ones.
 #[derive(Clone, Copy, Debug)]
 pub struct WithoutDepth;
 
-/// There may be records.
+/// Marks a renderer or strip that may have records.
 #[derive(Clone, Copy, Debug)]
 pub struct WithRecords;
 
-/// There are no records: the closure is called once per strip, and the code that records and replays is not linked.
+/// Marks a renderer or strip without records: the closure is called once per strip, and the code that records and
+/// replays is not linked.
 #[derive(Clone, Copy, Debug)]
 pub struct WithoutRecords;
 

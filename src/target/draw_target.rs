@@ -1,8 +1,8 @@
-//! 2-D drawing into the strip: an embedded-graphics target over whatever is being drawn just now.
+//! 2-D drawing: an embedded-graphics target over the strip that is being drawn.
 //!
-//! Its bounding box is the whole screen, so that what is drawn does not depend on strips; pixels outside of the current
-//! strip are left out. Areas are cut before their pixels are looked at, [`Overlay::draw`] leaves out what has no pixel
-//! in the strip, and single pixels cost a comparison.
+//! Its bounding box is the whole screen, so that a drawing does not depend on strips; pixels outside of the current
+//! strip are left out. Areas are cut before their pixels are looked at. [`Overlay::draw`] leaves out drawings that
+//! have no pixel in the strip, and a single pixel costs a comparison.
 
 use super::framebuffer::Framebuffer;
 use crate::color::{PixelFormat, fill};
@@ -28,13 +28,13 @@ type Color<F> = <<F as Framebuffer>::Format as PixelFormat>::Color;
 /// While the closure is only recorded there are no pixels, and drawing does nothing.
 #[derive(Debug)]
 pub struct Overlay<'o, F, D> {
-    /// None while the closure is recorded.
+    /// The strip's pixels; `None` while the closure is recorded.
     framebuffer: Option<&'o mut F>,
-    /// Depths of the strip's rows, one after the other; empty where there are none, so that every test passes.
+    /// Depths of the strip's rows, one row after the other; empty without a depth buffer, so that every test passes.
     depth: &'o mut [u16],
     first_row: i32,
     screen: (u16, u16),
-    /// Pixels that are drawn: never outside of the strip.
+    /// Area that may be drawn: never outside of the strip.
     clip: PixelRect,
     z: u16,
     test: D,
@@ -66,11 +66,11 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
         !self.clip.intersection(&pixels(area)).is_empty()
     }
 
-    /// Draws what has no pixel outside of its bounding box, if that touches the strip: a lot cheaper than
-    /// [`Drawable::draw`] for what does not, as text, images and shapes look at all of their pixels otherwise.
+    /// Draws a drawable if its bounding box touches the strip. For drawables that do not touch it, this is a lot
+    /// cheaper than [`Drawable::draw`], which looks at all pixels of text, images and shapes.
     ///
-    /// Pixels outside of the bounding box are not drawn. (The box of underlined text, in embedded-graphics 0.8, ends at
-    /// the underline: draw that as it is.)
+    /// Pixels outside of the bounding box are not drawn. (In embedded-graphics 0.8, the box of underlined text ends
+    /// at the underline: draw such text by [`Drawable::draw`].)
     pub fn draw<T: Drawable<Color = Color<F>> + Dimensions>(&mut self, drawable: &T) {
         let area = drawable.bounding_box();
         if self.is_visible(&area) {
@@ -88,8 +88,8 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
         }
     }
 
-    /// Draws an image with its corner at `top_left`, and of it only the part that is in the strip: embedded-graphics'
-    /// own `Image` walks through all that is above. Colours are converted where they are of another type.
+    /// Draws the part of an image that is in the strip, with the image's corner at `top_left`. (embedded-graphics'
+    /// own `Image` passes over all pixels above the strip one by one.) Colours of another type are converted.
     pub fn draw_image<T: ImageDrawable<Color: Into<Color<F>>>>(&mut self, image: &T, top_left: Point) {
         let area = pixels(&Rectangle::new(top_left, image.size()));
         let part = self.clip.intersection(&area);
@@ -160,7 +160,7 @@ fn colors<'r, F: Framebuffer>(framebuffer: &'r mut F, y: i32, columns: &Range<i3
     framebuffer.span(y as u32, columns.start as usize, (columns.end - columns.start) as usize)
 }
 
-/// Returns the stored depths of those columns; nothing where there is no depth buffer.
+/// Returns the stored depths of a range of columns in a row; nothing without a depth buffer.
 #[inline(always)]
 fn depths<'r, D: DepthTest>(
     depth: &'r mut [u16],
@@ -188,7 +188,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
     type Color = Color<F>;
     type Error = Infallible;
 
-    /// Pixels that follow one another in a row cost two comparisons each, and a row is looked up once.
+    /// Draws pixels. One that follows another in a row costs two comparisons; the row is looked up once.
     fn draw_iter<I: IntoIterator<Item = Pixel<Self::Color>>>(&mut self, pixels: I) -> Result<(), Infallible> {
         let Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test } = self else {
             return Ok(());
@@ -206,7 +206,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
                 row = colors(*framebuffer, y, &clip.x);
                 stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &clip.x);
             }
-            // What is left of the columns wraps to the far right.
+            // For columns to the left of the row, the difference wraps to a number beyond its end.
             let column = point.x.wrapping_sub(left) as usize;
             if let Some(pixel) = row.get_mut(column) {
                 if !D::ENABLED || stored.get_mut(column).is_none_or(|stored| passes(*test, *z, stored)) {
@@ -217,7 +217,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
         Ok(())
     }
 
-    /// Colours of pixels that are not drawn are passed over by `Iterator::nth`.
+    /// Fills an area. `Iterator::nth` passes over the colours of pixels that are not drawn.
     fn fill_contiguous<I: IntoIterator<Item = Self::Color>>(
         &mut self,
         area: &Rectangle,

@@ -1,4 +1,4 @@
-//! Framebuffers: anything that has rows of pixels to draw into.
+//! Framebuffers: everything that has rows of pixels to draw into.
 
 use super::choice::{DepthChoice, RecordsChoice, WithoutDepth, WithoutRecords};
 use crate::color::PixelFormat;
@@ -8,8 +8,8 @@ use embedded_graphics_core::geometry::Size;
 
 /// Rows of pixels to draw into.
 ///
-/// The rasterizer asks for a row before it draws into it, draws into what it gets, and skips what lies behind its end.
-/// A row outside of the buffer is an empty slice.
+/// The rasterizer asks for a row before it draws into it, draws into the slice it gets, and skips pixels after the
+/// end of that slice. A row outside of the buffer is an empty slice.
 pub trait Framebuffer {
     /// The format of the pixels.
     type Format: PixelFormat;
@@ -72,7 +72,7 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice> Framebuffer for Strip<'_,
 
     const RECORDS: bool = R::RECORDS;
 
-    // Out of line: in loops, rows are asked for one by one where the strip is short or narrow.
+    // Out of line, since loops ask for rows one by one only where the strip is short or narrow.
     #[inline(never)]
     fn row(&mut self, y: u32) -> &mut [P::Raw] {
         let row = y.checked_sub(self.first_row).and_then(|row| (row as usize).checked_mul(self.width));
@@ -84,7 +84,8 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice> Framebuffer for Strip<'_,
     #[inline]
     fn span(&mut self, y: u32, column: usize, length: usize) -> &mut [P::Raw] {
         let start = (y.wrapping_sub(self.first_row) as usize).wrapping_mul(self.width).wrapping_add(column);
-        // In two steps, each a comparison; a range is checked at both ends at once, which small cores pay twice for.
+        // The slice is cut in two steps of one comparison each. Indexing by a range compares both ends at once, for
+        // which small cores pay twice.
         first(self.pixels.get_mut(start..).unwrap_or_default(), length)
     }
 
@@ -201,7 +202,7 @@ impl<P: PixelFormat> Framebuffer for FrameSlice<'_, P> {
         if y >= self.height {
             return &mut [];
         }
-        // Not more than the length of the slice, as `with_stride` has checked.
+        // The product is at most the length of the slice, as `with_stride` has checked.
         let start = y as usize * self.stride;
         first(self.pixels.get_mut(start..).unwrap_or_default(), self.width)
     }

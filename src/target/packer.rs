@@ -1,7 +1,8 @@
-//! Strips → the bytes of panels with less than a byte a pixel, dithered, and dithered colours for displays.
+//! Packing of strips: pixels of full precision come in, and go out as dithered bytes for panels with less than a byte
+//! per pixel, or as dithered colours for displays.
 //!
-//! A strip is drawn in a format of full precision, [`Gray8`] for one: neighbours of a byte cannot be drawn one by one
-//! without reading them back, and blending wants more than two greys.
+//! A strip is drawn in a format of full precision, such as [`Gray8`]. Two pixels that share a byte cannot be drawn
+//! one by one without reading that byte back, and blending wants more than two greys.
 
 use super::sink::{StripPixels, StripSink};
 use crate::color::{Dither, Levels, PixelFormat};
@@ -26,8 +27,8 @@ pub trait PackedFormat {
     fn pack<P: PixelFormat>(dither: &Dither<Self::Color>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]);
 }
 
-/// A byte is eight rows high and one pixel wide, its lowest bit on top; bytes go from left to right, then pages of
-/// eight rows from top to bottom: what monochrome OLED and LCD controllers want (SSD1306, SH1106, ST7565, PCD8544).
+/// Bytes of eight rows and one pixel, the lowest bit on top. They go from left to right, and in pages of eight rows
+/// from top to bottom, as monochrome OLED and LCD controllers want them (SSD1306, SH1106, ST7565, PCD8544).
 #[derive(Clone, Copy, Debug)]
 pub struct Pages;
 
@@ -59,7 +60,7 @@ impl PackedFormat for Pages {
             bytes.fill(0);
             let mut y = first + (page.len() / width) as i32;
             first = y;
-            // From the bottom up: each row moves those below it on.
+            // Rows go in from the bottom up: each row moves the bits of the rows below it up by one.
             for row in page.chunks_exact(width).rev() {
                 y -= 1;
                 push_row::<P>(&dither.row(y), row, bytes);
@@ -68,7 +69,7 @@ impl PackedFormat for Pages {
     }
 }
 
-/// A row of a page: its bits come in from below.
+/// Puts a row of pixels into a page: one bit per byte, from below.
 #[inline(never)]
 fn push_row<P: PixelFormat>(entries: &[u32; 8], row: &[P::Raw], bytes: &mut [u8]) {
     let push = |byte: &mut u8, raw: &P::Raw, entry: u32| {
@@ -76,7 +77,7 @@ fn push_row<P: PixelFormat>(entries: &[u32; 8], row: &[P::Raw], bytes: &mut [u8]
     };
     let (mut pixels, mut bytes) = (row.chunks_exact(8), bytes.chunks_exact_mut(8));
     for (pixels, bytes) in (&mut pixels).zip(&mut bytes) {
-        // Spelled out: at `opt-level = "s"` a loop would stay a loop.
+        // The eight steps are spelled out, since at `opt-level = "s"` a loop would stay a loop.
         let ([p0, p1, p2, p3, p4, p5, p6, p7], [b0, b1, b2, b3, b4, b5, b6, b7]) = (pixels, bytes) else { return };
         push(b0, p0, entries[0]);
         push(b1, p1, entries[1]);
@@ -141,7 +142,7 @@ fn pack_rows<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
     }
 }
 
-/// Eight pixels to a word, and that to one, two or four bytes.
+/// Packs each eight pixels into a word, and the word into one, two or four bytes.
 #[inline(never)]
 fn pack_row<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
     entries: &[u32; 8],
@@ -173,7 +174,7 @@ fn pack_row<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
             _ => {}
         }
     }
-    // What is left of the row, filled up with black.
+    // The pixels left over at the end of the row are filled up with black.
     let mut word = 0;
     let rest = pixels.remainder();
     for (k, entry) in entries.iter().enumerate() {

@@ -1,4 +1,6 @@
-//! Records: what the first walk over a scene leaves for the strips, in a slice of words that the caller lends.
+//! Records: the vertices and triangles that the recording walk over a scene leaves for the strips. They lie in a
+//! slice of words that the caller lends. Positions on the screen, varyings and visible triangles come in; each strip
+//! gets its triangles back, in drawing order.
 //!
 //! ```text
 //!  strips   draw 0              draw 1                 free              triangles, newest first
@@ -6,17 +8,18 @@
 //! │ lists │ header │ vertices │ header │ vertices    │ →             ←  │  2   │  1   │  0   │
 //! └───────┴────────┴──────────┴────────┴─────────────┴───────────── ─ ─ ┴──────┴──────┴──────┘
 //! ```
-//! Vertices are the positions of all of them, two words each, then the varyings of all of them; what the clipper adds comes
-//! behind, position and varyings together.
+//! A draw's vertices are the positions of all of them, two words each, and then the varyings of all of them. Vertices
+//! that the clipper adds come after these, each with its position and its varyings together.
 //!
-//! A strip's word holds the first and the last of its triangles, which are linked through their records in drawing
-//! order. Each triangle is in one list at a time: recorded into the list of the topmost strip it touches, it moves on to
-//! the next strip's list when a strip is done with it. So a triangle is one record however tall it is.
+//! The word of a strip in `lists` holds the first and the last of its triangles, which are linked through their
+//! records in drawing order. A triangle is in one list at a time. It is recorded into the list of the topmost strip
+//! it touches; when that strip is done with it, it moves on to the list of the next strip. So a triangle is one
+//! record, however tall it is.
 
 use crate::color::clear_words;
 use crate::vertex::{MAX_IN_REGISTERS, Projected, ScreenVertex, Varyings, VertexShader};
 
-/// No triangle.
+/// Number that stands for no triangle.
 const NONE: u16 = u16::MAX;
 /// Words of a draw's header: fingerprint, first word of its vertices, number of its last triangle + 1, next header.
 const HEADER: usize = 4;
@@ -25,11 +28,12 @@ const TRIANGLE: usize = 3;
 /// Words of a vertex beside its varyings.
 pub(crate) const VERTEX_WORDS: usize = 2;
 
-/// Words of records that a scene needs at most when nothing is clipped: `draws` calls with `vertices` vertices and
-/// `triangles` visible triangles in all, and `varying_words` words of varyings a vertex
+/// Returns the words of records that a scene needs at most when nothing is clipped. `draws` is the number of draw
+/// calls, `vertices` and `triangles` are those of all draws together, of triangles only the visible ones.
+/// `varying_words` is the number of words of varyings per vertex
 /// ([`VertexShader::WORDS`](crate::vertex::VertexShader::WORDS)).
 ///
-/// With less, the frame takes more walks over the scene; with none, one a strip.
+/// With fewer words, a frame takes more walks over the scene; without any, it takes one walk per strip.
 #[must_use]
 pub const fn records_len(
     strips: usize,
@@ -41,9 +45,11 @@ pub const fn records_len(
     strips + HEADER * draws + (VERTEX_WORDS + varying_words) * vertices + TRIANGLE * triangles
 }
 
-/// What the records hold of where a vertex is: two words, x and y in 24 bits each, above the high and the low byte of z.
+/// A recorded position of a vertex, in two words: x in the upper 24 bits of the first, y in those of the second;
+/// below x the high byte of z, below y the low byte.
 ///
-/// An x that no vertex on the screen has marks one that is not there: its low byte is the outcode, or [`UNSHADED`].
+/// A vertex that is not on the screen has an x that no vertex on the screen has. The low byte of that word is its
+/// outcode, or that of [`UNSHADED`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PackedVertex([u32; 2]);
 
@@ -51,7 +57,7 @@ const OFF_SCREEN: u32 = 0x8000_0000;
 const UNSHADED: u32 = OFF_SCREEN | 0x80;
 
 impl PackedVertex {
-    /// Of a vertex on the screen, or of one that has to be clipped and so cannot be projected.
+    /// Packs a vertex on the screen, or one that has to be clipped and so cannot be projected.
     #[inline]
     pub(crate) const fn new(placed: &Projected) -> Self {
         match placed {
@@ -62,19 +68,19 @@ impl PackedVertex {
         }
     }
 
-    /// Of a vertex that is not shaded yet.
+    /// A vertex that is not shaded yet.
     pub(crate) const NONE: Self = Self([UNSHADED, 0]);
 
-    /// x of [`screen`](Self::screen) of a vertex that is not on the screen.
+    /// x that [`screen`](Self::screen) returns for a vertex that is not on the screen.
     pub(crate) const OFF_SCREEN_X: i32 = OFF_SCREEN as i32 >> 8;
 
-    /// From its words, taken as signed.
+    /// Makes a packed vertex of its words, which are taken as signed.
     #[inline]
     pub(crate) const fn signed([a, b]: [i32; 2]) -> Self {
         Self([a as u32, b as u32])
     }
 
-    /// From its words.
+    /// Makes a packed vertex of its words.
     #[cfg(test)]
     pub(crate) const fn from_words(words: [u32; 2]) -> Self {
         Self(words)
@@ -90,21 +96,22 @@ impl PackedVertex {
         self.0[0] >> 8 != OFF_SCREEN >> 8
     }
 
-    /// Outcode of a vertex that is not on the screen, 0 of one that is.
+    /// Returns the outcode of a vertex that is not on the screen, 0 for one that is.
     pub(crate) const fn outcode(self) -> u8 {
         if self.is_on_screen() { 0 } else { self.0[0] as u8 }
     }
 
-    /// Its words.
+    /// Returns the two words.
     #[inline]
     pub(crate) const fn words(self) -> [u32; 2] {
         self.0
     }
 
-    /// First words below it, taken as signed, are not those of vertices on the screen; y of others begins their second.
+    /// Limit of first words, taken as signed: a first word below it belongs to a vertex that is not on the screen.
+    /// The second word of a vertex on the screen begins with its y.
     pub(crate) const LEAST_X: i32 = (OFF_SCREEN as i32) + 0x100;
 
-    /// Where a vertex on the screen is.
+    /// Returns the position of a vertex on the screen.
     #[inline]
     pub(crate) const fn screen(self) -> ScreenVertex {
         let [a, b] = self.0;
@@ -116,34 +123,34 @@ impl PackedVertex {
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TriangleRecord {
     pub(crate) v: [ScreenVertex; 3],
-    /// The first two corners, the second in the upper half, and the third.
+    /// Numbers of the first two corners, the second in the upper half; `last` is the third.
     corners: u32,
     last: u16,
     pub(crate) face: u32,
 }
 
 impl TriangleRecord {
-    /// Its vertices.
+    /// Returns the numbers of its vertices.
     #[inline]
     pub(crate) const fn corners(&self) -> [u16; 3] {
         [self.corners as u16, (self.corners >> 16) as u16, self.last]
     }
 }
 
-/// The words, and where in them things are.
+/// The words of the records, and the layout that says which things lie where in them.
 #[derive(Debug)]
 pub(crate) struct Records<'a> {
     words: &'a mut [u32],
     layout: &'a mut Layout,
 }
 
-/// A word of two halves; which of them is above does not matter.
+/// Joins two halves to a word. Which of them is the upper one does not matter, as long as [`halves`] agrees.
 #[inline]
 fn pair(halves: [u16; 2]) -> u32 {
     bytemuck::cast(halves)
 }
 
-/// The two halves of a word.
+/// Returns the two halves of a word.
 #[inline]
 fn halves(word: &mut u32) -> &mut [u16; 2] {
     bytemuck::cast_mut(word)
@@ -154,29 +161,30 @@ fn signed([a, b]: &[u32; 2]) -> [i32; 2] {
     [*a as i32, *b as i32]
 }
 
-/// The words of a draw, taken apart for a walk over its triangles.
+/// The words of a draw, taken apart into slices for a pass over its triangles.
 #[derive(Debug)]
 pub(crate) struct Triangles<'r> {
     lists: &'r mut [u32],
-    /// The vertices of the draw; where they are is known at the beginning, of as many as the mesh has.
+    /// Words of all vertices of the draw. `positions` are the packed positions at its beginning, one for each vertex
+    /// of the mesh.
     vertices: &'r [u32],
     positions: &'r [[u32; 2]],
-    /// What is behind the vertices, as much of it as triangles may take: they are at its end.
+    /// Words after the vertices, at most as many as triangles can take. Triangles fill them from the end.
     triangles: &'r mut [u32],
-    /// How many there are.
+    /// Number of recorded triangles.
     count: u16,
     layout: &'r mut Layout,
 }
 
 impl Triangles<'_> {
-    /// Words of the [`PackedVertex`]s of vertices, signed.
+    /// Returns the words of three vertices' [`PackedVertex`]s, as signed numbers.
     #[inline(always)]
     pub(crate) fn positions_of(&self, [i, j, k]: [u16; 3]) -> [[i32; 2]; 3] {
         let place = |index: u16| signed(self.positions.get(usize::from(index)).unwrap_or(&PackedVertex::NONE.0));
         [place(i), place(j), place(k)]
     }
 
-    /// The vertices of a triangle of a list without indices, and words of their [`PackedVertex`]s.
+    /// Returns the vertex numbers of a triangle in a list without indices, and the words of their [`PackedVertex`]s.
     #[inline(always)]
     pub(crate) fn in_a_row(&self, number: usize) -> ([u16; 3], [[i32; 2]; 3]) {
         let first = 3 * number;
@@ -187,12 +195,12 @@ impl Triangles<'_> {
         ([first as u16, (first + 1) as u16, (first + 2) as u16], positions)
     }
 
-    /// How many have been recorded.
+    /// Returns the number of recorded triangles.
     pub(crate) const fn count(&self) -> u16 {
         self.count
     }
 
-    /// Makes [`push`](Self::push) yield `false` from here on.
+    /// Makes [`push`](Self::push) return `false` from here on.
     pub(crate) fn leave_no_room(&mut self) {
         self.triangles = &mut [];
     }
@@ -202,12 +210,13 @@ impl Triangles<'_> {
         self.layout.overflow = true;
     }
 
-    /// Ends a walk that recorded triangles.
+    /// Ends a pass that recorded triangles: stores their number.
     pub(crate) const fn finish(self) {
         self.layout.triangles = self.count;
     }
 
-    /// Records a triangle whose topmost strip, in this band, is `strip`; its first two corners in a word. Whether there was room.
+    /// Records a triangle whose topmost strip, in this band, is `strip`. `corners` has the numbers of its first two
+    /// corners. Returns `false` if there was no room.
     #[inline(always)]
     pub(crate) fn push(&mut self, corners: u32, last: u16, face: u32, strip: usize) -> bool {
         let behind = TRIANGLE * usize::from(self.count) + TRIANGLE;
@@ -226,8 +235,8 @@ impl Triangles<'_> {
         true
     }
 
-    /// The next triangle of the draw in this strip, if its number is below `last`. If it reaches beyond `end`, see
-    /// [`end_of`](Self::end_of), it moves on to the next strip.
+    /// Reads the next triangle of the draw in this strip; returns `false` if there is none with a number below
+    /// `last`. A triangle that reaches beyond `end`, see [`end_of`](Self::end_of), moves on to the next strip.
     #[inline(always)]
     pub(crate) fn replay(&mut self, last: u32, end: i32, to: &mut TriangleRecord) -> bool {
         let number = self.layout.next;
@@ -243,7 +252,7 @@ impl Triangles<'_> {
             Some(words) => PackedVertex(*words).screen(),
             None => self.added(index).screen(),
         };
-        // One by one, so that few things are at hand at once.
+        // Vertices are read one by one, so that few values are in registers at once.
         let [a, b, c] = &mut to.v;
         *a = screen(i);
         let mut above = end - a.y;
@@ -257,13 +266,13 @@ impl Triangles<'_> {
         true
     }
 
-    /// What coordinates of triangles that end above a row are not greater than.
+    /// Returns the largest y that vertices of a triangle can have if the triangle ends above `row`.
     pub(crate) const fn end_of(row: i32) -> i32 {
-        // The first pixel whose centre is not before a coordinate is (coordinate + 127) / 256.
+        // The first pixel whose centre is at or after a coordinate is (coordinate + 127) / 256.
         row * 256 + 128
     }
 
-    /// Where a vertex is that the clipper added.
+    /// Returns the position of a vertex that the clipper added.
     #[inline(never)]
     fn added(&self, index: u16) -> PackedVertex {
         match self.vertices.get(self.layout.stride * usize::from(index)..) {
@@ -276,15 +285,16 @@ impl Triangles<'_> {
     #[inline(always)]
     pub(crate) fn varyings<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
         if S::Varyings::LEN > MAX_IN_REGISTERS {
-            self.varyings_apart::<S>(index, to);
+            self.varyings_outlined::<S>(index, to);
         } else if S::WORDS > 0 {
             *to = self.load::<S>(index);
         }
     }
 
-    /// Many of them take room on the stack until they are put together.
+    /// Reads many varyings out of line: they lie on the stack until they are put together, and this function's frame
+    /// is gone when the triangle is drawn.
     #[inline(never)]
-    fn varyings_apart<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
+    fn varyings_outlined<S: VertexShader>(&self, index: u16, to: &mut S::Varyings) {
         *to = self.load::<S>(index);
     }
 
@@ -317,9 +327,10 @@ impl Triangles<'_> {
         link
     }
 
-    /// Moves a triangle of this strip on to the next one, keeping that list in drawing order.
+    /// Moves a triangle of this strip on to the next strip's list, and keeps that list in drawing order.
     ///
-    /// Triangles come in ascending order here, so the search goes on where the last one was put: a merge.
+    /// Triangles are moved in ascending order, so the search goes on from the place where the last one was put: a
+    /// merge of two lists.
     #[inline(never)]
     fn move_on(&mut self, number: u16) {
         let strip = self.layout.strip + 1;
@@ -342,32 +353,33 @@ impl Triangles<'_> {
     }
 }
 
-/// Positions in the words; kept by the frame from one walk to the next.
+/// Positions of things in the words; kept by the frame from one walk over the scene to the next.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Layout {
     /// First free word.
     front: usize,
-    /// Triangles recorded.
+    /// Number of recorded triangles.
     triangles: u16,
-    /// The current draw: its header, the first word of its vertices, how many the mesh has, how many the clipper added, and
-    /// words a vertex.
+    /// The current draw: position of its header, and of its vertices; number of vertices of the mesh, and of those
+    /// that the clipper added; words per vertex.
     header: usize,
     vertices: usize,
     count: usize,
     added: u16,
     stride: usize,
     overflow: bool,
-    /// Replay: the strip, its next triangle, the last one that was moved on, and the one that follows it in the next strip's list.
+    /// Replay: number of the strip; its next triangle; the last triangle that was moved on; and the triangle after
+    /// that one in the next strip's list.
     strip: usize,
     next: u16,
     moved: u16,
     after: u16,
-    /// First word behind the lists of the strips.
+    /// First word after the lists of the strips.
     lists: usize,
 }
 
 impl<'a> Records<'a> {
-    /// Takes up the words where a walk left them.
+    /// Takes up the words in the state in which a walk left them.
     pub(crate) fn new(words: &'a mut [u32], layout: &'a mut Layout) -> Self {
         Self { words, layout }
     }
@@ -387,7 +399,7 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Empties the records and starts lists for as many strips.
+    /// Empties the records and starts empty lists for a number of strips.
     pub(crate) fn begin_band(&mut self, strips: usize) {
         *self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
         match self.words.get_mut(..strips) {
@@ -396,20 +408,20 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Whether something did not fit, so that the walk is in vain.
+    /// Returns true if something did not fit, so that the walk is in vain.
     pub(crate) fn overflowed(&self) -> bool {
         self.layout.overflow
     }
 
-    /// Words that are still free.
+    /// Returns the number of free words.
     fn free(&self) -> usize {
         self.words.len().saturating_sub(self.layout.front + TRIANGLE * usize::from(self.layout.triangles))
     }
 
-    /// Room for the vertices of a draw, all unshaded; whether there is enough.
+    /// Reserves words for the vertices of a draw, all unshaded. Returns `false` if there are too few.
     fn reserve(&mut self, vertices: usize, stride: usize) -> bool {
         let start = self.layout.front;
-        // At most 2¹⁶ · 255: no overflow even in 32 bits.
+        // The product is at most 2¹⁶ · 255: no overflow, even in 32 bits.
         let needs = vertices * stride;
         if self.free() < needs {
             return false;
@@ -449,7 +461,7 @@ impl<'a> Records<'a> {
 
     /// Lends all the words to the vertices of one draw that is drawn directly, if they fit.
     pub(crate) fn keep_vertices(&mut self, vertices: usize, stride: usize) {
-        // Behind the end: all vertices read as unshaded.
+        // Vertices begin at the end of the words: if `reserve` fails, all of them read as unshaded.
         *self.layout = Layout { vertices: self.words.len(), ..Layout::default() };
         self.reserve(vertices, stride);
     }
@@ -460,7 +472,7 @@ impl<'a> Records<'a> {
         self.layout.stride > 0
     }
 
-    /// What is known of where the vertices of the current draw are: words of [`PackedVertex`]s.
+    /// Returns the positions of all vertices of the current draw: words of [`PackedVertex`]s.
     #[inline]
     pub(crate) fn positions(&self) -> &[[u32; 2]] {
         let start = self.layout.vertices;
@@ -468,13 +480,13 @@ impl<'a> Records<'a> {
         bytemuck::try_cast_slice(words).unwrap_or_default()
     }
 
-    /// What is known of where a vertex of the current draw is.
+    /// Returns the position of a vertex of the current draw.
     #[inline]
     pub(crate) fn packed_vertex(&self, index: usize) -> PackedVertex {
         self.positions().get(index).map_or(PackedVertex::NONE, |words| PackedVertex(*words))
     }
 
-    /// The positions of all vertices, and those of their varyings.
+    /// Returns the positions of all vertices, and the words of their varyings.
     pub(crate) fn vertices_mut(&mut self) -> (&mut [[u32; 2]], &mut [u32]) {
         let start = self.layout.vertices;
         let words = self.words.get_mut(start..start + self.layout.count * self.layout.stride).unwrap_or_default();
@@ -484,7 +496,7 @@ impl<'a> Records<'a> {
         (bytemuck::try_cast_slice_mut(positions).unwrap_or_default(), varyings)
     }
 
-    /// The first words of a vertex's position and of its varyings.
+    /// Returns the first word of a vertex's position and the first word of its varyings.
     #[inline]
     fn words_of(&self, index: usize) -> (usize, usize) {
         let Layout { vertices, count, stride, .. } = *self.layout;
@@ -496,7 +508,7 @@ impl<'a> Records<'a> {
         }
     }
 
-    /// Packs a vertex of the current draw, which has positions for vertices.
+    /// Stores a vertex of the current draw, for whose vertices there is room.
     #[inline]
     pub(crate) fn store_vertex<S: VertexShader>(&mut self, index: usize, packed: PackedVertex, varyings: &S::Varyings) {
         let (position, rest) = self.words_of(index);
@@ -506,7 +518,7 @@ impl<'a> Records<'a> {
         S::store(varyings, self.words.get_mut(rest..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default());
     }
 
-    /// The varyings of a vertex of the current draw.
+    /// Returns the varyings of a vertex of the current draw.
     #[inline]
     pub(crate) fn varyings<S: VertexShader>(&self, index: u16) -> S::Varyings {
         if S::WORDS == 0 {
@@ -516,7 +528,7 @@ impl<'a> Records<'a> {
         S::load(self.words.get(rest..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
     }
 
-    /// Adds a vertex to the current draw, for a polygon that the clipper made.
+    /// Adds a vertex to the current draw, for a polygon that the clipper made. Returns its number.
     pub(crate) fn push_vertex(&mut self) -> u16 {
         let index = self.layout.count + usize::from(self.layout.added);
         if self.free() < self.layout.stride || index >= usize::from(u16::MAX) {
@@ -537,7 +549,7 @@ impl<'a> Records<'a> {
         triangles.finish();
     }
 
-    /// The words taken apart, for a walk over many triangles that adds no vertices.
+    /// Takes the words apart into slices, for a pass over many triangles that adds no vertices.
     #[inline(never)]
     pub(crate) fn triangles(&mut self) -> Triangles<'_> {
         self.parts()
@@ -550,7 +562,7 @@ impl<'a> Records<'a> {
         let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
         let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
         let positions = vertices.get(..VERTEX_WORDS * layout.count).unwrap_or_default();
-        // Numbers are below that which stands for none.
+        // Numbers of triangles must stay below `NONE`, so room for more triangles is left out.
         let beyond = rest.len().saturating_sub(TRIANGLE * usize::from(NONE));
         Triangles {
             lists,
@@ -574,7 +586,7 @@ impl<'a> Records<'a> {
         self.layout.front = self.layout.lists;
     }
 
-    /// Finds the next recorded draw; `false` if it is not the one that was recorded.
+    /// Finds the next recorded draw. Returns `false` if it is not the draw that was recorded.
     pub(crate) fn replay_draw(&mut self, fingerprint: u32, vertices: usize, stride: usize) -> bool {
         let header = self.layout.front;
         self.layout.header = header;
@@ -585,17 +597,17 @@ impl<'a> Records<'a> {
         self.get(header) == fingerprint
     }
 
-    /// Whether the draw that was found has no vertices.
+    /// Returns true if the draw that was found has no vertices.
     pub(crate) fn is_draw_empty(&self) -> bool {
         self.layout.front == self.layout.vertices
     }
 
-    /// How many triangles have been recorded.
+    /// Returns the number of recorded triangles.
     pub(crate) const fn triangle_count(&self) -> u16 {
         self.layout.triangles
     }
 
-    /// The words of the triangles from a number on, the newest first.
+    /// Returns the words of the triangles from a number on, the newest first.
     #[inline]
     pub(crate) fn triangles_from(&mut self, first: u16) -> &mut [u32] {
         let end = self.triangle_at(first).wrapping_add(TRIANGLE);
@@ -607,7 +619,7 @@ impl<'a> Records<'a> {
         self.words.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
     }
 
-    /// The number behind that of the last triangle of the draw that was found.
+    /// Returns one more than the number of the last triangle of the draw that was found.
     pub(crate) fn last_triangle(&self) -> u32 {
         self.get(self.layout.header + 2)
     }

@@ -7,8 +7,8 @@ use embedded_graphics_core::primitives::Rectangle;
 
 /// A finished strip: whole rows of the screen, from left to right and from top to bottom.
 ///
-/// It holds the part of the colour buffer that has the strip's pixels, exactly: the last strip of a frame may have
-/// fewer rows than the others, and what the buffer holds behind them is old.
+/// It holds exactly the part of the colour buffer that has the strip's pixels. The last strip of a frame may have
+/// fewer rows than the others; the buffer holds old pixels after them.
 #[derive(Debug)]
 pub struct StripPixels<'c, P: PixelFormat> {
     area: Rectangle,
@@ -69,10 +69,10 @@ pub trait StripSink<P: PixelFormat> {
     /// The error of a sink; it ends the frame.
     type Error;
 
-    /// Takes a strip. Called once per strip.
+    /// Takes a strip. It is called once per strip.
     ///
     /// # Errors
-    /// The sink's own; the frame stops and hands it on.
+    /// The sink's own error. The frame ends and returns it.
     fn strip(&mut self, strip: &StripPixels<'_, P>) -> Result<(), Self::Error>;
 }
 

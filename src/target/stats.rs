@@ -1,13 +1,12 @@
 //! Counters of every stage of a frame.
 
-/// Counters of a frame. Work that is done again, for another band or strip, is counted again; counters
-/// wrap at 2³².
+/// Counters of a frame. Work that is repeated for another band or strip is counted again. Counters wrap at 2³².
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-// Cleared by the same routine as 64-bit numbers are.
+// The alignment makes the compiler clear the counters by the routine that it already links for 64-bit numbers.
 #[repr(align(8))]
 pub struct Stats {
-    /// How often the closure that draws was called.
+    /// Calls of the closure that draws.
     pub walks: u32,
     /// Calls that were given up because the records were full, to be repeated for fewer strips.
     pub overflows: u32,
@@ -17,8 +16,8 @@ pub struct Stats {
     pub strips: u32,
     /// Draws that were processed.
     pub draws: u32,
-    /// Draws, or nodes of a hierarchy, that were outside the view as a whole: as their bounds say, which are not looked
-    /// at for meshes of up to four vertices.
+    /// Draws, or nodes of a hierarchy, whose bounds are all outside of the view. Bounds of meshes of up to four
+    /// vertices are not tested.
     pub culled: u32,
     /// Vertices shaded.
     pub vertices: u32,
@@ -32,7 +31,7 @@ pub struct Stats {
     pub back_facing: u32,
     /// Triangles without area on the screen.
     pub degenerate: u32,
-    /// Triangles with all of them outside of the view, or of the strips at hand; lines outside of the view.
+    /// Triangles that are all outside of the view, or of the strips at hand; lines outside of the view.
     pub outside: u32,
     /// Triangles that cover no pixel centre.
     pub empty: u32,

@@ -1,4 +1,4 @@
-//! The strip that a row is in.
+//! Number of the strip that a row is in, found without a divider.
 
 use crate::math::{divided, leading_zeros_long};
 use core::num::NonZeroU32;
@@ -16,11 +16,11 @@ impl StripRows {
     pub(crate) const UNSET: Self = Self { rows: 0, factor: 0, shift: 0 };
 
     /// # Format
-    /// row / rows = row factor / 2^shift with factor = ⌈2^shift / rows⌉ ≤ 2¹³: too large by less than row / 2^shift,
-    /// which is below 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the screen, which are below
-    /// 2¹².
+    /// row / rows = row factor / 2^shift with factor = ⌈2^shift / rows⌉ ≤ 2¹³. The result is too large by less than
+    /// row / 2^shift, which is below 1 / rows, as 2^shift is at least 2¹² rows. So it is exact for rows of the
+    /// screen, which are below 2¹².
     ///
-    /// Without records nothing is divided, and the factor is 0.
+    /// Without records there is nothing to divide, and the factor is 0.
     pub(crate) fn new(rows: u16, records: bool) -> Self {
         let rows = rows.max(1);
         if !records {
@@ -37,8 +37,8 @@ impl StripRows {
     }
 }
 
-/// Counts the whole rows of `width` pixels in `length` pixels. Returns 1 for a screen without width, which is an error
-/// of its own.
+/// Counts the whole rows of `width` pixels in `length` pixels. For a screen without width, which is an error of its
+/// own, it returns 1.
 pub(crate) fn whole_rows(length: usize, width: u16) -> usize {
     let length = u32::try_from(length).unwrap_or(u32::MAX);
     NonZeroU32::new(width.into()).map_or(1, |width| divided(length, width).0 as usize)

@@ -10,8 +10,8 @@ use rp2040_hal::gpio::{FunctionSioOutput, FunctionSpi, Pin, Pins, PullDown};
 use rp2040_hal::spi::Enabled;
 use rp2040_hal::{Clock, Sio, Spi, Timer, Watchdog, pac};
 
-/// The second stage of the boot code, which sets the flash chip up: the boot ROM wants it in a section of its own, and
-/// naming a section is `unsafe` in Rust.
+/// The second stage of the boot code, which sets the flash chip up. The boot ROM wants it in a section of its own,
+/// and naming a section is `unsafe` in Rust.
 #[allow(unsafe_code)]
 #[unsafe(link_section = ".boot2")]
 #[used]
@@ -21,20 +21,20 @@ const CRYSTAL_HZ: u32 = 12_000_000;
 
 /// The panel's bus.
 pub type Bus = Spi<Enabled, pac::SPI0, (Pin<Gpio19, FunctionSpi, PullDown>, Pin<Gpio18, FunctionSpi, PullDown>)>;
-/// Tells the panel commands from data.
+/// The pin that tells the panel commands from data.
 pub type DataCommand = Pin<Gpio16, FunctionSioOutput, PullDown>;
-/// Selects the panel.
+/// The pin that selects the panel.
 pub type ChipSelect = Pin<Gpio17, FunctionSioOutput, PullDown>;
-/// Sends a strip.
+/// The DMA channel that sends strips.
 pub type DmaChannel = Channel<CH0>;
 
 /// The parts of the board that a program uses.
 pub struct Board {
     /// The panel, ready to take pixels.
     pub panel: Panel,
-    /// Sends what the processor need not.
+    /// The DMA channel, which sends pixels while the processor draws.
     pub dma: DmaChannel,
-    /// For a logic analyser.
+    /// A pin for a logic analyser.
     pub mark: Pin<Gpio2, FunctionSioOutput, PullDown>,
 }
 

@@ -92,7 +92,7 @@ impl Panel {
 
 /// The panel, sent to by DMA: one buffer is on its way while the processor draws into another.
 pub struct DmaPanel {
-    /// Taken out while it changes.
+    /// The panel and the transfer, taken out while one transfer ends and the next one starts.
     state: Option<State>,
 }
 
@@ -123,7 +123,7 @@ impl DmaPanel {
         Self { state: Some(State::Idle(panel, channel, bytemuck::cast_slice_mut(buffer))) }
     }
 
-    /// Waits until the buffer before is sent, starts sending all of this one, and returns the one before.
+    /// Waits until the previous buffer is sent, starts sending all of this one, and returns the previous one.
     pub fn send(&mut self, area: &Rectangle, buffer: &'static mut [u16]) -> &'static mut [u16] {
         let state = self.state.take().expect("the state is only taken out here and put back");
         let (mut panel, channel, sent) = state.wait();
@@ -134,7 +134,7 @@ impl DmaPanel {
         bytemuck::cast_slice_mut(sent)
     }
 
-    /// Waits until all is sent, and takes the parts apart.
+    /// Waits until everything is sent, and returns panel, channel and buffer.
     pub fn finish(self) -> (Panel, DmaChannel, &'static mut [u16]) {
         let (panel, channel, buffer) = self.state.expect("the state is put back").wait();
         (panel, channel, bytemuck::cast_slice_mut(buffer))

@@ -1,6 +1,7 @@
 //! The scene: a tumbling torus, lit at its vertices.
 //!
-//! It knows nothing of the board, so the same file draws the picture that the board's is compared with on a host.
+//! It knows nothing of the board, so a host can draw the picture from this file that the board's picture is compared
+//! with.
 
 use zstrip::Framebuffer;
 use zstrip::Scene;
@@ -17,7 +18,7 @@ pub const SIZE: Size = Size::new(240, 240);
 /// The colour where nothing is drawn.
 pub const BACKGROUND: Rgb888 = Rgb888::new(24, 28, 24);
 
-/// Turns by which the torus is on from one frame to the next, in 65,536ths.
+/// Angle by which the torus turns from one frame to the next, in 65,536ths of a turn.
 pub const TURN: u16 = 1024;
 
 /// The matrix and the shader of a frame.
@@ -44,7 +45,7 @@ impl View {
         Self { mvp: camera * model, shader: Gouraud::new(sun.on(&Material::matte(Rgb888::CSS_ORANGE), &model)) }
     }
 
-    /// Draws it.
+    /// Draws the torus.
     pub fn draw(&self, scene: &mut Scene<'_, impl Framebuffer>) {
         scene.draw(&TORUS, &self.mvp, &self.shader);
     }
@@ -54,21 +55,21 @@ const AROUND: usize = 32;
 const ACROSS: usize = 16;
 const VERTICES: usize = AROUND * ACROSS;
 
-/// Radii of the torus in 16.16: 1, and 0.4 of its tube.
+/// Radii of the torus in 16.16: 1, and 0.4 for its tube.
 const RADIUS: i64 = 1 << 16;
 const TUBE: i64 = 26_214;
 
 /// Positions are fractions of its outer radius.
 const OUTER: i64 = RADIUS + TUBE;
 
-/// Sine and cosine of a part of a whole turn, 16.16.
+/// Returns sine and cosine of a part of a whole turn, in 16.16.
 const fn unit(part: usize, whole: usize) -> (i64, i64) {
     let angle = Angle16((part * 65_536 / whole) as u16);
     (angle.sin().to_bits() as i64, angle.cos().to_bits() as i64)
 }
 
-/// The vertices' positions, or their normals: both lie on a circle around the tube's middle, which is on a circle
-/// itself.
+/// Returns the positions of the vertices, or their normals: both lie on a circle around the middle of the tube, and
+/// that middle lies on a circle itself.
 const fn points(radius: i64, tube: i64, full: i64) -> [[i16; 3]; VERTICES] {
     let mut points = [[0; 3]; VERTICES];
     let mut k = 0;
@@ -86,7 +87,7 @@ const fn points(radius: i64, tube: i64, full: i64) -> [[i16; 3]; VERTICES] {
     points
 }
 
-/// The corners of quads, counter-clockwise as seen from outside.
+/// Returns the corners of quads, counter-clockwise as seen from outside.
 const fn quads() -> [u16; 4 * VERTICES] {
     let mut quads = [0; 4 * VERTICES];
     let mut k = 0;
@@ -109,7 +110,7 @@ static POSITIONS: [[i16; 3]; VERTICES] = points(RADIUS, TUBE, OUTER);
 static NORMALS: [[i16; 3]; VERTICES] = points(0, RADIUS, 2 * RADIUS);
 static QUADS: [u16; 4 * VERTICES] = quads();
 
-/// The compiler makes it and checks it; it stays in flash.
+/// The torus, made and checked by the compiler; it stays in flash.
 static TORUS: Mesh<'static> = Mesh::constant(MeshData {
     topology: Topology::Quads,
     indices: Some(&QUADS),

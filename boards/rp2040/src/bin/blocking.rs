@@ -1,4 +1,4 @@
-//! Draws a strip, sends it, draws the next one: one buffer, and the processor does both.
+//! Draws a strip, sends it, draws the next one. There is one buffer, and the processor does both.
 #![no_std]
 #![no_main]
 #![forbid(unsafe_code)]

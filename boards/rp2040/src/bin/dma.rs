@@ -1,5 +1,5 @@
-//! Draws a strip while the one before is sent by DMA: two buffers, and a frame takes no longer than drawing alone, or
-//! sending alone.
+//! Draws a strip while the one before is sent by DMA. There are two buffers, and a frame takes only as long as the
+//! longer of drawing alone and sending alone.
 #![no_std]
 #![no_main]
 #![forbid(unsafe_code)]

@@ -1,5 +1,5 @@
-//! Draws without sending and sends without drawing, with GP2 high meanwhile: four frames are drawn, one is sent by the
-//! processor, one by DMA. A logic analyser, or `emulate.mjs`, tells how long each takes.
+//! Draws without sending, and sends without drawing, with GP2 high meanwhile. Four frames are drawn, one is sent by
+//! the processor, one by DMA. A logic analyser, or `emulate.mjs`, tells how long each takes.
 #![no_std]
 #![no_main]
 #![forbid(unsafe_code)]
@@ -28,7 +28,7 @@ fn areas() -> impl Iterator<Item = Rectangle> {
     (0..SIZE.height as i32).step_by(ROWS).map(move |y| Rectangle::new(Point::new(0, y), strip))
 }
 
-/// Keeps the pin high while something is done.
+/// Keeps the pin high while `work` runs.
 fn marked<T>(pin: &mut impl OutputPin<Error = Infallible>, work: impl FnOnce() -> T) -> T {
     let Ok(()) = pin.set_high();
     let result = work();
