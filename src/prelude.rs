@@ -12,8 +12,10 @@
 //!
 //! fn draw<D: DrawTarget<Color = Rgb565>>(display: &mut D) -> Result<(), FrameError<D::Error>> {
 //!     let mut renderer = Renderer::<Rgb565>::new(SCREEN).unwrap();
-//!     let lens = Projective::perspective(Angle16::from_degrees(60), SCREEN, Scalar::ONE, Scalar::from_num(9)).unwrap();
-//!     let (mvp, shader) = (lens * Affine::translation(Vec3::Z * Scalar::from_num(-3)), Flat::unlit(Rgb888::CSS_ORANGE));
+//!     let (angle, near, far) = (Angle16::from_degrees(60), Scalar::ONE, Scalar::from_num(9));
+//!     let lens = Projective::perspective(angle, SCREEN, near, far).unwrap();
+//!     let model = Affine::translation(Vec3::from_ints(0, 0, -3));
+//!     let (mvp, shader) = (lens * model, Flat::unlit(Rgb888::CSS_ORANGE));
 //!     // Strips of 16 rows.
 //!     renderer.frame(display, &mut [0; 160 * 16], Rgb888::BLACK, |scene| scene.draw(&TRIANGLE, &mvp, &shader))?;
 //!     Ok(())

@@ -91,7 +91,7 @@ impl<'b, D: DepthChoice> FramebufferRenderer<'b, D> {
     /// Draws a frame over the pixels that are there.
     ///
     /// # Errors
-    /// As [`frame`](Self::frame).
+    /// Those of [`frame`](Self::frame).
     pub fn frame_over<F: Framebuffer>(
         &mut self,
         framebuffer: &mut F,

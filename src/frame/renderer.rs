@@ -121,7 +121,7 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
     /// at `top_left`; the rest of the display is left to others. See also [`FrameView`](crate::frame::FrameView).
     ///
     /// # Errors
-    /// As [`frame`](Self::frame).
+    /// Those of [`frame`](Self::frame).
     pub fn frame_at<T: DrawTarget<Color = P::Color>>(
         &mut self,
         display: &mut T,

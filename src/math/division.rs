@@ -77,7 +77,7 @@ pub(crate) fn divide_modulo(high: i64, low: u32, den: u64) -> i64 {
             rest = word.into();
             word = 0;
         } else if den >> 31 == 0 {
-            // Most have few bits; the rest is below it.
+            // Most divisors have few bits, and the rest is below the divisor.
             let remainder;
             (word, remainder) = split(long_divide(rest << 32 | u64::from(word), den as u32));
             rest = remainder.into();

@@ -56,7 +56,7 @@ const fn mul_high_signed_by_halves(a: i32, b: u32) -> i32 {
     a1 * b1 as i32 + (middle >> 16) + (other >> 16) as i32
 }
 
-/// Leading zeros of a byte.
+/// Number of leading zeros of each byte.
 static BYTE_ZEROS: [u8; 256] = {
     let mut table = [0; 256];
     let mut i = 0;

@@ -242,7 +242,8 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
                 return Ok(());
             }
             let row = colors(*framebuffer, y, &part.x);
-            // Less than the whole area's width is drawn, or all of it.
+            // Number of colours to pass over before the next row: those of the area's width that this row does not
+            // draw.
             skip = width.wrapping_sub(row.len());
             let mut stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x).iter_mut();
             for (pixel, color) in row.iter_mut().zip(&mut new) {

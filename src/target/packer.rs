@@ -166,7 +166,8 @@ fn pack_row<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
         let word = push(word, *p5, entries[5]);
         let word = push(word, *p6, entries[6]);
         let word = push(word, *p7, entries[7]);
-        // The word's last bytes when it was filled from below, all of it or its last bytes when from above.
+        // Now the pixels are in the word's last bytes if it was filled from below. If it was filled from above, they
+        // are in all of its bytes, or in its last ones.
         match (bytes, if HIGH_FIRST { word.to_be_bytes() } else { word.to_le_bytes() }) {
             ([a], [.., w]) => *a = w,
             ([a, b], [.., v, w]) => (*a, *b) = (v, w),

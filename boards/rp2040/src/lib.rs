@@ -18,7 +18,7 @@ pub mod scene;
 /// Pixels of a row.
 pub const WIDTH: usize = scene::SIZE.width as usize;
 
-/// Rows of a strip: all strips have as many, so that a whole buffer can be sent.
+/// Rows of a strip. All strips have the same number of rows, so that a whole buffer can be sent.
 pub const ROWS: usize = zstrip::frame::RamBudget::even_rows(scene::SIZE.height, 16) as usize;
 
 /// Colours of a strip, as the panel wants their bytes.
