@@ -1,4 +1,4 @@
-# What the checks share. Sourced: it moves to the crate's root and makes every error fatal.
+# The functions that the checks share. Sourced: it moves to the crate's root and makes every error fatal.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 

@@ -1,5 +1,5 @@
-//! The benchmark's workloads: as firmware they are counted, on the host their pictures are checked. `ci/bench` runs both
-//! and prints the table.
+//! The benchmark's workloads: as firmware they are counted, on the host their pictures are checked. `ci/bench` runs
+//! both and prints the table.
 //!
 //! As firmware it prints, for each run, `name rows ticks hash`: SysTick's ticks over a frame, between two instructions
 //! that mark it for a counting plugin, and a hash of the picture. A frame clears colours and depths; runs of an empty

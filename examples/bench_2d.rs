@@ -1,7 +1,7 @@
-//! What 2-D drawing costs: the same embedded-graphics drawing into its own framebuffer of the whole screen, and into strips.
+//! Measures 2-D drawing: embedded-graphics draws into its own framebuffer of the whole screen, and into strips.
 //! `ci/bench-2d` runs it on a Cortex-M0+ and a Cortex-M4 and prints the table.
 //!
-//! It prints `name pixels` and SysTick's ticks for each way to draw, and on which of them the pictures differ, if on any.
+//! It prints `name pixels` and SysTick's ticks for each way to draw, and names the ways whose pictures differ.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -34,7 +34,8 @@ mod counting {
     const HEIGHT: usize = 240;
     type Full = Framebuffer<Rgb565, RawU16, LittleEndian, WIDTH, HEIGHT, { buffer_size::<Rgb565>(WIDTH, HEIGHT) }>;
 
-    /// Takes drawables: a framebuffer as they are, an overlay by their bounding boxes, and images by what is in the strip.
+    /// Takes drawables: a framebuffer draws all of them; an overlay skips those outside of the strip, and draws an
+    /// image's part.
     trait Put {
         fn put<T: Drawable<Color = Rgb565> + Dimensions>(&mut self, drawable: &T);
         fn put_image<T: ImageDrawable<Color = Rgb565>>(&mut self, image: &T, top_left: Point);
@@ -106,7 +107,7 @@ mod counting {
     static mut COLOR: [u16; WIDTH * HEIGHT] = [0; _];
     static mut DEPTH: [u16; WIDTH * HEIGHT] = [0; _];
 
-    /// Ticks of what a closure does.
+    /// Counts the ticks of a closure.
     #[inline(never)]
     fn count(work: impl FnOnce()) -> u32 {
         let start = ticks::now();
@@ -116,7 +117,7 @@ mod counting {
 
     const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
 
-    /// Ticks of a frame in strips, and whether it is what the framebuffer shows.
+    /// Returns the ticks of a frame in strips, and whether its picture equals the framebuffer's.
     fn strips_of<D: DepthChoice, R: RecordsChoice>(
         renderer: Result<Renderer<'_, Rgb565, D, R>, RendererError>,
         color: &mut [u16],

@@ -1,6 +1,7 @@
 //! Checks the conformance files of a folder and prints a line for each.
 //!
-//! `cargo run --release --example conformance -- FOLDER`. The exit code is 0 only if every record that has a check is right.
+//! `cargo run --release --example conformance -- FOLDER`. The exit code is 0 only if every record that has a check is
+//! right.
 
 #[path = "../tests/reference/mod.rs"]
 mod reference;

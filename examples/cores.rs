@@ -1,9 +1,9 @@
 //! Renders every scene and prints one line `name hash` each: on the host, as firmware on Arm and
 //! RISC-V (through semihosting), and as Wasm (through an imported function).
 //!
-//! `ci/cores` compares the lines. With `--cfg 'small_ram="bare"'` or `--cfg 'small_ram="records"'` the frame fits a chip of
-//! 16 KB: thin strips without records, or thinner ones with few, which must not change a byte. Its flash holds the scenes of
-//! plain meshes.
+//! `ci/cores` compares the lines. With `--cfg 'small_ram="bare"'` or `--cfg 'small_ram="records"'` the frame fits a
+//! chip of 16 KB: thin strips without records, or thinner ones with few, which must not change a byte. Its flash holds
+//! the scenes of plain meshes.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -1,8 +1,8 @@
-//! What a pixel costs: firmware that draws a screen-filling square with each material, blend mode and kind of fog, and
-//! counts. `ci/costs` runs it and prints the table.
+//! Measures a pixel: firmware that draws a screen-filling square with each material, blend mode and kind of fog, and
+//! counts ticks. `ci/costs` runs it and prints the table.
 //!
-//! It prints, for each row, `name,ticks`: SysTick's ticks over a frame, between two instructions that mark it for a counting
-//! plugin. The first row draws nothing: what it costs to clear colours and depths.
+//! It prints, for each row, `name,ticks`: SysTick's ticks over a frame, between two instructions that mark it for a
+//! counting plugin. The first row draws nothing: it is the cost of clearing colours and depths.
 //!
 //! A new row is a line in [`rows::ROWS`].
 #![cfg_attr(target_os = "none", no_std, no_main)]

@@ -1,5 +1,5 @@
-//! Gauges, a plot, text and an image: embedded-graphics alone, drawn strip by strip in a tenth of a framebuffer's memory
-//! and without a depth buffer. `scenes/dashboard.rs` draws them.
+//! Gauges, a plot, text and an image: embedded-graphics alone, drawn strip by strip in a tenth of a framebuffer's
+//! memory and without a depth buffer. `scenes/dashboard.rs` draws them.
 //!
 //! ```text
 //! cargo run --release --example dashboard -- --help

@@ -1,4 +1,5 @@
-//! A torus with axes and names in its space: text that is hidden by objects in front of it. `scenes/labels.rs` draws it.
+//! A torus with axes and names in its space: text that is hidden by objects in front of it. `scenes/labels.rs` draws
+//! it.
 //!
 //! ```text
 //! cargo run --release --example labels -- --help

@@ -3,8 +3,8 @@
 //! benchmark without records, `proof="w1-w6"` all six workloads; `proof="all"` draws every scene,
 //! `proof="formats"` those in other pixel formats.
 //!
-//! It prints the peak stack of a frame, the largest of all, as eight hexadecimal digits, one by one: formatting would link
-//! the panics that the image must not contain.
+//! It prints the peak stack of a frame, the largest of all, as eight hexadecimal digits, one by one: formatting would
+//! link the panics that the image must not contain.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]

@@ -1,10 +1,11 @@
-//! How the cost of a frame grows: firmware that draws a torus of 128, 512 and 2,048 triangles on two screens, in strips of
-//! seven heights, with four amounts of memory for records, and counts. `ci/scaling` runs it and prints the tables.
-//! Where records hold no triangles, it draws the torus once more as a mesh with a hierarchy of bounds, in eight parts.
+//! Measures how the cost of a frame grows: firmware that draws a torus of 128, 512 and 2,048 triangles on two screens,
+//! in strips of seven heights, with four amounts of memory for records, and counts. `ci/scaling` runs it and prints the
+//! tables. Where records hold no triangles, it draws the torus once more as a mesh with a hierarchy of bounds, in eight
+//! parts.
 //!
-//! It prints, for each frame, `width height rows triangles room bytes ticks walks hash`: bytes of strip and records, SysTick's ticks
-//! over the frame without those that its sink takes for the hash of the picture, and how often the scene was walked. Frames
-//! of 0 triangles tell what it costs to clear and to hand out strips.
+//! It prints, for each frame, `width height rows triangles room bytes ticks walks hash`: bytes of strip and records,
+//! SysTick's ticks over the frame without those that its sink takes for the hash of the picture, and how often the
+//! scene was walked. Frames of 0 triangles cost only clearing and handing out strips.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -28,7 +29,7 @@ mod tori {
         quads: [[u16; 4]; VERTICES],
     }
 
-    /// What 32,768 stands for in the positions: 1.4.
+    /// The coordinate of 32,768 in the positions: 1.4 in 16.16.
     const SCALE: i64 = 91_750;
 
     /// Sine and cosine of step `k` of `n`, 16.16.
@@ -87,7 +88,7 @@ mod tori {
             nodes
         }
 
-        /// What holds a part: its vertices, and those where the next part begins.
+        /// Returns the bounds of a part: of its vertices, and those where the next part begins.
         const fn bounds(&self, part: usize) -> Bounds {
             let mut points = [[0; 3]; VERTICES];
             let (first, mut k) = (part * VERTICES / PARTS, 0);
@@ -154,7 +155,7 @@ mod counting {
     const SCREENS: [(u16, u16, [u16; 7]); 2] =
         [(160, 128, [128, 64, 32, 16, 8, 4, 2]), (320, 240, [240, 120, 60, 30, 16, 8, 4])];
 
-    /// How much memory there is for records.
+    /// The amounts of memory for records.
     #[derive(Clone, Copy)]
     enum Room {
         /// None: vertices are shaded for each triangle, in each strip.
@@ -182,7 +183,7 @@ mod counting {
         }
     }
 
-    /// What a frame shows, and how large it is.
+    /// The mesh and the size of a frame.
     struct Shot<'a> {
         screen: (u16, u16),
         camera: &'a Projective,

@@ -1,9 +1,9 @@
-//! What lines cost: `ci/strokes` builds this as firmware, counts, and prints the table.
+//! Measures lines: `ci/strokes` builds this as firmware, counts ticks, and prints the table.
 //!
 //! Draws 48 lines in all directions, none over another, with each stroke, of full length and of half of it: that tells
-//! the cost of a line from that of a pixel. Prints `name lines pixels ticks`, with SysTick's ticks over a frame, which two
-//! instructions mark for a counting plugin; pixels are those that are not background. Then a wireframe of the torus, its hidden
-//! lines removed, in one strip and in 15. On the host it prints the same without ticks.
+//! the cost of a line from that of a pixel. Prints `name lines pixels ticks`, with SysTick's ticks over a frame, which
+//! two instructions mark for a counting plugin; pixels are those that are not background. Then a wireframe of the
+//! torus, its hidden lines removed, in one strip and in 15. On the host it prints these lines without ticks.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -33,7 +33,7 @@ const LINES: usize = CELLS.0 * CELLS.1;
 type Target<'a> = Strip<'a, Rgb565, WithDepth, WithRecords>;
 type Drawing = fn(&mut Scene<'_, Target<'_>>, &Input<'_>);
 
-/// What is ready before a frame.
+/// The lines and matrices that are made before a frame.
 struct Input<'e> {
     screen: &'e [[ScreenPoint; 2]; LINES],
     lines: Lines<'e>,

@@ -148,7 +148,8 @@ fn blended_draws_see_what_is_there_and_leave_depth() {
     let (opaque, depth, _) = whole::<Rgb888>(SCREEN, Rgb888::CSS_DARK_SLATE_BLUE, |scene| {
         scene.draw(&SQUARE, &Projective::IDENTITY, &Gouraud::vertex_colors());
     });
-    // Depth runs from 1/4 at the bottom to 3/4 at the top; nearer by 1/8 everything passes, farther by 1/8 nothing does.
+    // Depth runs from 1/4 at the bottom to 3/4 at the top; nearer by 1/8 everything passes, farther by 1/8 nothing
+    // does.
     for (offset, passes) in [(-125, true), (125, false)] {
         let nearer = Projective::from(Affine::translation(Vec3::from_milli(0, 0, offset)));
         let (picture, after, _) = whole::<Rgb888>(SCREEN, Rgb888::CSS_DARK_SLATE_BLUE, |scene| {

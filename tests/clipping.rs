@@ -138,8 +138,8 @@ fn edge_is_cut_alike_in_both_directions_and_in_both_triangles() {
     assert!(cuts > 2000);
 }
 
-/// The near plane cuts at x = -66.7 w and -66 w, which the guard band at -64 w then takes away; so no vertex at z = 0 is
-/// left. With less to the left, the near plane alone cuts.
+/// The near plane cuts at x = -66.7 w and -66 w, which the guard band at -64 w then takes away; so no vertex at z = 0
+/// is left. With less to the left, the near plane alone cuts.
 #[test]
 fn planes_come_in_one_order() {
     let one = 1 << 16;

@@ -41,8 +41,8 @@ fn to_f64(v: Vec3) -> [f64; 3] {
     v.to_bits().map(|c| f64::from(c) / 65_536.0)
 }
 
-/// The planes that a point has to be inside of to be seen in a rectangle of the screen, from the definition of the matrix and the
-/// viewport: a · x + b · y + c · z + d ≥ 0 for each. Exact.
+/// The planes that a point has to be inside of to be seen in a rectangle of the screen, from the definition of the
+/// matrix and the viewport: a · x + b · y + c · z + d ≥ 0 for each. Exact.
 ///
 /// With X = x0 + (1 + x / w) · width / 2, X ≥ left is width · x + (2 x0 + width - 2 left) · w ≥ 0, as w > 0.
 fn planes(camera: &Projective, viewport: &Viewport, columns: &Range<i32>, lines: &Range<i32>) -> [[i128; 4]; 6] {
@@ -285,8 +285,8 @@ fn scenes_may_leave_out_what_is_not_visible() {
     }
 }
 
-/// Boxes as far out as coordinates go, of objects in front of the eye and behind it. Each mesh has its triangle twice: bounds of
-/// up to four vertices are not looked at.
+/// Boxes as far out as coordinates go, of objects in front of the eye and behind it. Each mesh has its triangle twice:
+/// bounds of up to four vertices are not looked at.
 #[test]
 fn far_corners_of_a_large_world_are_seen_from_the_front_and_culled_behind() {
     let lens =

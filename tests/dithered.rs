@@ -102,8 +102,8 @@ fn black_and_white_have_no_pattern() {
     check::<Rgb332>();
 }
 
-/// Cells of a ramp, black to white in red, white to black in green, dark to bright in blue, have the mean of the same ramp in
-/// 8 bits.
+/// Cells of a ramp, black to white in red, white to black in green, dark to bright in blue, have the mean of the same
+/// ramp in 8 bits.
 fn check_ramp<P: Ditherable>(bound: f64) {
     let corner = |side: u8, up: u8| [side, 255 - side, up / 2 + 30];
     rectangle([corner(0, 255), corner(0, 0), corner(255, 0), corner(255, 255)], |mesh| {

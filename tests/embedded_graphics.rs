@@ -60,7 +60,8 @@ fn image_bytes() -> Vec<u8> {
     (0..24 * 19).flat_map(|k: u32| [(k % 24 * 10) as u8, (k / 24 * 13) as u8, (k * 37 % 256) as u8]).collect()
 }
 
-/// One of everything: text, images, shapes; also across the borders of the screen, outside of it, and on top of each other.
+/// One of everything: text, images, shapes; also across the borders of the screen, outside of it, and on top of each
+/// other.
 fn everything<C: PixelColor + From<Rgb888>>(to: &mut impl Put<C>) {
     let color = |c: Rgb888| C::from(c);
     let bytes = image_bytes();

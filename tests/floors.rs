@@ -1,7 +1,8 @@
-//! The crate is built in floors: each folder of `src` imports only from those below it, and files import each other in no circle.
+//! The crate is built in floors: each folder of `src` imports only from those below it, and files import each other in
+//! no circle.
 //!
-//! The sources are read as text: every path that begins with `crate::` or `super::` counts, in `use` lines and elsewhere, but for
-//! comments and for tests inside of the crate.
+//! The sources are read as text: every path that begins with `crate::` or `super::` counts, in `use` lines and
+//! elsewhere, but for comments and for tests inside of the crate.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -1,4 +1,5 @@
-//! Drawn like Gouraud: shaders with colours as varyings look alike in every pixel format, however the format draws them fast.
+//! Drawn like Gouraud: shaders with colours as varyings look alike in every pixel format, however the format draws them
+//! fast.
 
 mod reference;
 mod support;
@@ -18,8 +19,8 @@ use zstrip::{Cull, State};
 
 const SCREEN: (u16, u16) = (80, 60);
 
-/// How far colours of [`Gouraud`] may be from exact ones, out of 255: vertices are squeezed and kept in 8.2 bits, and steps are
-/// rounded.
+/// How far colours of [`Gouraud`] may be from exact ones, out of 255: vertices are squeezed and kept in 8.2 bits, and
+/// steps are rounded.
 const NEAR: i32 = 2;
 
 /// A user's shader: the colours of the vertices in 8.16, not squeezed and not packed, fragment by fragment.
@@ -74,7 +75,8 @@ fn check_lit<P: PixelFormat<Raw: PartialEq + Debug>>() {
     });
 }
 
-/// A user's shader in 8 bits tells the colours: in `P` it must have just them, packed, and Gouraud colours next to them.
+/// A user's shader in 8 bits tells the colours: in `P` it must have just them, packed, and Gouraud colours next to
+/// them.
 fn check_plain<P: PixelFormat<Raw: PartialEq + Debug>>(near: i32) {
     for_meshes::<P>(|mesh, depth, case| {
         let colors = picture::<Rgb888>(mesh, depth, &Plain);

@@ -1,4 +1,5 @@
-//! A wireframe over the surface it outlines: what is visible is drawn without gaps, what is hidden does not shine through.
+//! A wireframe over the surface it outlines: what is visible is drawn without gaps, what is hidden does not shine
+//! through.
 
 mod reference;
 #[path = "../examples/scenes/mod.rs"]
@@ -158,8 +159,8 @@ fn visible_edges_have_no_gaps_and_hidden_ones_do_not_shine_through() {
 
 #[test]
 fn lines_may_be_pulled_forward_instead() {
-    // The bias of lines themselves, over a surface drawn as it is: a line in the plane of a face towards the viewer is seen
-    // with one step, and not without.
+    // The bias of lines themselves, over a surface drawn as it is: a line in the plane of a face towards the viewer is
+    // seen with one step, and not without.
     let corners = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]];
     let corners = corners.map(|[x, y, z]| Vec3::from_ints(x, y, z));
     let data = MeshData::new(Positions::Exact(&corners));

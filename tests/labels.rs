@@ -1,4 +1,5 @@
-//! 2-D drawing at a depth, among meshes: against a model that tests each pixel by itself, and where points of the world are.
+//! 2-D drawing at a depth, among meshes: against a model that tests each pixel by itself, and where points of the world
+//! are.
 
 mod reference;
 mod support;

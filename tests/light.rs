@@ -72,7 +72,8 @@ fn rgb([r, g, b]: [u8; 3]) -> Rgb888 {
     Rgb888::new(r, g, b)
 }
 
-/// Colour of a point with a normal, both in the lights' space, and how far its light is from going on or off with n · l.
+/// Colour of a point with a normal, both in the lights' space, and how far its light is from going on or off with n ·
+/// l.
 fn reference<const D: usize, const P: usize>(
     lighting: &Lighting<D, P>,
     material: &Paint,
@@ -293,7 +294,8 @@ fn lighting() -> Lighting<1, 1> {
     }
 }
 
-/// Draws the square and compares each pixel with what `exact` says for the triangle's corners and its barycentric weights.
+/// Draws the square and compares each pixel with what `exact` says for the triangle's corners and its barycentric
+/// weights.
 fn compare(
     what: &str,
     shader: &impl Shader<Rgb888>,

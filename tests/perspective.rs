@@ -76,8 +76,8 @@ fn every_pixel_is_within_a_sixteenth_of_a_texel_whatever_w_is() {
     }
 }
 
-/// Sub-spans over the conformance data and random triangles with w as there: how far off they are, and that span ends are
-/// not.
+/// Sub-spans over the conformance data and random triangles with w as there: how far off they are, and that span ends
+/// are not.
 #[test]
 fn sub_spans_are_exact_at_span_ends() {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/conformance/persp.csv");

@@ -1,4 +1,5 @@
-//! Small pictures that a person can check by eye, each drawn in several strip heights and with several amounts of records.
+//! Small pictures that a person can check by eye, each drawn in several strip heights and with several amounts of
+//! records.
 //!
 //! | character | pixel |
 //! |---|---|
@@ -104,8 +105,8 @@ fn pixels() -> Projective {
 
 #[test]
 fn triangle_has_the_pixels_whose_centres_are_inside_or_on_its_left_and_top_edges() {
-    // The slanted edge, on the right, runs through pixel centres: they are not drawn. The left edge and the top one do as
-    // well: they are.
+    // The slanted edge, on the right, runs through pixel centres: they are not drawn. The left edge and the top one do
+    // as well: they are.
     let corner = ScreenPoint::center;
     assert_pattern(
         &[".........", ".RRRRRR..", ".RRRRR...", ".RRRR....", ".RRR.....", ".RR......", ".R.......", "........."],
@@ -143,8 +144,8 @@ fn triangles_that_share_edges_leave_no_gap_and_overlap_nowhere() {
 
 #[test]
 fn floor_is_clipped_at_the_near_plane() {
-    // A path along -z from behind the eye to z = -20, seen from one above: its near part, which has no place on the screen,
-    // is gone, and what is left reaches the lower border.
+    // A path along -z from behind the eye to z = -20, seen from one above: its near part, which has no place on the
+    // screen, is gone, and what is left reaches the lower border.
     let corners = [(-1, 2), (1, 2), (1, -20), (-1, -20)].map(|(x, z)| Vec3::from_ints(x, -1, z));
     let path = Mesh::new(MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&corners)) });
     let path = path.expect("a square");

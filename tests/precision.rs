@@ -1,4 +1,5 @@
-//! Numbers against f64 and exact fractions: projected positions, depth, interpolated colours. The worst cases are printed.
+//! Numbers against f64 and exact fractions: projected positions, depth, interpolated colours. The worst cases are
+//! printed.
 
 mod reference;
 mod support;
@@ -309,7 +310,8 @@ fn gouraud_channels_are_within_1_of_255_of_the_exact_plane() {
     assert!(pixels > 50_000);
 }
 
-/// Formats of 16 bits have a loop of their own, all channels in one word; what it packs must have been within 1 as well.
+/// Formats of 16 bits have a loop of their own, all channels in one word; what it packs must have been within 1 as
+/// well.
 #[test]
 fn packed_channels_were_within_1_of_255_before_they_lost_bits() {
     let (mut worst, mut pixels) = ((0.0, String::new()), 0);

@@ -1,5 +1,5 @@
-//! Comments keep to the width that code has, and summaries to one form: those of functions begin with a verb in the third person,
-//! no other with a word that leaves open what it is about.
+//! Comments keep to the width that code has, and summaries to one form: those of functions begin with a verb in the
+//! third person, no other with a word that leaves open what it is about.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! Whole frames against three independent renderers: exact from snapped vertices, homogeneous without a clipper, and rays.
+//! Whole frames against three independent renderers: exact from snapped vertices, homogeneous without a clipper, and
+//! rays.
 
 mod reference;
 #[path = "../examples/scenes/mod.rs"]
@@ -434,7 +435,8 @@ fn sphere(around: u16, across: u16) -> (Vec<[f64; 3]>, Vec<u16>) {
     (points, indices)
 }
 
-/// How a mesh of a sphere differs from the sphere: pixels of the silhouette, and mean brightness in 1/255 where both are.
+/// How a mesh of a sphere differs from the sphere: pixels of the silhouette, and mean brightness in 1/255 where both
+/// are.
 fn sphere_error(around: u16, across: u16) -> (usize, f64) {
     let lens = Lens::Perspective { tan_half_fov: 0.4 };
     let mut camera = Camera::look_at([0.6, 1.2, 3.0], [0.0; 3], [0.0, 1.0, 0.0], lens, 1.0);

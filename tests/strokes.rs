@@ -1,7 +1,7 @@
 //! Strokes with every way to blend, to discard and to test depth, against a plain model in two passes.
 //!
-//! The first pass finds the pixels of a line, each with its coverage and its fragment. The second applies the shader's rule to
-//! each of them.
+//! The first pass finds the pixels of a line, each with its coverage and its fragment. The second applies the shader's
+//! rule to each of them.
 
 mod reference;
 mod support;
@@ -96,8 +96,8 @@ impl Shader<Gray8> for Recorder<'_> {
 
 const ALL: State = State { depth: DepthState::OFF, ..State::DEFAULT };
 
-/// Returns a line's fragments in order, with their coverage: from white on black and from black on white, which are rounded
-/// in opposite directions.
+/// Returns a line's fragments in order, with their coverage: from white on black and from black on white, which are
+/// rounded in opposite directions.
 fn hits(line: &Lines<'_>, stroke: &impl Stroke) -> Vec<Hit> {
     let hits = RefCell::new(Vec::new());
     whole::<Gray8>(SCREEN, Gray8::new(0), |scene| {

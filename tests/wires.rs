@@ -135,7 +135,8 @@ fn perspective_correct_lines_are_drawn_alike_with_and_without_records() {
 /// A line that goes away from the eye, as a whole and cut at the near plane.
 #[test]
 fn perspective_correct_values_of_a_line_that_is_cut_are_those_of_the_whole_line() {
-    // From w = 1/2 to w = 8 in one line; and with its start drawn out to w = 0, where the value goes on evenly in space.
+    // From w = 1/2 to w = 8 in one line; and with its start drawn out to w = 0, where the value goes on evenly in
+    // space.
     let along = |w: f64| [(w - 0.5) / 8.0, (w - 0.5) / 8.0, (w - 0.25) * 0.5, w].map(Scalar::from_num);
     let value = |w: f64| ((w + 1.0) * 20.0) as u8;
     let picture = |from: f64| {

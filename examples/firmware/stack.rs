@@ -17,8 +17,8 @@ unsafe extern "C" {
     static mut _stack_start: u32;
 }
 
-/// Runs `work` and returns the most stack it used, in bytes, with its callers left out; `None` if that was all there is,
-/// so that it may have run into the statics.
+/// Runs `work` and returns the most stack it used, in bytes, with its callers left out; `None` if that was all there
+/// is, so that it may have run into the statics.
 #[inline(never)]
 pub fn peak_of(work: impl FnOnce()) -> Option<usize> {
     let bottom = &raw mut __sheap;

@@ -1,5 +1,5 @@
-//! What the examples on a desktop share: a program around something to draw, and a picture made of strips, as a PNG file and
-//! as a window wants it.
+//! The code that the desktop examples share: a program that shows a demo, and a picture made of strips, for a PNG file
+//! and for a window.
 #![allow(dead_code)] // each program uses its part
 
 mod options;

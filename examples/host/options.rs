@@ -1,10 +1,10 @@
-//! The options of the command line, which are the same for all examples.
+//! The options of the command line, common to all examples.
 
 use super::program::{Demo, Depth};
 use std::error::Error;
 use std::path::PathBuf;
 
-/// What a frame is drawn with.
+/// The settings of a frame.
 pub struct Settings {
     pub png: Option<PathBuf>,
     pub strip_rows: u16,
@@ -14,7 +14,7 @@ pub struct Settings {
     pub size: (u16, u16),
 }
 
-/// What `--help` prints.
+/// Returns the text that `--help` prints.
 pub fn help<D: Demo<Z>, Z: Depth>() -> String {
     let first = D::MODES.get(D::FIRST);
     let modes = first.map_or_else(String::new, |first| {
@@ -49,7 +49,7 @@ keys in the window
     )
 }
 
-/// The settings of the command line, or `None` if help was asked for.
+/// Returns the settings of the command line, or `None` if help was asked for.
 pub fn arguments<D: Demo<Z>, Z: Depth>() -> Result<Option<Settings>, Box<dyn Error>> {
     use lexopt::prelude::*;
     let mut settings =

@@ -1,5 +1,5 @@
-//! A program that shows a demo, strip by strip as on a small display: in a window with keys, or as a PNG file where there
-//! is no display.
+//! A program that shows a demo, strip by strip as on a small display: in a window with keys, or as a PNG file where
+//! there is no display.
 
 use super::Picture;
 use super::options::{Settings, arguments, help};

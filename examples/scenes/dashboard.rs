@@ -66,7 +66,8 @@ fn wave(turn: Angle16, k: u16, size: i32) -> i32 {
     (Angle16(turn.0.wrapping_mul(k)).sin().to_bits() * size) >> 16
 }
 
-/// The point at `radius` from `center` in a direction, clockwise from the top; in half pixels, so that needles are round.
+/// Returns the point at `radius` from `center` in a direction, clockwise from the top; in half pixels, so that needles
+/// are round.
 fn around(center: Point, angle: Angle16, radius: i32) -> Point {
     let at = |v: i32| (v * radius + (1 << 15)) >> 16;
     center + Point::new(at(angle.sin().to_bits()), -at(angle.cos().to_bits()))
@@ -199,7 +200,7 @@ const fn picture() -> [u8; WEATHER_SIZE * WEATHER_SIZE * 2] {
     bytes
 }
 
-/// What is at a place of the weather, in eighths of a pixel.
+/// Returns the colour at a place of the weather, in eighths of a pixel.
 const fn weather(x: i32, y: i32) -> [i32; 3] {
     const fn within(x: i32, y: i32, center: (i32, i32), radius: i32) -> bool {
         let (dx, dy) = (x - center.0, y - center.1);

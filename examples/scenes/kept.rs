@@ -35,8 +35,8 @@ mod firmware {
     use core::ops::Deref;
     use core::ptr::NonNull;
 
-    /// Bytes for all that is kept at a time: 56 matrices of trees are the most of one scene. Chips of 16 KB draw scenes of
-    /// few matrices.
+    /// Bytes of all values that are kept at a time. The largest scene has the matrices of 56 trees; the scenes for
+    /// chips of 16 KB have few matrices.
     const ROOM: usize = if cfg!(any(small_ram = "bare", small_ram = "records")) { 640 } else { 8 * 1024 };
 
     #[repr(align(8))]

@@ -162,7 +162,7 @@ pub static LAKE: Mesh<'static> = Mesh::constant(MeshData {
 
 const PINES: usize = 56;
 
-/// Where pines stand: on grass.
+/// Returns the places of the pines: on grass.
 pub fn trees() -> &'static [Vec3; PINES] {
     const { &places() }
 }

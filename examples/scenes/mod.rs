@@ -45,8 +45,8 @@ pub trait Draw<F: Framebuffer> {
     fn draw(&self, scene: &mut Scene<'_, F>);
 }
 
-/// Draws a mesh in a function of its own, which gives its stack back before the next mesh is drawn. Draws that are inlined
-/// into one function hold the stack of all of them at once.
+/// Draws a mesh in a function of its own, which gives its stack back before the next mesh is drawn. Draws that are
+/// inlined into one function hold the stack of all of them at once.
 #[inline(never)]
 fn draw_apart<F: Framebuffer, S: Shader<F::Format>>(
     scene: &mut Scene<'_, F>,

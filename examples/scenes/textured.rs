@@ -17,7 +17,7 @@ const fn rgb565(r: usize, g: usize, b: usize) -> u16 {
     ((r >> 3) << 11 | (g >> 2) << 5 | b >> 3) as u16
 }
 
-/// Some number that looks random.
+/// Returns a number that looks random.
 const fn noise(x: usize, y: usize) -> usize {
     let n = (x as u32).wrapping_mul(1_103_515_245).wrapping_add((y as u32).wrapping_mul(12_345_677));
     ((n ^ n >> 13).wrapping_mul(1_274_126_177) >> 24) as usize

@@ -8,7 +8,7 @@ const ACROSS: usize = 16;
 const VERTICES: usize = AROUND * ACROSS;
 const TRIANGLES: usize = 2 * VERTICES;
 
-/// What 32,768 stands for in the positions: 1.4.
+/// The coordinate of 32,768 in the positions: 1.4 in 16.16.
 const SCALE: i64 = 91_750;
 
 /// Sine and cosine of step `k` of `n`, 16.16.
@@ -68,7 +68,7 @@ const fn indices() -> [u16; 3 * TRIANGLES] {
     indices
 }
 
-/// The same without diagonals: corners of quads, counter-clockwise.
+/// Returns the torus without diagonals: corners of quads, counter-clockwise.
 const fn quads() -> [u16; 4 * VERTICES] {
     let mut corners = [0; 4 * VERTICES];
     let mut quad = 0;

@@ -69,7 +69,7 @@ impl Water {
 }
 
 impl VertexShader for Water {
-    /// How much light comes back, and how much of the sky is mirrored: 8.16.
+    /// The light that comes back, and the share of the sky that is mirrored: 8.16.
     type Varyings = [i32; 2];
 
     const DISPLACES: bool = true;

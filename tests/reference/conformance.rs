@@ -1,7 +1,7 @@
 //! Checks a rasterizer against the conformance files: exact coverage, meshes, depth and near-plane clipping.
 //!
-//! In: the path of a CSV file, which is known by its name, and a [`Rasterizer`]. Out: how many records came out right, and what
-//! was wrong with the first that did not. A file that cannot be read or understood is an error, never a pass.
+//! In: the path of a CSV file, which is known by its name, and a [`Rasterizer`]. Out: how many records came out right,
+//! and what was wrong with the first that did not. A file that cannot be read or understood is an error, never a pass.
 //!
 //! | file | what must hold |
 //! |---|---|
@@ -51,8 +51,8 @@ pub trait Rasterizer {
     /// Covers one triangle: calls `hit(x, y)` once for every pixel.
     fn triangle(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(u32, u32));
 
-    /// Draws triangles with depth codes in order (test `Less`, clear value 65535), and returns, per pixel in rows, the winner
-    /// (0 = none, else 1-based) and the stored depth.
+    /// Draws triangles with depth codes in order (test `Less`, clear value 65535), and returns, per pixel in rows, the
+    /// winner (0 = none, else 1-based) and the stored depth.
     fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>);
 
     /// Perspective-correct u and t at the centres of the pixels that a triangle covers, in rows; `None` at others.

@@ -1,7 +1,7 @@
 //! Exact coverage, depth and attributes of one triangle: the definition, in integers.
 //!
-//! In: vertices in 1/256 px, x right, y down. Out: yes or no per sample, and values as fractions of two `i128`. Nothing is
-//! rounded, stepped or bounded by a box here that a reader could not check against the formulas on paper.
+//! In: vertices in 1/256 px, x right, y down. Out: yes or no per sample, and values as fractions of two `i128`. Nothing
+//! is rounded, stepped or bounded by a box here that a reader could not check against the formulas on paper.
 //!
 //! # Format
 //! Coordinates may use 32 bits (±2^31 units) and integer attributes 32 bits: areas stay below 2^66 and numerators below
@@ -100,7 +100,8 @@ pub fn barycentric_at(tri: Triangle, sample: Point) -> ([i128; 3], i128) {
     ([weight(0), weight(1), weight(2)], area.abs())
 }
 
-/// Value at `sample` of the plane through `values` at the vertices, as `(numerator, denominator)`, denominator positive.
+/// Value at `sample` of the plane through `values` at the vertices, as `(numerator, denominator)`, denominator
+/// positive.
 ///
 /// # Panics
 /// If the triangle has no area.

@@ -1,8 +1,8 @@
 //! The picture a reference renderer draws, with what it takes to compare it fairly.
 //!
 //! Beside depth, colour and the id of the winner, each pixel keeps how clear its case is: `margin`, the distance in px
-//! to the nearest edge or plane that decided it, and `gap`, the distance in depth to the runner-up. A renderer that rounds
-//! positions or depths may decide otherwise where one of them is small, and only there.
+//! to the nearest edge or plane that decided it, and `gap`, the distance in depth to the runner-up. A renderer that
+//! rounds positions or depths may decide otherwise where one of them is small, and only there.
 
 /// Which faces are dropped; front is counter-clockwise as seen on screen with y up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

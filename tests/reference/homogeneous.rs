@@ -1,8 +1,9 @@
 //! From clip space to pixels without a clipper: 2-D homogeneous rasterization in f64.
 //!
-//! In: clip-space vertices (any w, also zero and negative) with attributes. Out: per pixel, whether the visible part of the
-//! triangle covers its centre, and depth and attributes there. As nothing is clipped, divided or snapped, this agrees with
-//! a clipping rasterizer everywhere except within its rounding of an edge; [`Sample::margin`] says how far away that is.
+//! In: clip-space vertices (any w, also zero and negative) with attributes. Out: per pixel, whether the visible part of
+//! the triangle covers its centre, and depth and attributes there. As nothing is clipped, divided or snapped, this
+//! agrees with a clipping rasterizer everywhere except within its rounding of an edge; [`Sample::margin`] says how far
+//! away that is.
 //!
 //! ```text
 //! P[i] = (X, Y, w)           vertex in screen space, before the divide

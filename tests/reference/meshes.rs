@@ -1,4 +1,5 @@
-//! Random meshes in integers, for property tests: grids, fans and strips whose triangles share vertices and never overlap.
+//! Random meshes in integers, for property tests: grids, fans and strips whose triangles share vertices and never
+//! overlap.
 //!
 //! Screen coordinates are 1/256 px, y down; clip coordinates are raw 16.16 numbers, y up.
 
@@ -31,8 +32,8 @@ impl<V: Copy> Mesh<V> {
 
 /// A grid of `columns` x `rows` distorted cells that covers the viewport: every pixel belongs to exactly one triangle.
 ///
-/// Inner vertices are moved by less than a quarter of a cell, so that no triangle turns over; the outer ones stay on or outside
-/// the border. With `snap_to` 128, all vertices are on pixel centres, corners or edge mid-points.
+/// Inner vertices are moved by less than a quarter of a cell, so that no triangle turns over; the outer ones stay on or
+/// outside the border. With `snap_to` 128, all vertices are on pixel centres, corners or edge mid-points.
 ///
 /// # Panics
 /// If a cell is smaller than 8 times `snap_to`, or there are more than 65,536 vertices.

@@ -1,4 +1,5 @@
-//! The rasterizer that the conformance checker is itself checked with: exact coverage and depth, and 2-D homogeneous clipping.
+//! The rasterizer that the conformance checker is itself checked with: exact coverage and depth, and 2-D homogeneous
+//! clipping.
 //!
 //! It passes every record, which shows that files, checker and references agree on the rules.
 

@@ -1,7 +1,7 @@
 //! Image-order ray caster in f64: for every pixel, what does the ray through its centre meet first?
 //!
-//! In: a camera, [triangles](Triangle) and [quadrics](Quadric). Out: the nearest hit of a ray, or a whole [`Frame`] in the same
-//! depth convention as the rasterizers. There is no matrix and no projection on the way.
+//! In: a camera, [triangles](Triangle) and [quadrics](Quadric). Out: the nearest hit of a ray, or a whole [`Frame`] in
+//! the same depth convention as the rasterizers. There is no matrix and no projection on the way.
 
 pub use super::camera::{Camera, Lens, Ray, Vec3, cross, dot, normalize, sub};
 pub use super::frame::{Cull, Frame};

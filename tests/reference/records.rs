@@ -1,7 +1,7 @@
 //! The text of a conformance file, taken apart: lines into records, fields into numbers, spans and run-length lists.
 //!
-//! One record per line, fields split by `,`, items inside a field by spaces, `#` starts a comment line anywhere. Everything
-//! that does not fit is an error with its line number, and nothing is guessed.
+//! One record per line, fields split by `,`, items inside a field by spaces, `#` starts a comment line anywhere.
+//! Everything that does not fit is an error with its line number, and nothing is guessed.
 
 use std::str::FromStr;
 
@@ -130,7 +130,8 @@ impl Record<'_> {
         }
     }
 
-    /// Field `index` as a chain of pixels: `-`, or `x.y` and a digit for each step, 0 = (+1, 0), 1 = (+1, +1) and so on.
+    /// Field `index` as a chain of pixels: `-`, or `x.y` and a digit for each step, 0 = (+1, 0), 1 = (+1, +1) and so
+    /// on.
     pub fn chain(&self, index: usize) -> Result<Vec<(u32, u32)>, BadRecord> {
         let mut words = self.text(index)?.split_whitespace();
         let wrong = || self.bad(format!("field {}: not a chain of pixels", index + 1));
@@ -156,7 +157,8 @@ impl Record<'_> {
         }
     }
 
-    /// Field `index` as spans: `-`, or `y0` and a token per row, `.` or `a-b;c-d`. They ascend and stay in the viewport.
+    /// Field `index` as spans: `-`, or `y0` and a token per row, `.` or `a-b;c-d`. They ascend and stay in the
+    /// viewport.
     pub fn spans(&self, index: usize, (width, height): (u32, u32)) -> Result<Vec<SpanRow>, BadRecord> {
         let mut result = Vec::new();
         let mut tokens = self.text(index)?.split_whitespace();

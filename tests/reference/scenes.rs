@@ -1,8 +1,8 @@
 //! Random scenes in integers, for property tests: clip-space soups with every unpleasant vertex, screen
 //! triangles, slivers and depth-tested heaps. [`meshes`](super::meshes) has those that share vertices.
 //!
-//! Clip coordinates are raw 16.16 numbers, screen coordinates are 1/256 px, y down. All randomness comes from the [`Rng`] the
-//! caller passes, so the seed is the scene.
+//! Clip coordinates are raw 16.16 numbers, screen coordinates are 1/256 px, y down. All randomness comes from the
+//! [`Rng`] the caller passes, so the seed is the scene.
 
 use super::rng::Rng;
 

@@ -1,8 +1,8 @@
 //! Depth-tested frames from vertices that are already snapped: the oracle for flat and Gouraud pictures.
 //!
-//! In: triangles with 24.8 positions, 16-bit depth codes and a colour per vertex, in draw order. Out: a [`Frame`] whose ids
-//! and depth codes are exact (coverage and depth by [`exact`], test `Less` on the depth rounded half up) and whose colours are
-//! the plane through the vertex colours, in f64.
+//! In: triangles with 24.8 positions, 16-bit depth codes and a colour per vertex, in draw order. Out: a [`Frame`] whose
+//! ids and depth codes are exact (coverage and depth by [`exact`], test `Less` on the depth rounded half up) and whose
+//! colours are the plane through the vertex colours, in f64.
 
 use super::exact;
 use super::frame::{Cull, Frame};
@@ -28,8 +28,9 @@ pub enum Shading {
 
 /// Draws one triangle into `frame`.
 ///
-/// The frame's depths are `code / 65535`, so that [`Frame::depth_codes`] gives the codes back; `gap` is the difference of codes,
-/// divided likewise, and zero on a tie. `margin` is the distance to the nearest edge, though no decision here is in doubt.
+/// The frame's depths are `code / 65535`, so that [`Frame::depth_codes`] gives the codes back; `gap` is the difference
+/// of codes, divided likewise, and zero on a tie. `margin` is the distance to the nearest edge, though no decision here
+/// is in doubt.
 pub fn draw(frame: &mut Frame, cull: Cull, tri: &[SnappedVertex; 3], shading: Shading, id: u32) {
     let position = exact::widen(tri.map(|v| v.position));
     let area = exact::area2(position);

@@ -1,5 +1,5 @@
-//! The crate itself behind the checker's trait: triangles, lines and points are draws of a scene, in one strip or many, recorded
-//! or drawn directly.
+//! The crate itself behind the checker's trait: triangles, lines and points are draws of a scene, in one strip or many,
+//! recorded or drawn directly.
 //!
 //! Screen positions become homogeneous vertices with w = 1 that project to exactly the same 1/256 px: the viewports of
 //! the data are powers of two.

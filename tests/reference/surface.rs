@@ -54,8 +54,8 @@ impl Triangle {
         }
     }
 
-    /// Distance in px by which hit or miss at `(x, y)` is decided: to the nearest edge or near or far cut if it is a hit, to
-    /// the one most violated if it is a miss.
+    /// Distance in px by which hit or miss at `(x, y)` is decided: to the nearest edge or near or far cut if it is a
+    /// hit, to the one most violated if it is a miss.
     pub fn margin(&self, camera: &Camera, size: (u32, u32), x: f64, y: f64) -> f64 {
         let decisions = |x, y| {
             let [det, u, v, t] = self.scaled(&camera.ray(size, x, y));
