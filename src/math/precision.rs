@@ -24,7 +24,7 @@ const STEPS: i128 = 65_535;
 /// | 50 km, and nearer | 14 km | 1.8 km | 190 m | 76 cm |
 ///
 /// With the near plane at the pilot's nose, a hangar 1 km away and a wall 15 m behind it share one depth, and so do
-/// all clouds from 10 km on.
+/// all clouds around 10 km away.
 /// - A near plane at 10 m mends the hangar. The cockpit then gets a camera of its own, and is drawn in front of
 ///   everything.
 /// - [`DepthScale::Uniform`](crate::vertex::DepthScale::Uniform) mends the clouds.

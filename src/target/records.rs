@@ -49,7 +49,7 @@ pub const fn records_len(
 /// below x the high byte of z, below y the low byte.
 ///
 /// A vertex that is not on the screen has an x that no vertex on the screen has. The low byte of that word is its
-/// outcode, or that of [`UNSHADED`].
+/// outcode, or a mark that it is not shaded yet: [`UNSHADED`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct PackedVertex([u32; 2]);
 
