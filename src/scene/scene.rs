@@ -44,8 +44,8 @@ pub(crate) struct Target<'a, F> {
 /// ```
 /// use zstrip::{color::PixelFormat, prelude::*, span::Shader};
 ///
-/// fn twice<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, mesh: &Mesh, mvps: &[Projective; 2], shader: &S) {
-///     mvps.iter().for_each(|mvp| scene.draw(mesh, mvp, shader));
+/// fn twice<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, mesh: &Mesh, mvp: &Projective, s: &S) {
+///     (0..2).for_each(|_| scene.draw(mesh, mvp, s));
 /// }
 ///
 /// fn label<F: Framebuffer<Format: PixelFormat<Color = Rgb565>>>(scene: &mut Scene<'_, F>) {
