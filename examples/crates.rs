@@ -27,7 +27,7 @@ impl Demo for Demonstration {
         let (screen, turn) = (shot.screen, shot.turn());
         let levels = if shot.mode < 2 { Levels::All } else { Levels::First };
         // The filter is part of the shader's type: each has a pixel loop of its own.
-        if shot.mode % 2 == 0 {
+        if shot.mode.is_multiple_of(2) {
             Box::new(Crates::new(screen, turn, Bilinear, levels))
         } else {
             Box::new(Crates::new(screen, turn, Nearest, levels))

@@ -40,6 +40,9 @@ fn worst<P: Ditherable>(channel: usize) -> (f64, f64) {
     (value, lit)
 }
 
+/// A scene that strips of dithered pixels are drawn from.
+type Drawing = dyn for<'p> Draw<Strip<'p, Dithered<Rgb565Be>, WithDepth, WithRecords>>;
+
 #[test]
 fn mean_of_a_cell_is_the_colour() {
     for channel in 0..3 {
@@ -167,7 +170,7 @@ fn dithered_pictures_are_the_same_in_any_strips() {
         let draw = |rows: usize, records: usize| {
             let background = scenes::BACKGROUND;
             let (screen, turn) = (Size::new(320, 240), Angle16(999));
-            let drawing: Box<dyn for<'p> Draw<Strip<'p, Dithered<Rgb565Be>, WithDepth, WithRecords>>> = match name {
+            let drawing: Box<Drawing> = match name {
                 "torus_flat" => Box::new(Torus::flat(screen, turn)),
                 "torus_gouraud" => Box::new(Torus::gouraud(screen, turn)),
                 _ => Box::new(Room::new(screen, turn)),

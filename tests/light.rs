@@ -493,8 +493,8 @@ fn lit_pictures_do_not_depend_on_strips() {
     let normals = normals();
     let mesh = square(&normals, &COLORS);
     let material = Material::glossy(Rgb888::WHITE, Rgb888::WHITE, 30).vertex_colors();
-    let lit = lighting().on(&material, &Affine::IDENTITY, mesh.bounds());
-    let far = without_points(&lighting()).on(&material, &Affine::IDENTITY, mesh.bounds());
+    let lit = lighting().on(material, &Affine::IDENTITY, mesh.bounds());
+    let far = without_points(&lighting()).on(material, &Affine::IDENTITY, mesh.bounds());
     // Cut by the side of a perspective camera's near plane too.
     let camera = Projective::perspective(
         Angle16::from_degrees(70),

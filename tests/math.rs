@@ -370,7 +370,7 @@ fn cofactor<const N: usize>(m: &[[i128; N]; N], i: usize, j: usize) -> i128 {
         [a, b, c] => a[0] * det2(b, c, 1, 2) - a[1] * det2(b, c, 0, 2) + a[2] * det2(b, c, 0, 1),
         _ => unreachable!("3×3 or 4×4"),
     };
-    if (i + j) % 2 == 0 { value } else { -value }
+    if (i + j).is_multiple_of(2) { value } else { -value }
 }
 
 /// `num / den`, and whether a number is within half a unit of it.
@@ -469,7 +469,8 @@ fn cameras_and_large_matrices_are_undone() {
         for (i, row) in a.iter().enumerate() {
             let bound = row.iter().map(|entry| i128::from(entry.unsigned_abs())).sum::<i128>() / 2 + 1;
             for j in 0..4 {
-                let product: i128 = (0..4).map(|k| i128::from(row[k]) * i128::from(b[k][j])).sum();
+                let column = b.iter().map(|row| row[j]);
+                let product: i128 = row.iter().zip(column).map(|(a, b)| i128::from(*a) * i128::from(b)).sum();
                 let one = i128::from(i == j) << 64;
                 assert!((product - one).abs() <= bound, "seed {seed}, case {case}: {camera:?} ({i}, {j})");
             }

@@ -75,7 +75,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Draw<F> for Night<S> {
 #[inline(never)]
 fn wood(turn: Angle16) -> PhongNear<1, 2> {
     let wood = Material::glossy(Rgb888::new(215, 205, 195), Rgb888::new(90, 90, 90), 32);
-    PhongNear::new(night(turn).on(&wood.vertex_colors(), &table_model(&BY_NIGHT), tiles::MESH.bounds()))
+    PhongNear::new(night(turn).on(wood.vertex_colors(), &table_model(&BY_NIGHT), tiles::MESH.bounds()))
 }
 
 /// Returns the moon and the lamps, in eye space.
@@ -108,7 +108,7 @@ fn glazed() -> Material {
 /// Returns the glaze under the night's lights.
 #[inline(never)]
 pub fn glaze(turn: Angle16) -> LitMaterial<1, 2> {
-    night(turn).on(&glazed(), &pot_model(turn), pot::mesh().bounds())
+    night(turn).on(glazed(), &pot_model(turn), pot::mesh().bounds())
 }
 
 /// Returns the glaze under a sun where the moon is.
@@ -116,7 +116,7 @@ pub fn sunlit_glaze(turn: Angle16) -> LitMaterial<1, 0> {
     let Lighting { ambient, directional: [moon], .. } = night(turn);
     let sun = DirectionalLight { color: Rgb888::new(235, 225, 210), ..moon };
     let lighting = Lighting { ambient, directional: [sun], points: [], viewer: Viewer::Toward(Vec3::Z) };
-    lighting.on(&glazed(), &pot_model(turn), pot::mesh().bounds())
+    lighting.on(glazed(), &pot_model(turn), pot::mesh().bounds())
 }
 
 /// Returns a shader that mirrors a picture: the pot looks like polished copper.
@@ -398,7 +398,7 @@ fn glass_model(turn: Angle16) -> Affine {
 #[inline(never)]
 fn cloth() -> PhongNear<1, 1> {
     let cloth = Material::matte(Rgb888::new(215, 210, 200));
-    PhongNear::new(day().on(&cloth.vertex_colors(), &table_model(&BY_DAY), tiles::MESH.bounds()))
+    PhongNear::new(day().on(cloth.vertex_colors(), &table_model(&BY_DAY), tiles::MESH.bounds()))
 }
 
 /// Returns the pot's material under the day's lights.

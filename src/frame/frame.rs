@@ -141,6 +141,9 @@ pub struct Frame<'r, 'b, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
     choices: PhantomData<(D, R)>,
 }
 
+/// The closure of a frame, called through a pointer, so that the loop around it is linked once.
+type DrawScene<'d, P, D, R> = dyn FnMut(&mut Scene<'_, Strip<'_, P, D, R>>) + 'd;
+
 impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, D, R> {
     /// Starts a frame.
     pub(super) fn new(engine: &'r mut Engine<'b>, background: impl Into<Rgb888>) -> Self {
@@ -173,7 +176,7 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
     pub(super) fn draw_strip<'c>(
         &mut self,
         buffer: &'c mut [P::Raw],
-        draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, P, D, R>>),
+        draw: &mut DrawScene<'_, P, D, R>,
     ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
         let Self { engine, background, progress, .. } = self;
         let (width, row, held) = (engine.width(), progress.row(), buffer.len());

@@ -246,7 +246,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
             if !pixel_rect(&v).intersection(clip).is_empty() {
                 scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(
                     &v,
-                    &mut [first.1, last.1, next.1],
+                    &[first.1, last.1, next.1],
                     face,
                 );
             }

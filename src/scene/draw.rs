@@ -96,7 +96,7 @@ impl<F: Framebuffer> Scene<'_, F> {
             triangles.varyings::<S>(i, a);
             triangles.varyings::<S>(j, b);
             triangles.varyings::<S>(k, c);
-            painter.triangle(&triangle.v, &mut varyings, triangle.face);
+            painter.triangle(&triangle.v, &varyings, triangle.face);
         }
     }
 }

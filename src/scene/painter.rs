@@ -27,6 +27,7 @@ pub(super) struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
 /// that a program links only what its states ask for.
 pub(super) struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
     /// Draws the spans of a triangle under a depth test: stage 9 of [the pipeline](crate#the-pipeline).
+    #[expect(clippy::type_complexity, reason = "an alias would have to repeat the bounds of both types")]
     spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
     /// Computes the depth bias of a triangle, a part of stage 8, if the state may have one.
     bias: Option<Bias>,

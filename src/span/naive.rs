@@ -52,6 +52,7 @@ pub(super) fn compare<R: Copy + PartialEq + Debug, D: DepthTest<Depth: PartialEq
     let hidden = [0, 1, 5, 13][rng.below(4) as usize];
     let depths: Vec<D::Depth> =
         (0..length).map(|k| stored(if rng.below(16) < hidden { 100 } else { 60_000 - k as u16 % 9 })).collect();
+    #[expect(clippy::type_complexity, reason = "used once")]
     let run = |draw: &mut dyn FnMut(&mut [R], &mut [D::Depth])| {
         let (mut color, mut depth) = (std::vec![background; length], depths.clone());
         draw(&mut color, &mut depth);

@@ -495,10 +495,10 @@ mod tests {
         let run = core::array::from_fn(|k| spread_step(P::DITHER, k, primitive.d_dx[k]) * RUN as i32 + LOW_HALVES[k]);
         let (mut of_run, mut lower, mut next) = (0, 0, 0);
         let color = |k: usize| {
-            if k % LONG == 0 {
+            if k.is_multiple_of(LONG) {
                 let first = channels_at::<P>(primitive, x + k as i32, y);
                 (of_run, lower) = (word(first), low(first));
-            } else if k % RUN == 0 {
+            } else if k.is_multiple_of(RUN) {
                 lower += low(run);
                 let carries = lower >> CARRY & UNITS;
                 lower -= carries << CARRY;

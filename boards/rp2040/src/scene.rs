@@ -75,8 +75,8 @@ const fn points(radius: i64, tube: i64, full: i64) -> [[i16; 3]; VERTICES] {
     let mut k = 0;
     while k < VERTICES {
         let (along, across) = (unit(k / ACROSS, AROUND), unit(k % ACROSS, ACROSS));
-        let ring = radius + (tube * across.1 >> 16);
-        let point = [ring * along.1 >> 16, tube * across.0 >> 16, ring * along.0 >> 16];
+        let ring = radius + ((tube * across.1) >> 16);
+        let point = [(ring * along.1) >> 16, (tube * across.0) >> 16, (ring * along.0) >> 16];
         let mut axis = 0;
         while axis < 3 {
             points[k][axis] = (point[axis] * i16::MAX as i64 / full) as i16;
