@@ -1,7 +1,6 @@
 //! Colour buffers are the caller's: strips of any length in buffers of any length, errors that lose nothing, frames
 //! that are given up.
 
-#[allow(dead_code)]
 mod reference;
 #[path = "../examples/scenes/mod.rs"]
 mod scenes;

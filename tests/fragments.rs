@@ -51,6 +51,9 @@ where
 }
 
 /// Rows are walked in one way for few varyings, and in another for many: both cover what [`spans`] says.
+/// A closure that draws a scene of strips.
+type DrawScene<'d> = dyn Fn(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>) + 'd;
+
 #[test]
 fn every_walk_covers_the_pixels_of_the_rasterizer() {
     let mut rng = Rng::new(77);
@@ -73,9 +76,7 @@ fn every_walk_covers_the_pixels_of_the_rasterizer() {
         for depth in [DepthState::OFF, DepthState::LESS, DepthState { compare: Compare::LessEqual, write: true }] {
             let state = State { cull: Cull::None, depth, ..State::DEFAULT };
             for rows in [32, 7] {
-                let draw = |draw: &dyn Fn(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>)| {
-                    strips::<Rgb565>(SCREEN, rows, 200, Rgb565::BLACK, |scene| draw(scene)).0
-                };
+                let draw = |draw: &DrawScene| strips::<Rgb565>(SCREEN, rows, 200, Rgb565::BLACK, |scene| draw(scene)).0;
                 let few = draw(&|scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, &Varied::<1>));
                 let many = draw(&|scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, &Varied::<5>));
                 assert_eq!(few, expected, "case {case}, {depth:?}, {rows} rows: {v:?}");

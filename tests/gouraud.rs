@@ -69,7 +69,7 @@ fn check_lit<P: PixelFormat<Raw: PartialEq + Debug>>() {
     let material = Matte::WHITE.vertex_colors();
     let lighting = Lighting::directional(Rgb888::new(255, 255, 255), []);
     for_meshes::<P>(|mesh, depth, case| {
-        let lit = Gouraud::new(lighting.on(&material, &Affine::IDENTITY, mesh.bounds()));
+        let lit = Gouraud::new(lighting.on(material, &Affine::IDENTITY, mesh.bounds()));
         let (lit, gouraud) = (picture::<P>(mesh, depth, &lit), picture::<P>(mesh, depth, &Gouraud::vertex_colors()));
         assert_eq!(difference(&lit, &gouraud, SCREEN.0), None, "{case}");
     });

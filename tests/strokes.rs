@@ -200,6 +200,7 @@ impl<K: Stroke + Debug> Strokes<K> {
     ) -> Vec<String> {
         let mut wrong = Vec::new();
         let black = || P::to_color(P::pack([0; 3]));
+        #[expect(clippy::redundant_closure, reason = "the function itself is not general enough in its lifetimes")]
         let (there_colors, there_depths, _) = whole::<P>(SCREEN, black(), |scene| backdrop(scene));
         for test in TESTS {
             let (mut colors, mut depths) = (there_colors.clone(), there_depths.clone());

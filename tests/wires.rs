@@ -355,7 +355,7 @@ fn smooth_lines_cover_pixels_in_proportion() {
                 &lines,
                 &camera(),
                 &Flat::unlit(Rgb888::WHITE),
-                &Smooth::new(Pixels::from_bits(width as i32)),
+                &Smooth::new(Pixels::from_bits(width)),
             );
         });
         let [a, b] = [a, b].map(|v| [f64::from(v.x) / 256.0, f64::from(v.y) / 256.0]);
@@ -391,8 +391,8 @@ fn wide_lines_from_far_away_are_where_they_should_be() {
         let [from, to] = [a, b].map(|p| ScreenPoint::new(Pixels::from_bits(p[0]), Pixels::from_bits(p[1])));
         let smooth = case % 2 == 0;
         let (picture, ..) = whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| match smooth {
-            true => scene.canvas().line_with(from, to, Rgb888::WHITE, &Smooth::new(Pixels::from_bits(width as i32))),
-            false => scene.canvas().line_with(from, to, Rgb888::WHITE, &Thick::new(Pixels::from_bits(width as i32))),
+            true => scene.canvas().line_with(from, to, Rgb888::WHITE, &Smooth::new(Pixels::from_bits(width))),
+            false => scene.canvas().line_with(from, to, Rgb888::WHITE, &Thick::new(Pixels::from_bits(width))),
         });
         let [a, b] = [from, to].map(|p| [p.x().to_num::<f64>(), p.y().to_num()]);
         for (k, [red, ..]) in picture.iter().enumerate() {
@@ -423,7 +423,7 @@ fn thick_lines_are_rectangles() {
         let [a, b] = placed(&lines, &camera())[..] else { panic!("two ends") };
         let width = rng.pick(&[64, 256, 700, 2560, 10_000]);
         let seen = fragments(|scene, shader| {
-            scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Thick::new(Pixels::from_bits(width as i32)))
+            scene.draw_lines_with(EVERYTHING, &lines, &camera(), shader, &Thick::new(Pixels::from_bits(width)))
         });
         let mut hits = BTreeMap::new();
         seen.iter().for_each(|(position, ..)| *hits.entry(*position).or_insert(0) += 1);

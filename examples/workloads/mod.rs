@@ -88,13 +88,12 @@ pub fn draw(workload: Workload, buffers: Buffers<'_>, mut sink: impl FnMut(&[u16
 
 const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
 
+/// The closure of a frame, called through a pointer.
+type DrawScene<'d> = dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>) + 'd;
+
 /// One function for all workloads, as a program has that shows several things.
 #[inline(never)]
-fn frame(
-    buffers: Buffers<'_>,
-    sink: &mut dyn FnMut(&[u16]),
-    draw: &mut dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>),
-) -> Stats {
+fn frame(buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16]), draw: &mut DrawScene<'_>) -> Stats {
     let Buffers { color, depth, records } = buffers;
     let renderer = Renderer::new(SCREEN).and_then(|renderer| renderer.with_depth(depth));
     frame_by(renderer.map(|renderer| renderer.with_records(records)), color, sink, draw)
