@@ -69,7 +69,7 @@
 //! | 9 | spans | three edges | runs of pixels, row by row | `scene/painter.rs`, `raster/{triangle, edge}.rs` | replay, direct |
 //! | 10 | depth test | depths of a span | pixels that are in front | `span/depth.rs` | replay, direct |
 //! | 11 | fragments | varyings at a pixel, the face's word | a pixel | `span/`, `shader/` | replay, direct |
-//! | 12 | output | a strip of pixels | bytes for a display | `frame/renderer.rs`, `target/` | after each strip |
+//! | 12 | output | a strip of pixels | bytes for a display | `frame/frame.rs`, `target/` | after each strip |
 //!
 //! In `scene/draw.rs`, one function calls stages 1 to 7, and another one stages 8 to 11. A triangle that is clipped
 //! goes through stages 5 to 7 after stage 4; all others skip stage 4. Lines and points share stages 1 and 2, and 9 to
