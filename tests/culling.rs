@@ -14,7 +14,8 @@ use zstrip::internals::{Outcode, ScreenMatrix};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
-use zstrip::vertex::Viewport;
+use zstrip::span::{Fragment, Shader};
+use zstrip::vertex::{VertexRef, VertexShader, Viewport};
 use zstrip::{Cull, State};
 
 /// A camera of any kind, wherever it stands, and how far it sees.
@@ -251,6 +252,70 @@ fn hierarchy_of_many_leaves_draws_all_that_are_seen() {
             assert_eq!(difference(&picture, &expected, 64), None, "{records} records, {seen} seen: {stats:?}");
             assert_eq!((stats.drawn, stats.culled), (2 * seen, 100 - seen), "{records} records: {stats:?}");
         }
+    }
+}
+
+/// Bounds ignore the w of homogeneous positions, so they do not tell where these are.
+#[test]
+fn hierarchy_leaves_homogeneous_meshes_whole() {
+    let corners = [(2, -1), (4, -1), (4, 1), (2, 1)].map(|(x, y)| [x, y, 0, 4].map(|c| Scalar::from_bits(c << 16)));
+    let plain = MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Homogeneous(&corners)) };
+    let plain = Mesh::new(plain).expect("a quad");
+    let nodes = [BoundsNode { bounds: *plain.bounds(), skip: 1, first_triangle: 0, triangles: 2 }];
+    let tree = Mesh::new(MeshData { hierarchy: Some(&nodes), ..*plain.data() }).expect("a quad");
+    for (rows, records) in [8, 4, 2, 1].into_iter().flat_map(|rows| [(rows, 0), (rows, 9), (rows, 500)]) {
+        for mesh in [&plain, &tree] {
+            let (picture, _) = strips::<Rgb565>((8, 8), rows, records, Rgb565::BLACK, |scene| {
+                scene.draw(mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
+            });
+            // x from 0.5 to 1 of the half width, y from -1/4 to 1/4 of the half height.
+            let lit: Vec<_> = (0..64).filter(|k| picture[*k] != 0).map(|k| (k % 8, k / 8)).collect();
+            assert_eq!(lit, [(6, 3), (7, 3), (6, 4), (7, 4)], "{rows} rows, {records} records");
+        }
+    }
+}
+
+/// Moves all vertices to the right.
+struct Aside(i16);
+
+impl VertexShader for Aside {
+    type Varyings = [i32; 0];
+    const DISPLACES: bool = true;
+
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
+        []
+    }
+
+    fn displace(&self, vertex: &VertexRef<'_>) -> Vec3 {
+        vertex.position() + Vec3::from_ints(self.0, 0, 0)
+    }
+}
+
+impl Shader<Rgb565> for Aside {
+    type Setup = ();
+
+    fn fragment(&self, _: &Fragment<'_, [i32; 0], ()>) -> Option<u16> {
+        Some(7)
+    }
+}
+
+/// A hierarchy tells where vertices are before a shader moves them. So such shaders do without it.
+#[test]
+fn hierarchy_does_not_cull_what_a_shader_moves_into_view() {
+    let (points, nodes) = row_of_squares();
+    let plain = MeshData { topology: Topology::Quads, ..MeshData::new(Positions::Exact(&points)) };
+    let tree = Mesh::new(MeshData { hierarchy: Some(&nodes), ..plain }).expect("squares");
+    let plain = Mesh::new(plain).expect("squares");
+    let camera =
+        Projective::perspective(Angle16::from_degrees(50), Size::new(64, 48), Scalar::ONE, Scalar::from_num(60));
+    let mvp = camera.expect("a camera") * Affine::translation(Vec3::from_ints(-200, 0, 0));
+    for (aside, records) in [(0, 0), (200, 0), (200, 5000), (190, 300)] {
+        let draw = |mesh| {
+            strips::<Rgb565>((64, 48), 8, records, Rgb565::BLACK, |scene| scene.draw(mesh, &mvp, &Aside(aside))).0
+        };
+        let (expected, picture) = (draw(&plain), draw(&tree));
+        assert_eq!(difference(&picture, &expected, 64), None, "{aside} aside, {records} records");
+        assert_eq!(picture.contains(&7), aside > 0, "{aside} aside, {records} records");
     }
 }
 

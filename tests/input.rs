@@ -97,6 +97,108 @@ fn wrong_hierarchies_are_refused_with_the_offending_node() {
     assert!(Mesh::new(good).is_ok());
 }
 
+/// A row of squares, one per leaf, in a tree of a root and its leaves.
+fn tree_of_squares(leaves: i16) -> (Vec<Vec3>, Vec<BoundsNode>) {
+    let points: Vec<_> = (0..leaves)
+        .flat_map(|k| [(k, 0), (k + 1, 0), (k + 1, 1), (k, 1)].map(|(x, y)| Vec3::from_ints(x, y, 0)))
+        .collect();
+    let bounds =
+        |points: &[Vec3]| *Mesh::new(MeshData { topology: Topology::Quads, ..data(points) }).expect("squares").bounds();
+    let root = BoundsNode { bounds: bounds(&points), skip: leaves as u16 + 1, first_triangle: 0, triangles: 0 };
+    let leaf = |k: usize| BoundsNode {
+        bounds: bounds(&points[4 * k..4 * k + 4]),
+        skip: k as u16 + 2,
+        first_triangle: 2 * k as u16,
+        triangles: 2,
+    };
+    let nodes = [root].into_iter().chain((0..leaves as usize).map(leaf)).collect();
+    (points, nodes)
+}
+
+#[test]
+fn hierarchy_has_each_triangle_in_one_leaf() {
+    use MeshError::{Hierarchy, Leaf, LeftOut, TooManyNodes};
+    let (points, nodes) = tree_of_squares(3);
+    let squares = MeshData { topology: Topology::Quads, ..data(&points) };
+    let with = |change: fn(&mut Vec<BoundsNode>)| {
+        let mut nodes = nodes.clone();
+        change(&mut nodes);
+        Mesh::new(MeshData { hierarchy: Some(&nodes), ..squares }).map(|_| ())
+    };
+    assert_eq!(with(|_| ()), Ok(()));
+    // The same triangles in two leaves, at the end and at the beginning.
+    assert_eq!(told(with(|nodes| nodes[3].first_triangle = 2)), Leaf { node: 3, first_triangle: 2, expected: 4 });
+    assert_eq!(told(with(|nodes| nodes[2].first_triangle = 0)), Leaf { node: 2, first_triangle: 0, expected: 2 });
+    // Triangles in no leaf: first, in the middle, last, all.
+    assert_eq!(
+        told(with(|nodes| (nodes[1].first_triangle, nodes[1].triangles) = (1, 1))),
+        Leaf { node: 1, first_triangle: 1, expected: 0 }
+    );
+    assert_eq!(told(with(|nodes| nodes[2].triangles = 1)), Leaf { node: 3, first_triangle: 4, expected: 3 });
+    assert_eq!(told(with(|nodes| nodes[3].triangles = 1)), LeftOut { triangle: 5, triangles: 6 });
+    assert_eq!(
+        told(with(|nodes| nodes.iter_mut().for_each(|node| node.triangles = 0))),
+        LeftOut { triangle: 0, triangles: 6 }
+    );
+    assert_eq!(told(with(Vec::clear)), LeftOut { triangle: 0, triangles: 6 });
+    // The last leaf is not below the root, but the first leaf skips it.
+    assert_eq!(told(with(|nodes| (nodes[0].skip, nodes[1].skip) = (2, 3))), Hierarchy { node: 1, nodes: 4 });
+
+    // 1,000 leaves over the same 2,000 triangles.
+    let (points, _) = tree_of_squares(1000);
+    let all = BoundsNode { bounds: nodes[0].bounds, skip: 0, first_triangle: 0, triangles: 2000 };
+    let bounds = Bounds { center: Vec3::ZERO, half: Vec3::from_ints(2000, 2000, 2000) };
+    let many: Vec<_> = (0..1000).map(|k| BoundsNode { bounds, skip: k + 1, ..all }).collect();
+    let squares = MeshData { topology: Topology::Quads, hierarchy: Some(&many), ..data(&points) };
+    assert_eq!(told(Mesh::new(squares)), Leaf { node: 1, first_triangle: 0, expected: 2000 });
+    // Empty nodes without end.
+    let empty: Vec<_> = (0..5000).map(|k| BoundsNode { bounds, skip: k + 1, triangles: 0, ..all }).collect();
+    let empty = many[..1].iter().chain(&empty).enumerate();
+    let empty: Vec<_> = empty.map(|(k, node)| BoundsNode { skip: k as u16 + 1, ..*node }).collect();
+    let with = |nodes: &[BoundsNode]| Mesh::new(MeshData { hierarchy: Some(nodes), ..squares }).map(|_| ());
+    assert_eq!(told(with(&empty)), TooManyNodes { nodes: 5001, triangles: 2000 });
+    assert_eq!(with(&empty[..4001]), Ok(()));
+}
+
+#[test]
+fn bounds_of_a_hierarchy_hold_what_they_claim() {
+    use MeshError::{HalfSize, NodeBounds};
+    let (points, nodes) = tree_of_squares(3);
+    let squares = MeshData { topology: Topology::Quads, ..data(&points) };
+    let with = |number: usize, center: [i32; 3], half: [i32; 3]| {
+        let mut nodes = nodes.clone();
+        let bounds = &mut nodes[number].bounds;
+        let add = |v: Vec3, more: [i32; 3]| {
+            let [x, y, z] = v.to_bits();
+            Vec3::from_bits([x + more[0], y + more[1], z + more[2]])
+        };
+        *bounds = Bounds { center: add(bounds.center, center), half: add(bounds.half, half) };
+        Mesh::new(MeshData { hierarchy: Some(&nodes), ..squares }).map(|_| ())
+    };
+    // Positions may be rounded by one unit of 2⁻¹⁶. Boxes may be larger than they have to be, the root's excepted.
+    assert_eq!(with(2, [1, 0, 0], [0; 3]), Ok(()));
+    assert_eq!(with(2, [0; 3], [1 << 20; 3]), Ok(()));
+    assert_eq!(told(with(2, [2, 0, 0], [0; 3])), NodeBounds { node: 2, vertex: 4 });
+    assert_eq!(told(with(3, [0; 3], [0, -2, 0])), NodeBounds { node: 3, vertex: 8 });
+    assert_eq!(told(with(0, [2, 0, 0], [0; 3])), NodeBounds { node: 0, vertex: 0 });
+    assert_eq!(told(with(0, [0; 3], [-2, 0, 0])), NodeBounds { node: 0, vertex: 0 });
+    // The box of a leaf that is too large is no excuse for the root's.
+    let mut wrong = nodes.clone();
+    wrong[1].bounds.half = Vec3::from_ints(9, 9, 9);
+    wrong[0].bounds = wrong[2].bounds;
+    assert_eq!(told(Mesh::new(MeshData { hierarchy: Some(&wrong), ..squares })), NodeBounds { node: 0, vertex: 0 });
+    let Err(HalfSize { half }) = with(1, [0; 3], [0, 0, -1]) else { panic!("a negative half size") };
+    assert_eq!(half.to_bits(), [1 << 15, 1 << 15, -1]);
+
+    // A mesh's own bounds.
+    let bounds = |half: [i32; 3]| Some(Bounds { center: Vec3::ZERO, half: Vec3::from_bits(half) });
+    let one = [Vec3::ZERO; 3];
+    assert!(Mesh::new(MeshData { bounds: bounds([0; 3]), ..data(&one) }).is_ok());
+    let half = Vec3::from_bits([0, -1, 0]);
+    assert_eq!(told(Mesh::new(MeshData { bounds: bounds([0, -1, 0]), ..data(&one) })), HalfSize { half });
+    assert_eq!(told(Mesh::new(MeshData { bounds: bounds([0, -1, 0]), ..data(&[]) })), HalfSize { half });
+}
+
 #[test]
 fn wrong_viewports_and_screens_are_refused_with_their_size() {
     let large = |w, h| ViewportError::TooLarge { size: Size::new(w, h) };

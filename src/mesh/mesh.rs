@@ -3,7 +3,7 @@
 //! After [`Mesh::new`] every index is in range and every attribute is as long as the positions, so that the frame path
 //! needs no error for a mesh.
 
-use super::bounds::{Bounds, BoundsNode, bounding_box};
+use super::bounds::{Bounds, BoundsNode, bounding_box, holds, is_negative};
 use crate::math::{Scalar, Vec3};
 use core::fmt;
 
@@ -90,8 +90,11 @@ pub struct MeshData<'a> {
     pub uvs: Option<&'a [[Scalar; 2]]>,
     /// Bounds, if they are known: they save a pass over the positions.
     pub bounds: Option<Bounds>,
-    /// A hierarchy of bounds over the triangles; see [`BoundsNode`]. Each triangle belongs into one leaf. The bounds
-    /// of this leaf and of all nodes above it must hold the triangle. Triangles in no leaf are not drawn.
+    /// A hierarchy of bounds over the triangles. [`BoundsNode`] lists the rules that it must keep.
+    ///
+    /// A hierarchy saves time and never changes the picture. It plays no part where bounds do not tell the place of
+    /// triangles: with [`Positions::Homogeneous`], and with a shader that moves vertices
+    /// ([`VertexShader::DISPLACES`](crate::vertex::VertexShader::DISPLACES)).
     pub hierarchy: Option<&'a [BoundsNode]>,
 }
 
@@ -184,17 +187,54 @@ pub enum MeshError {
         /// The scale.
         scale: Scalar,
     },
-    /// A node of the hierarchy does not skip forward to a node or to the end, or its triangles are out of range.
+    /// A node of the hierarchy does not skip forward to a node or to the end, or skips past the end of a node above it,
+    /// or its triangles are out of range.
     Hierarchy {
         /// Number of the node.
         node: usize,
         /// Number of nodes.
         nodes: usize,
     },
+    /// The hierarchy has more nodes than twice the triangles, and one.
+    TooManyNodes {
+        /// Number of nodes.
+        nodes: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// A leaf of the hierarchy does not begin with the triangle after those of the leaf before it. So some triangles are
+    /// in no leaf, or in two.
+    Leaf {
+        /// Number of the leaf's node.
+        node: usize,
+        /// First triangle of the leaf.
+        first_triangle: usize,
+        /// The triangle that it must begin with.
+        expected: usize,
+    },
+    /// The last leaf of the hierarchy ends before the last triangle, so that some triangles are in no leaf.
+    LeftOut {
+        /// The first triangle that is in no leaf.
+        triangle: usize,
+        /// Number of triangles.
+        triangles: usize,
+    },
+    /// The bounds of a node of the hierarchy do not hold a vertex of a triangle in this node or below it.
+    NodeBounds {
+        /// Number of the node.
+        node: usize,
+        /// Number of the vertex.
+        vertex: usize,
+    },
     /// A vertex is outside of the given bounds.
     Bounds {
         /// Number of the vertex.
         vertex: usize,
+    },
+    /// A half size of the given bounds, or of a node's bounds, is negative.
+    HalfSize {
+        /// The half size.
+        half: Vec3,
     },
 }
 
@@ -224,6 +264,19 @@ impl fmt::Display for MeshError {
             Self::Uvs { uvs, vertices } => write!(f, "{uvs} texture coordinates for {vertices} vertices"),
             Self::Scale { scale } => write!(f, "scale {scale} of the positions, must be above 0"),
             Self::Bounds { vertex } => write!(f, "the given bounds do not hold vertex {vertex}"),
+            Self::HalfSize { half } => write!(f, "half size {half:?} of bounds is negative"),
+            Self::TooManyNodes { nodes, triangles } => {
+                write!(f, "{nodes} nodes of a hierarchy are too many for {triangles} triangles")
+            }
+            Self::Leaf { node, first_triangle, expected } => {
+                write!(f, "leaf {node} of the hierarchy begins with triangle {first_triangle}, must be {expected}")
+            }
+            Self::LeftOut { triangle, triangles } => {
+                write!(f, "triangle {triangle} of {triangles} is in no leaf of the hierarchy")
+            }
+            Self::NodeBounds { node, vertex } => {
+                write!(f, "the bounds of node {node} of the hierarchy do not hold vertex {vertex}")
+            }
             Self::Hierarchy { node, nodes } => write!(f, "node {node} of the hierarchy of {nodes} points out of range"),
         }
     }
@@ -289,25 +342,22 @@ impl<'a> Mesh<'a> {
         check_length!(data.colors, vertices, Colors { colors, vertices });
         check_length!(data.uvs, vertices, Uvs { uvs, vertices });
         check_length!(data.face_normals, triangles, FaceNormals { face_normals, triangles });
-        if let Some(nodes) = data.hierarchy {
-            let mut k = 0;
-            while k < nodes.len() {
-                let node = &nodes[k];
-                let past = node.first_triangle as usize + node.triangles as usize;
-                if node.skip as usize <= k || node.skip as usize > nodes.len() || past > triangles {
-                    return Err(MeshError::Hierarchy { node: k, nodes: nodes.len() });
-                }
-                k += 1;
-            }
-        }
         let bounds = match data.bounds {
+            Some(bounds) if is_negative(&bounds) => return Err(MeshError::HalfSize { half: bounds.half }),
             Some(bounds) => match outside(&data.positions, vertices, &bounds) {
                 Some(vertex) => return Err(MeshError::Bounds { vertex }),
                 None => bounds,
             },
             None => find_bounds(&data.positions, vertices),
         };
-        Ok(Self { data, bounds, triangles: triangles as u16 })
+        let mesh = Self { data, bounds, triangles: triangles as u16 };
+        match data.hierarchy {
+            Some(nodes) => match mesh.wrong_hierarchy(nodes) {
+                Some(error) => Err(error),
+                None => Ok(mesh),
+            },
+            None => Ok(mesh),
+        }
     }
 
     /// Makes a `const` or `static` mesh as [`new`](Self::new) does. A mesh with a mistake does not compile.
@@ -320,8 +370,96 @@ impl<'a> Mesh<'a> {
             Ok(mesh) => mesh,
             Err(MeshError::Index { .. }) => panic!("a mesh index is out of range"),
             Err(MeshError::Incomplete { .. }) => panic!("the last primitive of a mesh is incomplete"),
+            Err(MeshError::Hierarchy { .. } | MeshError::TooManyNodes { .. }) => {
+                panic!("the nodes of a hierarchy do not form a tree")
+            }
+            Err(MeshError::Leaf { .. } | MeshError::LeftOut { .. }) => {
+                panic!("a triangle is in no leaf of a hierarchy, or in two")
+            }
+            Err(MeshError::NodeBounds { .. } | MeshError::Bounds { .. } | MeshError::HalfSize { .. }) => {
+                panic!("bounds do not hold what they stand for")
+            }
             Err(_) => panic!("mesh attributes do not match; Mesh::new tells which"),
         }
+    }
+
+    /// Returns the first mistake in a hierarchy of the mesh.
+    ///
+    /// The box of a node holds its triangles if it holds the boxes of the nodes right below it, which hold theirs. Only
+    /// where a box below sticks out, by rounding or because it is larger than it needs to be, triangles are looked at
+    /// one by one. So each vertex is looked at about once, and not once per level of the tree.
+    const fn wrong_hierarchy(&self, nodes: &[BoundsNode]) -> Option<MeshError> {
+        let triangles = self.triangles as usize;
+        if nodes.len() > 2 * triangles + 1 {
+            return Some(MeshError::TooManyNodes { nodes: nodes.len(), triangles });
+        }
+        let (mut k, mut expected) = (0, 0);
+        while k < nodes.len() {
+            let node = &nodes[k];
+            let (first, skip) = (node.first_triangle as usize, node.skip as usize);
+            let past = first + node.triangles as usize;
+            if skip <= k || skip > nodes.len() || past > triangles {
+                return Some(MeshError::Hierarchy { node: k, nodes: nodes.len() });
+            }
+            if is_negative(&node.bounds) {
+                return Some(MeshError::HalfSize { half: node.bounds.half });
+            }
+            if node.triangles > 0 {
+                if first != expected {
+                    return Some(MeshError::Leaf { node: k, first_triangle: first, expected });
+                }
+                expected = past;
+                if let Some(vertex) = self.vertex_outside(first, past, &node.bounds) {
+                    return Some(MeshError::NodeBounds { node: k, vertex });
+                }
+            }
+            let mut below = k + 1;
+            while below < skip {
+                let end = nodes[below].skip as usize;
+                if end <= below || end > skip {
+                    return Some(MeshError::Hierarchy { node: below, nodes: nodes.len() });
+                }
+                if !holds(&node.bounds, &nodes[below].bounds) {
+                    if let Some(vertex) = self.vertex_below(nodes, below, end, &node.bounds) {
+                        return Some(MeshError::NodeBounds { node: k, vertex });
+                    }
+                }
+                below = end;
+            }
+            k += 1;
+        }
+        if expected < triangles { Some(MeshError::LeftOut { triangle: expected, triangles }) } else { None }
+    }
+
+    /// Returns a vertex of the triangles of some nodes that is outside of a box.
+    const fn vertex_below(&self, nodes: &[BoundsNode], mut k: usize, end: usize, bounds: &Bounds) -> Option<usize> {
+        while k < end {
+            let first = nodes[k].first_triangle as usize;
+            let vertex = self.vertex_outside(first, first + nodes[k].triangles as usize, bounds);
+            if vertex.is_some() {
+                return vertex;
+            }
+            k += 1;
+        }
+        None
+    }
+
+    /// Returns a vertex of the triangles from `number` to `past` that is outside of a box.
+    const fn vertex_outside(&self, mut number: usize, past: usize, bounds: &Bounds) -> Option<usize> {
+        while number < past {
+            let Some([a, b, c]) = self.triangle(number) else { return None };
+            if is_outside(&self.data.positions, a as usize, bounds) {
+                return Some(a as usize);
+            }
+            if is_outside(&self.data.positions, b as usize, bounds) {
+                return Some(b as usize);
+            }
+            if is_outside(&self.data.positions, c as usize, bounds) {
+                return Some(c as usize);
+            }
+            number += 1;
+        }
+        None
     }
 
     /// Returns the number of vertices.
@@ -346,7 +484,8 @@ impl<'a> Mesh<'a> {
         &self.data
     }
 
-    /// Returns the box around all vertices, in object space. The w of homogeneous positions is ignored.
+    /// Returns the box around all vertices, in object space. The w of homogeneous positions is ignored, so their box does
+    /// not tell where they are drawn.
     #[must_use]
     pub const fn bounds(&self) -> &Bounds {
         &self.bounds
@@ -441,24 +580,32 @@ const fn unit_and_origin(positions: &Positions<'_>) -> (i64, [i64; 3]) {
     }
 }
 
-/// Returns the first vertex that is outside of the box, with a tolerance for the rounding of quantized positions.
+/// Returns the first vertex that is outside of the box.
 const fn outside(positions: &Positions<'_>, vertices: usize, bounds: &Bounds) -> Option<usize> {
-    let (unit, origin) = unit_and_origin(positions);
-    let (center, half) = (bounds.center.to_bits(), bounds.half.to_bits());
     let mut k = 0;
     while k < vertices {
-        let p = stored(positions, k);
-        let mut axis = 0;
-        while axis < 3 {
-            let at = ((p[axis] * unit) >> 15) + origin[axis];
-            if (at - center[axis] as i64).abs() > half[axis] as i64 + 1 {
-                return Some(k);
-            }
-            axis += 1;
+        if is_outside(positions, k, bounds) {
+            return Some(k);
         }
         k += 1;
     }
     None
+}
+
+/// Returns whether a vertex is outside of the box, with a tolerance for the rounding of quantized positions.
+const fn is_outside(positions: &Positions<'_>, vertex: usize, bounds: &Bounds) -> bool {
+    let (unit, origin) = unit_and_origin(positions);
+    let (center, half) = (bounds.center.to_bits(), bounds.half.to_bits());
+    let p = stored(positions, vertex);
+    let mut axis = 0;
+    while axis < 3 {
+        let at = ((p[axis] * unit) >> 15) + origin[axis];
+        if (at - center[axis] as i64).abs() > half[axis] as i64 + 1 {
+            return true;
+        }
+        axis += 1;
+    }
+    false
 }
 
 /// Finds the box of all positions.

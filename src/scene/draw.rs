@@ -61,9 +61,9 @@ impl<F: Framebuffer> Scene<'_, F> {
         let clip = self.clip_rect(&self.band);
         let culling = state.culling();
         let mut assembly = Assembly { scene: self, state, hooks, mesh, shader, transform: &transform, culling, clip };
-        match mesh.data().hierarchy {
+        match draw.hierarchy() {
             // Stages 2 to 7, per part of the mesh that may be visible. Vertices are shaded when triangles ask for them.
-            Some(nodes) if !S::DISPLACES => assembly.hierarchy(nodes, draw.mvp),
+            Some(nodes) => assembly.hierarchy(nodes, draw.mvp),
             _ => {
                 // Stage 2, vertices: all at once, if their results are kept.
                 if F::RECORDS {

@@ -79,6 +79,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     ///
     /// The result is the same in all calls of the closure that must draw the same. The near and the far plane count as
     /// borders, whatever [`State::range`] says about geometry outside of them.
+    ///
+    /// [`Mesh::bounds`] of [homogeneous](crate::mesh::Positions::Homogeneous) positions ignore their w, and those of a
+    /// mesh that a shader moves ignore the shader: such bounds do not tell where the mesh is drawn.
     #[inline(never)]
     #[must_use]
     pub fn is_visible(&self, bounds: &Bounds, mvp: &Projective) -> bool {
@@ -154,7 +157,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         }
         let mut screen = ScreenMatrix::EMPTY;
         screen.set_from(draw.mvp, &self.viewport);
-        let culled = draw.is_bounded() && !self.sees(&screen, draw.mesh.bounds(), draw.reach(), draw.state.range);
+        let culled = draw.is_tested() && !self.sees(&screen, draw.mesh.bounds(), draw.reach(), draw.state.range);
         if recording {
             // A draw that is out of view leaves a header without vertices.
             let vertices = if culled { 0 } else { draw.mesh.vertex_count() };
@@ -277,11 +280,19 @@ impl<'d> Draw<'d> {
         Self { state, mesh, mvp, primitives, stride, varyings, displaced: S::DISPLACES, depth_scale }
     }
 
-    /// Returns whether the mesh's bounds tell where it is drawn, and are worth a test.
+    /// Returns whether the mesh's bounds, and those of its hierarchy, tell where it is drawn.
     fn is_bounded(&self) -> bool {
-        self.mesh.vertex_count() > FEW_VERTICES
-            && !self.displaced
-            && !matches!(self.mesh.data().positions, Positions::Homogeneous(_))
+        !self.displaced && !matches!(self.mesh.data().positions, Positions::Homogeneous(_))
+    }
+
+    /// Returns the hierarchy that parts of the mesh can be culled by.
+    pub(super) fn hierarchy(&self) -> Option<&'d [BoundsNode]> {
+        if self.is_bounded() { self.mesh.data().hierarchy } else { None }
+    }
+
+    /// Returns whether the mesh's bounds can be tested, and are worth it.
+    fn is_tested(&self) -> bool {
+        self.mesh.vertex_count() > FEW_VERTICES && self.is_bounded()
     }
 
     /// Returns the largest distance from its vertices, in pixels, that a primitive may cover.

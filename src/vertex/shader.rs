@@ -200,7 +200,8 @@ pub trait VertexShader {
     /// bits, too.
     const ZERO_BITS: u32 = 0;
 
-    /// Set if [`displace`](Self::displace) moves vertices. Such draws are not culled by the mesh's bounds.
+    /// Set if [`displace`](Self::displace) moves vertices. Such draws are not culled by the mesh's bounds, nor by its
+    /// hierarchy.
     const DISPLACES: bool = false;
 
     /// Number of clip distances per vertex: up to 4, cull distances included. Triangles are cut where one is negative.
