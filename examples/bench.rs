@@ -1,9 +1,9 @@
 //! The benchmark's workloads: as firmware they are counted, on the host their pictures are checked. `ci/bench` runs
 //! both and prints the table.
 //!
-//! As firmware it prints, for each run, `name rows ticks hash`: SysTick's ticks over a frame, between two instructions
-//! that mark it for a counting plugin, and a hash of the picture. A frame clears colours and depths; runs of an empty
-//! scene tell what that costs. With `--cfg 'ram="records"'` or `--cfg 'ram="bare"'` it draws the Gouraud torus with the
+//! As firmware it prints, for each run, `name rows ticks hash`: SysTick's ticks over a frame (instructions on RISC-V),
+//! between two instructions that mark it for a counting plugin, and a hash of the picture. A frame clears colours and
+//! depths; runs of an empty scene tell what that costs. With `--cfg 'ram="records"'` or `--cfg 'ram="bare"'` it draws the Gouraud torus with the
 //! buffers such a firmware would have, and prints the RAM that takes.
 //!
 //! On the host it prints `name covered hash` and compares each picture with a reference in double precision.
@@ -20,7 +20,7 @@ use workloads::{HEIGHT, WIDTH, Workload};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::frame::RamBudget;
 
-const NAMED: [(&str, Workload); 10] = [
+const NAMED: [(&str, Workload); 13] = [
     ("empty", Workload::Empty),
     ("w1", Workload::Quad),
     ("w2", Workload::GouraudQuad),
@@ -31,6 +31,9 @@ const NAMED: [(&str, Workload); 10] = [
     ("w4", Workload::FlatTorus),
     ("w5", Workload::GouraudTorus),
     ("w6", Workload::Tiny),
+    ("empty_spot", Workload::EmptySpot),
+    ("w9", Workload::TexturedSpot),
+    ("w10", Workload::FlatSpot),
 ];
 
 /// FNV-1a over pixels.
@@ -65,7 +68,6 @@ mod counting {
     use super::{Hash, NAMED, SIZES, WIDTH, Workload, ticks, workloads};
     use core::arch::asm;
     use core::hint::black_box;
-    use cortex_m::peripheral::Peripherals;
     use semihosting::println;
 
     struct Memory {
@@ -77,8 +79,8 @@ mod counting {
     static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _] };
 
     /// Buffers for strips of some rows.
-    fn lend(memory: &mut Memory, rows: usize) -> workloads::Buffers<'_> {
-        let pixels = WIDTH * rows.min(SIZES.0);
+    fn lend(memory: &mut Memory, width: usize, rows: usize) -> workloads::Buffers<'_> {
+        let pixels = width * rows.min(SIZES.0);
         workloads::Buffers {
             color: &mut memory.color[..pixels],
             depth: &mut memory.depth[..pixels],
@@ -93,21 +95,46 @@ mod counting {
         if cfg!(any(ram = "records", ram = "bare")) {
             return report_ram(memory);
         }
-        let Some(mut peripherals) = Peripherals::take() else {
-            return;
-        };
-        ticks::start(&mut peripherals.SYST);
-        for rows in [240, 16] {
+        #[cfg(target_arch = "arm")]
+        match cortex_m::Peripherals::take() {
+            Some(mut peripherals) => ticks::start(&mut peripherals.SYST),
+            None => return,
+        }
+        for rows in [240, 16, 4, 1] {
             for (name, workload) in NAMED {
-                let torus = matches!(workload, Workload::FlatTorus | Workload::GouraudTorus);
-                if rows == 240 || torus || workload == Workload::Empty {
-                    let ticks = count(workload, lend(memory, rows));
+                let counted = match workload {
+                    Workload::Empty | Workload::FlatTorus => true,
+                    Workload::GouraudTorus | Workload::EmptySpot | Workload::TexturedSpot | Workload::FlatSpot => {
+                        rows >= 16
+                    }
+                    _ => rows == 240,
+                };
+                if counted {
+                    let width = workload.width();
+                    let ticks = count(workload, lend(memory, width, rows));
                     let mut hash = Hash::NEW;
-                    workloads::draw(workload, lend(memory, rows), |strip| hash.add(strip));
+                    workloads::draw(workload, lend(memory, width, rows), |strip| hash.add(strip));
                     println!("{name} {rows} {ticks} {:08x}", hash.0);
                 }
             }
         }
+    }
+
+    /// The instructions that a counting plugin looks for.
+    #[cfg(target_arch = "arm")]
+    macro_rules! marker {
+        (begin) => {
+            "mov r10, r10"
+        };
+        (end) => {
+            "mov r11, r11"
+        };
+    }
+    #[cfg(target_arch = "riscv32")]
+    macro_rules! marker {
+        ($which:ident) => {
+            "nop"
+        };
     }
 
     /// Ticks of a frame.
@@ -115,12 +142,12 @@ mod counting {
     fn count(workload: Workload, buffers: workloads::Buffers<'_>) -> u32 {
         let start = ticks::now();
         // SAFETY: copies a register to itself.
-        unsafe { asm!("mov r10, r10") };
+        unsafe { asm!(marker!(begin)) };
         let stats = workloads::draw(workload, buffers, |strip| {
             black_box(strip);
         });
         // SAFETY: as above.
-        unsafe { asm!("mov r11, r11") };
+        unsafe { asm!(marker!(end)) };
         let end = ticks::now();
         black_box(stats);
         end.wrapping_sub(start)
@@ -128,7 +155,7 @@ mod counting {
 
     fn report_ram(memory: &mut Memory) {
         let mut draw = || {
-            workloads::draw(Workload::GouraudTorus, lend(memory, SIZES.0), |strip| {
+            workloads::draw(Workload::GouraudTorus, lend(memory, WIDTH, SIZES.0), |strip| {
                 black_box(strip);
             });
         };
@@ -163,13 +190,17 @@ impl Tolerance {
     /// the reference's are perspective-correct.
     const fn of(workload: Workload) -> Self {
         let (coverage, surface, channel) = match workload {
-            Workload::Empty | Workload::Quad | Workload::FlatQuad | Workload::OwnFlatQuad => (0, 0, 0.0),
+            Workload::Empty | Workload::EmptySpot => (0, 0, 0.0),
+            Workload::Quad | Workload::FlatQuad | Workload::OwnFlatQuad => (0, 0, 0.0),
             Workload::GouraudQuad => (0, 0, 1.0),
             Workload::OwnGouraudQuad => (0, 0, 2.0),
             // Texels' borders are within a fraction of a pixel of where they are, one division every 16 pixels.
             Workload::TexturedQuad => (20, 40, 0.0),
             Workload::FlatTorus | Workload::GouraudTorus => (20, 20, 1.5),
             Workload::Tiny => (400, 20, 0.1),
+            // Half of the pixels are next to a border of a triangle.
+            Workload::TexturedSpot => (20, 40, 2.0),
+            Workload::FlatSpot => (20, 40, 2.0),
         };
         Self { coverage, surface, channel }
     }
@@ -179,7 +210,8 @@ impl Tolerance {
 fn main() {
     let mut wrong = false;
     for (name, workload) in NAMED {
-        let (mut color, mut depth) = (vec![0; WIDTH * HEIGHT], vec![0; WIDTH * HEIGHT]);
+        let pixels = workload.width() * HEIGHT;
+        let (mut color, mut depth) = (vec![0; pixels], vec![0; pixels]);
         let mut records = vec![0; SIZES.1];
         let buffers = workloads::Buffers { color: &mut color, depth: &mut depth, records: &mut records };
         let mut hash = Hash::NEW;

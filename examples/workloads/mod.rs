@@ -1,4 +1,4 @@
-//! The benchmark's workloads, W1 to W6, and how each is drawn.
+//! The benchmark's workloads, W1 to W6, W9 and W10, and how each is drawn.
 //!
 //! The geometry is stated in a left-handed view space: x right, y up, z forward, F = 120 / tan 30° px,
 //! screen x = 160 + F x / z, screen y = 120 - F y / z, front faces counter-clockwise on the screen. Here a camera looks
@@ -11,6 +11,7 @@
 
 #[cfg(not(target_os = "none"))]
 pub mod reference;
+pub mod spot;
 
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
@@ -30,7 +31,8 @@ use zstrip::{Scene, State};
 
 pub const WIDTH: usize = 320;
 pub const HEIGHT: usize = 240;
-pub const BACKGROUND: Rgb565 = Rgb565::new(3, 7, 3);
+/// Cyan, which no picture has.
+pub const BACKGROUND: Rgb565 = Rgb565::new(0, 63, 31);
 
 /// Pixels per unit of x / z: 120 / tan 30°.
 pub const FOCAL: f64 = 120.0 * root(3.0);
@@ -61,6 +63,12 @@ pub enum Workload {
     GouraudTorus,
     /// 10,000 triangles of about 2 px, one colour each.
     Tiny,
+    /// Nothing, on the screen of the next two.
+    EmptySpot,
+    /// A cow of 5,856 triangles, textured under light.
+    TexturedSpot,
+    /// The same cow, flat.
+    FlatSpot,
 }
 
 /// The memory of a frame.
@@ -68,6 +76,16 @@ pub struct Buffers<'b> {
     pub color: &'b mut [u16],
     pub depth: &'b mut [u16],
     pub records: &'b mut [u32],
+}
+
+impl Workload {
+    /// Returns the columns of the screen; all have [`HEIGHT`] rows.
+    pub const fn width(self) -> usize {
+        match self {
+            Self::EmptySpot | Self::TexturedSpot | Self::FlatSpot => spot::SIDE,
+            _ => WIDTH,
+        }
+    }
 }
 
 /// Draws a frame of a workload; the strip is as high as the buffers.
@@ -83,6 +101,9 @@ pub fn draw(workload: Workload, buffers: Buffers<'_>, mut sink: impl FnMut(&[u16
         Workload::FlatTorus => flat_torus(buffers, sink),
         Workload::GouraudTorus => gouraud_torus(buffers, sink),
         Workload::Tiny => tiny(buffers, sink),
+        Workload::EmptySpot => spot::empty(buffers, sink),
+        Workload::TexturedSpot => spot::textured(buffers, sink),
+        Workload::FlatSpot => spot::flat(buffers, sink),
     }
 }
 
@@ -91,11 +112,16 @@ const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
 /// The closure of a frame, called through a pointer.
 type DrawScene<'d> = dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>) + 'd;
 
+#[inline(always)]
+fn frame(buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16]), draw: &mut DrawScene<'_>) -> Stats {
+    frame_on(SCREEN, buffers, sink, draw)
+}
+
 /// One function for all workloads, as a program has that shows several things.
 #[inline(never)]
-fn frame(buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16]), draw: &mut DrawScene<'_>) -> Stats {
+fn frame_on(screen: Size, buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16]), draw: &mut DrawScene<'_>) -> Stats {
     let Buffers { color, depth, records } = buffers;
-    let renderer = Renderer::new(SCREEN).and_then(|renderer| renderer.with_depth(depth));
+    let renderer = Renderer::new(screen).and_then(|renderer| renderer.with_depth(depth));
     frame_by(renderer.map(|renderer| renderer.with_records(records)), color, sink, draw)
 }
 

@@ -3,7 +3,7 @@
 //! Coverage by edge functions at pixel centres with the top-left rule, depth 1 / z per pixel, colours
 //! perspective-correct and cut to RGB565.
 
-use super::{FOCAL, HEIGHT, WIDTH, Workload};
+use super::{FOCAL, HEIGHT, WIDTH, Workload, spot};
 
 /// Position in view space and colour.
 #[derive(Clone, Copy)]
@@ -16,19 +16,29 @@ struct Vertex {
 pub struct Picture {
     pub colors: Vec<Option<[f64; 3]>>,
     inv_z: Vec<f64>,
+    width: usize,
+    /// Pixels per unit of x / z.
+    focal: f64,
 }
 
 /// Draws a workload.
 pub fn draw(workload: Workload) -> Picture {
-    let mut picture = Picture { colors: vec![None; WIDTH * HEIGHT], inv_z: vec![0.0; WIDTH * HEIGHT] };
+    let width = workload.width();
+    let focal = if width == WIDTH { FOCAL } else { spot::FOCAL };
+    let (colors, inv_z) = (vec![None; width * HEIGHT], vec![0.0; width * HEIGHT]);
+    let mut picture = Picture { colors, inv_z, width, focal };
     match workload {
-        Workload::Empty => {}
+        Workload::Empty | Workload::EmptySpot => {}
         Workload::Quad | Workload::FlatQuad | Workload::OwnFlatQuad => picture.quad(|_| super::QUAD_COLOR),
         Workload::GouraudQuad | Workload::OwnGouraudQuad => picture.quad(|k| super::QUAD_COLORS[k]),
         Workload::TexturedQuad => picture.tilted(),
         Workload::FlatTorus => picture.torus(|triangle, _| super::TORUS_FACE_NORMALS[triangle]),
         Workload::GouraudTorus => picture.torus(|_, vertex| super::TORUS_NORMALS[vertex]),
         Workload::Tiny => picture.tiny(),
+        Workload::TexturedSpot => picture.textured_spot(),
+        Workload::FlatSpot => {
+            picture.spot(|face, _| spot::COLOR.map(|c| f64::from(c) * spot::brightness(spot::FACE_NORMALS[face])));
+        }
     }
     picture
 }
@@ -82,10 +92,37 @@ impl Picture {
         }
     }
 
+    /// Draws the cow in colours of its faces and vertices.
+    fn spot(&mut self, color: impl Fn(usize, usize) -> [f64; 3]) {
+        for (face, corners) in spot::INDICES.chunks(3).enumerate() {
+            self.triangle(&[0, 1, 2].map(|c: usize| {
+                let k = usize::from(corners[c]);
+                let [x, y, z] = spot::in_eye_space(spot::POINTS[usize::from(spot::POSITION_OF[k])]);
+                Vertex { position: [x, y, -z], color: color(face, k) }
+            }));
+        }
+    }
+
+    /// u, v and the light take the place of colours until all is drawn.
+    fn textured_spot(&mut self) {
+        self.spot(|_, k| {
+            let [u, v] = spot::UVS[k].map(|c| f64::from(c.to_bits()) / 65_536.0);
+            [u, v, spot::brightness(spot::NORMALS[usize::from(spot::POSITION_OF[k])])]
+        });
+        for color in self.colors.iter_mut().flatten() {
+            let [x, y] =
+                [color[0], color[1]].map(|c| (c * spot::TEXELS as f64).floor() as isize as usize % spot::TEXELS);
+            let raw = spot::TEXELS_565[y][x];
+            let [r, g, b] = [raw >> 11 << 3, (raw >> 5 & 63) << 2, (raw & 31) << 3];
+            *color = [r | r >> 5, g | g >> 6, b | b >> 5].map(|c| f64::from(c) * color[2]);
+        }
+    }
+
     fn triangle(&mut self, v: &[Vertex; 3]) {
+        let (width, focal) = (self.width, self.focal);
         let screen = v.map(|v| {
             let [x, y, z] = v.position;
-            [WIDTH as f64 / 2.0 + FOCAL * x / z, HEIGHT as f64 / 2.0 - FOCAL * y / z]
+            [width as f64 / 2.0 + focal * x / z, HEIGHT as f64 / 2.0 - focal * y / z]
         });
         let edge =
             |a: [f64; 2], b: [f64; 2], p: [f64; 2]| (a[0] - p[0]) * (b[1] - p[1]) - (b[0] - p[0]) * (a[1] - p[1]);
@@ -100,7 +137,7 @@ impl Picture {
             low as usize..(high as usize).min(size)
         };
         for y in range(1, HEIGHT) {
-            for x in range(0, WIDTH) {
+            for x in range(0, width) {
                 let p = [x as f64 + 0.5, y as f64 + 0.5];
                 let weights = [0, 1, 2].map(|k| edge(screen[(k + 1) % 3], screen[(k + 2) % 3], p) / area);
                 let inside = (0..3).all(|k| {
@@ -110,7 +147,7 @@ impl Picture {
                     weights[k] > 0.0 || (weights[k] == 0.0 && (down > 0.0 || (down == 0.0 && right < 0.0)))
                 });
                 if inside {
-                    self.fragment(y * WIDTH + x, v, weights);
+                    self.fragment(y * width + x, v, weights);
                 }
             }
         }
