@@ -17,5 +17,5 @@ pub(crate) use direction::unit;
 pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
 pub use perspective::{homogenize, widen};
-pub use point::square;
+pub use point::{square, wide_square};
 pub use triangle::{Outline, PixelRect, Spans, pixel_rect, spans};

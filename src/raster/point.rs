@@ -25,3 +25,13 @@ pub const fn square(center: (i32, i32), side: u32) -> PixelRect {
         y: first(2 * center.1 - side)..first(2 * center.1 + side),
     }
 }
+
+/// Returns the pixels of a square as [`square`] does, wherever its centre is and however large it is.
+pub const fn wide_square(center: (i32, i32), side: u32) -> PixelRect {
+    const fn first(c: i64) -> i32 {
+        // The sum of three numbers of 32 bits, divided by 2⁹, fits 32 bits.
+        ((c + 255) >> 9) as i32
+    }
+    let (x, y, side) = (2 * center.0 as i64, 2 * center.1 as i64, side as i64);
+    PixelRect { x: first(x - side)..first(x + side), y: first(y - side)..first(y + side) }
+}

@@ -11,6 +11,7 @@
 use super::edge::Edge;
 use crate::vertex::ScreenVertex;
 use core::ops::Range;
+use embedded_graphics_core::primitives::Rectangle;
 
 /// A half-open rectangle of pixels.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -22,6 +23,16 @@ pub struct PixelRect {
 }
 
 impl PixelRect {
+    /// Returns the pixels of an area of embedded-graphics, cut at the ends of 32 bits.
+    #[inline]
+    pub fn of_area(area: &Rectangle) -> Self {
+        let Rectangle { top_left, size } = *area;
+        Self {
+            x: top_left.x..top_left.x.saturating_add_unsigned(size.width),
+            y: top_left.y..top_left.y.saturating_add_unsigned(size.height),
+        }
+    }
+
     /// Returns whether the rectangle has no pixels.
     #[inline]
     pub const fn is_empty(&self) -> bool {

@@ -7,14 +7,17 @@ use super::state::{Cull, State};
 use super::stroke::{Stroke, Thin, block};
 use crate::color::{channels, packed};
 use crate::math::Pixels;
-use crate::raster::{PixelRect, pixel_rect, square};
+use crate::raster::{PixelRect, pixel_rect, wide_square};
 use crate::shader::{Flat, Gouraud};
 use crate::span::{DepthState, Shader};
 use crate::target::Framebuffer;
-use crate::vertex::ScreenVertex;
+use crate::vertex::{
+    ClipCorner, ClipVertex, DepthSlab, Outcode, ScreenVertex, clip_line, clip_triangle, project, weighted,
+};
 use embedded_graphics_core::geometry::Point;
 use embedded_graphics_core::pixelcolor::Rgb888;
 use embedded_graphics_core::primitives::Rectangle;
+use heapless::Vec;
 
 /// A point on the screen: x to the right and y down from the top left corner. The centre of a pixel is at .5.
 ///
@@ -34,37 +37,24 @@ pub struct ScreenPoint {
 }
 
 impl ScreenPoint {
-    /// Makes a point from coordinates. Coordinates beyond ±32,767 px are clamped.
+    /// Makes a point from coordinates. It may be as far off the screen as [`Pixels`] can tell: shapes are cut along
+    /// their edges, within 1/256 px, where they leave ±32,767 px.
     #[must_use]
     pub const fn new(x: Pixels, y: Pixels) -> Self {
-        Self::from_raw(x.to_bits(), y.to_bits())
-    }
-
-    /// Makes a point from raw 24.8 bits, clamped as in [`new`](Self::new).
-    const fn from_raw(x: i32, y: i32) -> Self {
-        const fn stop(c: i32) -> i32 {
-            const LIMIT: i32 = (1 << 23) - 1;
-            if c > LIMIT {
-                LIMIT
-            } else if c < -LIMIT {
-                -LIMIT
-            } else {
-                c
-            }
-        }
-        Self { x: stop(x), y: stop(y) }
+        Self { x: x.to_bits(), y: y.to_bits() }
     }
 
     /// Returns the top left corner of pixel (x, y): the place where a shape of whole pixels begins or ends.
     #[must_use]
     pub const fn corner(x: i16, y: i16) -> Self {
-        Self::from_raw(256 * x as i32, 256 * y as i32)
+        Self { x: 256 * x as i32, y: 256 * y as i32 }
     }
 
-    /// Returns the centre of pixel (x, y): the place where a line begins or ends.
+    /// Returns the centre of pixel (x, y): the place where a line begins or ends. A thin line does not draw the pixel
+    /// that it ends in, see [`Thin`].
     #[must_use]
     pub const fn center(x: i16, y: i16) -> Self {
-        Self::from_raw(256 * x as i32 + 128, 256 * y as i32 + 128)
+        Self { x: 256 * x as i32 + 128, y: 256 * y as i32 + 128 }
     }
 
     /// Returns the distance from the left edge of the screen.
@@ -80,18 +70,18 @@ impl ScreenPoint {
     }
 }
 
-/// Takes the centre of a pixel. Coordinates beyond ±32,767 px are clamped.
+/// Takes the centre of a pixel. Coordinates beyond ±8,388,607 px, the largest [`Pixels`], are clamped.
 impl From<Point> for ScreenPoint {
     fn from(pixel: Point) -> Self {
-        let center = |c: i32| c.clamp(-(1 << 15), 1 << 15) * 256 + 128;
-        Self::from_raw(center(pixel.x), center(pixel.y))
+        let center = |c: i32| c.clamp(-(1 << 23), (1 << 23) - 1) * 256 + 128;
+        Self { x: center(pixel.x), y: center(pixel.y) }
     }
 }
 
 /// Takes the position of a vertex, for shapes that are drawn about it.
 impl From<ScreenVertex> for ScreenPoint {
     fn from(vertex: ScreenVertex) -> Self {
-        Self::from_raw(vertex.x, vertex.y)
+        Self { x: vertex.x, y: vertex.y }
     }
 }
 
@@ -107,6 +97,55 @@ impl defmt::Format for ScreenPoint {
     fn format(&self, f: defmt::Formatter<'_>) {
         defmt::write!(f, "({}, {})/256 px", self.x, self.y);
     }
+}
+
+impl ScreenPoint {
+    /// Returns the point as a vertex, for points inside of the guard band.
+    const fn vertex(self, z: u16) -> ScreenVertex {
+        ScreenVertex::new(self.x, self.y, z)
+    }
+
+    /// Returns the point in clip space, where shapes are cut at the guard band as triangles of meshes are.
+    ///
+    /// # Format
+    /// Clip space counts in units of 512 px, 2¹⁷ in 24.8. With a w of 2⁴⁰, coordinates are at most 2⁵⁴.
+    const fn clip_vertex(self) -> ClipVertex {
+        ClipVertex { x: (self.x as i64) << 23, y: (self.y as i64) << 23, z: 0, w: 1 << 40 }
+    }
+
+    /// Returns the sides of the guard band that the point is outside of.
+    #[inline]
+    fn outcode(self) -> Outcode {
+        // Nearly all points are inside. The guard band ends at 2²³ - 2.
+        if self.x.unsigned_abs().max(self.y.unsigned_abs()) < (1 << 23) - 2 {
+            return Outcode(0);
+        }
+        Outcode::of(&self.clip_vertex())
+    }
+}
+
+/// A corner of a shape that was cut, and the weights of the original corners.
+type CutCorner = (ScreenVertex, [i32; 3]);
+
+/// Returns a corner of a shape that was cut, at a depth.
+fn cut_corner(corner: &ClipCorner, z: u16) -> Option<CutCorner> {
+    let ScreenVertex { x, y, .. } = project(&corner.vertex)?;
+    Some((ScreenVertex::new(x, y, z), corner.weights))
+}
+
+/// Number of corners of a triangle that was cut by the four sides of the guard band.
+const CUT_CORNERS: usize = 7;
+
+/// Cuts a triangle at the guard band. Out of line, so that its polygon is not on the stack while pixels are drawn.
+#[inline(never)]
+fn cut_triangle(points: [ScreenPoint; 3], codes: Outcode, z: u16) -> Vec<CutCorner, CUT_CORNERS> {
+    let mut corners = Vec::new();
+    clip_triangle(points.map(ScreenPoint::clip_vertex), codes, DepthSlab::Inside, |corner| {
+        if let Some(corner) = cut_corner(corner, z) {
+            let _ = corners.push(corner);
+        }
+    });
+    corners
 }
 
 /// A drawing surface on the screen's plane, see [`Scene::canvas`].
@@ -151,12 +190,12 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         self.canvas_with(0, DepthState::OFF)
     }
 
-    /// Returns a canvas at a depth. A shape's pixel is drawn where this depth is nearer than the depth buffer's depth,
-    /// and the depth buffer then takes this depth.
+    /// Returns a canvas at a depth. A shape's pixel is drawn where nothing is nearer than this depth, and the depth
+    /// buffer then takes this depth. So shapes at one depth cover each other in their order.
     ///
     /// [`project`](Self::project) tells the depth of a point. Without a depth buffer, this is [`canvas`](Self::canvas).
     pub fn canvas_at(&mut self, z: u16) -> Canvas<'_, 'a, F> {
-        self.canvas_with(z, DepthState::LESS)
+        self.canvas_with(z, DepthState::LESS_EQUAL)
     }
 
     /// Returns a canvas at a depth, with any depth test.
@@ -176,17 +215,17 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
 
     /// Limits all that follows to a rectangle, or removes the limit.
     pub fn set_scissor(&mut self, area: Option<&Rectangle>) {
-        self.clip = area.map_or(self.all.clone(), |area| self.all.intersection(&pixels(area)));
+        self.clip = area.map_or(self.all.clone(), |area| self.all.intersection(&PixelRect::of_area(area)));
     }
 
     /// Fills a rectangle of pixels.
     pub fn rectangle(&mut self, area: &Rectangle, color: impl Into<Rgb888>) {
-        self.block(&pixels(area), color.into());
+        self.block(&PixelRect::of_area(area), color.into());
     }
 
     /// Draws a square with sides of `size`, as a marker.
     pub fn point(&mut self, center: ScreenPoint, size: Pixels, color: impl Into<Rgb888>) {
-        self.block(&square((center.x, center.y), size.to_bits().max(0) as u32), color.into());
+        self.block(&wide_square((center.x, center.y), size.to_bits().max(0) as u32), color.into());
     }
 
     fn block(&mut self, rect: &PixelRect, color: Rgb888) {
@@ -235,26 +274,56 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         shader: &S,
         face: u32,
     ) {
-        let Self { scene, clip, state, z, .. } = self;
-        let mut corners = corners.iter().map(|c| {
-            let (at, varyings) = corner(c);
-            (ScreenVertex::new(at.x, at.y, *z), varyings)
-        });
+        let mut corners = corners.iter().map(corner);
         let (Some(first), Some(mut last)) = (corners.next(), corners.next()) else { return };
         for next in corners {
-            let v = [first.0, last.0, next.0];
-            if !pixel_rect(&v).intersection(clip).is_empty() {
-                scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(
-                    &v,
-                    &[first.1, last.1, next.1],
-                    face,
-                );
+            let [a, b, c] = [first.0, last.0, next.0];
+            let codes = [a, b, c].map(|point| point.outcode().0);
+            let varyings = [first.1, last.1, next.1];
+            if codes == [0; 3] {
+                self.triangle(&[a.vertex(self.z), b.vertex(self.z), c.vertex(self.z)], &varyings, shader, face);
+            } else if codes[0] & codes[1] & codes[2] == 0 {
+                self.far_triangle([a, b, c], Outcode(codes[0] | codes[1] | codes[2]), &varyings, shader, face);
             }
             last = next;
         }
     }
 
-    /// Draws a line of one pixel's width, by the diamond-exit rule.
+    /// Draws a triangle whose corners are inside of the guard band.
+    fn triangle<S: Shader<F::Format>>(
+        &mut self,
+        v: &[ScreenVertex; 3],
+        varyings: &[S::Varyings; 3],
+        shader: &S,
+        face: u32,
+    ) {
+        let Self { scene, clip, state, .. } = self;
+        if !pixel_rect(v).intersection(clip).is_empty() {
+            scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(v, varyings, face);
+        }
+    }
+
+    /// Draws a triangle with corners outside of the guard band: the polygon that is left of it, as a fan.
+    #[inline(never)]
+    fn far_triangle<S: Shader<F::Format>>(
+        &mut self,
+        points: [ScreenPoint; 3],
+        codes: Outcode,
+        varyings: &[S::Varyings; 3],
+        shader: &S,
+        face: u32,
+    ) {
+        let cut = cut_triangle(points, codes, self.z);
+        let mut corners = cut.iter();
+        let (Some(a), Some(mut b)) = (corners.next(), corners.next()) else { return };
+        for c in corners {
+            let varyings = [a, b, c].map(|(_, weights)| weighted(weights, varyings));
+            self.triangle(&[a.0, b.0, c.0], &varyings, shader, face);
+            b = c;
+        }
+    }
+
+    /// Draws a line of one pixel's width, by the diamond-exit rule: without the pixel that it ends in. See [`Thin`].
     pub fn line(&mut self, a: ScreenPoint, b: ScreenPoint, color: impl Into<Rgb888>) {
         self.line_with(a, b, color, &Thin);
     }
@@ -271,7 +340,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         self.segment(&ends, &Gouraud::vertex_colors(), 0, stroke);
     }
 
-    /// Draws lines from point to point. Thin lines draw the pixel of each joint once.
+    /// Draws lines from point to point. Thin lines draw the pixel of each joint once, and not that of the last point.
     pub fn polyline(&mut self, points: &[ScreenPoint], color: impl Into<Rgb888>, stroke: &impl Stroke) {
         let color = color.into();
         for (a, b) in points.iter().zip(points.get(1..).unwrap_or_default()) {
@@ -296,27 +365,42 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         face: u32,
         stroke: &K,
     ) {
-        let Self { scene, clip, state, z, .. } = self;
-        let [(a, from), (b, to)] = ends;
+        let [(a, from), (b, to)] = *ends;
+        let codes = [a, b].map(|point| point.outcode().0);
+        if codes == [0; 2] {
+            self.near_segment(&[(a.vertex(self.z), from), (b.vertex(self.z), to)], shader, face, stroke);
+        } else if codes[0] & codes[1] == 0 {
+            let vertices = [a.clip_vertex(), b.clip_vertex()];
+            let Some([start, end]) = clip_line(vertices, Outcode(codes[0] | codes[1]), DepthSlab::Inside) else {
+                return;
+            };
+            let (Some(start), Some(end)) = (cut_corner(&start, self.z), cut_corner(&end, self.z)) else { return };
+            // Pixels of the line, along its longer axis, up to the cut.
+            let steep = b.y.abs_diff(a.y) > b.x.abs_diff(a.x);
+            let (from_pixel, to_pixel) = if steep { (a.y >> 8, start.0.y >> 8) } else { (a.x >> 8, start.0.x >> 8) };
+            let stroke = stroke.after(to_pixel.abs_diff(from_pixel));
+            let ends = [start, end].map(|(vertex, weights)| (vertex, weighted(&weights, &[from, to, to])));
+            self.near_segment(&ends, shader, face, &stroke);
+        }
+    }
+
+    /// Draws a line whose ends are inside of the guard band.
+    fn near_segment<S: Shader<F::Format>, K: Stroke>(
+        &mut self,
+        ends: &[(ScreenVertex, S::Varyings); 2],
+        shader: &S,
+        face: u32,
+        stroke: &K,
+    ) {
+        let Self { scene, clip, state, .. } = self;
+        let [(a, _), (b, _)] = ends;
         let reach = stroke.reach();
         let near = PixelRect {
             x: (a.x.min(b.x) >> 8) - reach..(a.x.max(b.x) >> 8) + reach + 1,
             y: (a.y.min(b.y) >> 8) - reach..(a.y.max(b.y) >> 8) + reach + 1,
         };
-        if near.intersection(clip).is_empty() {
-            return;
+        if !near.intersection(clip).is_empty() {
+            stroke.draw(&mut scene.painter(clip, state, &const { RasterHooks::ANY }, shader), ends, face);
         }
-        let ends = [(ScreenVertex::new(a.x, a.y, *z), *from), (ScreenVertex::new(b.x, b.y, *z), *to)];
-        stroke.draw(&mut scene.painter(clip, state, &const { RasterHooks::ANY }, shader), &ends, face);
     }
-}
-
-/// Converts a rectangle of embedded-graphics. Parts beyond the largest possible screen are cut off.
-fn pixels(area: &Rectangle) -> PixelRect {
-    let side = |start: i32, size: u32| {
-        let start = start.clamp(-65_536, 65_536);
-        start..start + size.min(131_072) as i32
-    };
-    let Point { x, y } = area.top_left;
-    PixelRect { x: side(x, area.size.width), y: side(y, area.size.height) }
 }

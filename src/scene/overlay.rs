@@ -2,12 +2,12 @@
 //! positions on the screen.
 
 use super::canvas::ScreenPoint;
-use super::scene::Scene;
+use super::scene::{Scene, Target};
 use super::state::State;
 use crate::math::{Pixels, Projective, Vec3};
 use crate::mesh::{Mesh, MeshData, Positions};
-use crate::span::{DepthDyn, DepthLess, DepthOff, DepthState, DepthTest};
-use crate::target::{Framebuffer, Overlay};
+use crate::span::{DepthDyn, DepthLessEqual, DepthOff, DepthState, DepthTest};
+use crate::target::{Framebuffer, Overlay, OverlayTarget};
 use crate::vertex::{Projected, ScreenVertex, Transform};
 
 /// A mesh without vertices, for transforms of 16.16 positions.
@@ -23,13 +23,14 @@ impl<F: Framebuffer> Scene<'_, F> {
         self.target_at(0, DepthOff)
     }
 
-    /// Returns an embedded-graphics target at a depth. A pixel is drawn where this depth is nearer than the depth
-    /// buffer's depth, and the depth buffer then takes this depth.
+    /// Returns an embedded-graphics target at a depth. A pixel is drawn where nothing is nearer than this depth, and the
+    /// depth buffer then takes this depth. So drawings at one depth cover each other in their order, as a letter covers
+    /// its background.
     ///
     /// [`project`](Self::project) tells the depth of a point. Without a depth buffer, this is
     /// [`overlay`](Self::overlay).
-    pub fn at_depth(&mut self, z: u16) -> Overlay<'_, F, DepthLess> {
-        self.target_at(z, DepthLess)
+    pub fn at_depth(&mut self, z: u16) -> Overlay<'_, F, DepthLessEqual> {
+        self.target_at(z, DepthLessEqual)
     }
 
     /// Returns an embedded-graphics target at a depth, with any depth test.
@@ -38,9 +39,11 @@ impl<F: Framebuffer> Scene<'_, F> {
     }
 
     fn target_at<D: DepthTest>(&mut self, z: u16, test: D) -> Overlay<'_, F, D> {
-        let recording = self.is_recording();
-        let target = &mut self.target;
-        let target = (!recording).then(|| (&mut *target.framebuffer, &mut *target.depth, target.rows.clone()));
+        let clip = self.clip_rect(&self.target.rows);
+        let drawn = !self.is_recording() && !clip.is_empty();
+        let Target { framebuffer, depth, rows } = &mut self.target;
+        let target =
+            drawn.then_some(OverlayTarget { framebuffer: &mut **framebuffer, depth, first_row: rows.start, clip });
         Overlay::new(target, self.screen, z, test)
     }
 

@@ -22,9 +22,13 @@ use crate::vertex::{ScreenVertex, Side, Varyings, VertexShader, Wrapper};
 pub trait Stroke: DrawStroke {}
 
 /// Draws lines in the style of a stroke.
-pub(super) trait DrawStroke {
+pub(super) trait DrawStroke: Sized {
     /// Returns how far from the line its pixels may be, in whole pixels.
     fn reach(&self) -> i32;
+
+    /// Returns the stroke for the rest of a line, of which `pixels` pixels along its longer axis were cut off.
+    #[must_use]
+    fn after(&self, pixels: u32) -> Self;
 
     /// Draws a line.
     fn draw<F: Framebuffer, S: Shader<F::Format>>(
@@ -36,7 +40,9 @@ pub(super) trait DrawStroke {
 }
 
 /// Draws lines one pixel wide, by the diamond-exit rule: one pixel for each step along the longer axis, exactly those
-/// that OpenGL and Vulkan draw. Lines in a chain draw the pixel of each joint once.
+/// that OpenGL and Vulkan draw. A line does not draw the pixel that it ends in: so lines in a chain draw the pixel of
+/// each joint once, and a line that begins and ends in one place draws nothing. [`Scene::canvas`](crate::Scene::canvas)
+/// has a `point` for a single pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Thin;
 
@@ -111,6 +117,10 @@ impl Stroke for Thick {}
 impl Stroke for Smooth {}
 
 impl DrawStroke for Thin {
+    fn after(&self, _: u32) -> Self {
+        *self
+    }
+
     fn reach(&self) -> i32 {
         1
     }
@@ -127,6 +137,10 @@ impl DrawStroke for Thin {
 }
 
 impl DrawStroke for Dashed {
+    fn after(&self, pixels: u32) -> Self {
+        Self(self.0.rotate_right(pixels & 31))
+    }
+
     fn reach(&self) -> i32 {
         1
     }
@@ -357,6 +371,10 @@ fn fill<F: Framebuffer, S: Shader<F::Format>>(
 }
 
 impl DrawStroke for Thick {
+    fn after(&self, _: u32) -> Self {
+        *self
+    }
+
     fn reach(&self) -> i32 {
         (self.0 >> 9) as i32 + 2
     }
@@ -375,6 +393,10 @@ impl DrawStroke for Thick {
 }
 
 impl DrawStroke for Smooth {
+    fn after(&self, _: u32) -> Self {
+        *self
+    }
+
     fn reach(&self) -> i32 {
         (self.0 >> 9) as i32 + 3
     }

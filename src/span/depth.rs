@@ -56,6 +56,8 @@ pub struct DepthState {
 impl DepthState {
     /// Nearer fragments pass and store their depth.
     pub const LESS: Self = Self { compare: Compare::Less, write: true };
+    /// Fragments that nothing is nearer than pass and store their depth: for things that cover others at one depth.
+    pub const LESS_EQUAL: Self = Self { compare: Compare::LessEqual, write: true };
     /// Nearer fragments pass and leave the stored depth as it is: for transparent things.
     pub const TEST: Self = Self { compare: Compare::Less, write: false };
     /// Depth is neither tested nor stored: later draws cover earlier ones.
@@ -123,6 +125,38 @@ impl DepthStorage<u16> for DepthLess {
     #[inline(always)]
     fn as_dyn(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
         Some((DepthDyn::new(DepthState::LESS), stored))
+    }
+}
+
+/// The test of [`DepthState::LESS_EQUAL`].
+#[derive(Clone, Copy, Debug)]
+pub struct DepthLessEqual;
+
+impl DepthTest for DepthLessEqual {
+    const ENABLED: bool = true;
+
+    type Depth = u16;
+
+    #[inline(always)]
+    fn passes(self, z: u16, stored: u16) -> bool {
+        z <= stored
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut u16) {
+        *stored = z;
+    }
+}
+
+impl DepthStorage<u16> for DepthLessEqual {
+    #[inline(always)]
+    fn slots<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+        depths
+    }
+
+    #[inline(always)]
+    fn as_dyn(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
+        Some((DepthDyn::new(DepthState::LESS_EQUAL), stored))
     }
 }
 
@@ -356,6 +390,8 @@ mod tests {
             }
             let less = DepthLess.as_dyn(&mut []).map(|(test, _)| test.passes(z, stored));
             assert_eq!(less, Some(DepthLess.passes(z, stored)));
+            let less_equal = DepthLessEqual.as_dyn(&mut []).map(|(test, _)| test.passes(z, stored));
+            assert_eq!((less_equal, z <= stored), (Some(z <= stored), DepthLessEqual.passes(z, stored)));
         }
     }
 }

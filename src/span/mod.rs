@@ -15,7 +15,7 @@ mod span;
 mod textured;
 
 pub use color_setup::ColorSetup;
-pub use depth::{Compare, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest};
+pub use depth::{Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff, DepthState, DepthTest};
 pub use depth_bias::DepthBias;
 pub(crate) use luma::luma_span;
 pub(crate) use packed::packed_span;

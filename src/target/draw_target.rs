@@ -25,7 +25,9 @@ type Color<F> = <<F as Framebuffer>::Format as PixelFormat>::Color;
 /// A target for embedded-graphics, over the strip that is being drawn; from
 /// [`Scene::overlay`](crate::scene::Scene::overlay) and [`Scene::at_depth`](crate::scene::Scene::at_depth).
 ///
-/// While the closure is only recorded there are no pixels, and drawing does nothing.
+/// Pixels outside of the scene's [viewport](crate::scene::Scene::set_viewport) are left as they are. The bounding box is
+/// the whole screen, whatever the viewport is. While the closure is only recorded there are no pixels, and drawing does
+/// nothing.
 #[derive(Debug)]
 pub struct Overlay<'o, F, D> {
     /// The strip's pixels; `None` while the closure is recorded.
@@ -34,26 +36,34 @@ pub struct Overlay<'o, F, D> {
     depth: &'o mut [u16],
     first_row: i32,
     screen: (u16, u16),
-    /// Area that may be drawn: never outside of the strip.
+    /// Area that may be drawn: never outside of the strip or of the viewport.
     clip: PixelRect,
     z: u16,
     test: D,
 }
 
+/// The strip that an overlay draws into.
+pub(crate) struct OverlayTarget<'o, F> {
+    pub(crate) framebuffer: &'o mut F,
+    pub(crate) depth: &'o mut [u16],
+    pub(crate) first_row: i32,
+    /// Pixels that may be drawn: in the strip and in the viewport, and at least one. The columns of an empty rectangle
+    /// could be in the wrong order, and would have no length.
+    pub(crate) clip: PixelRect,
+}
+
 impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
-    /// Makes an overlay over `rows` of a screen.
-    pub(crate) fn new(
-        target: Option<(&'o mut F, &'o mut [u16], Range<i32>)>,
-        screen: (u16, u16),
-        z: u16,
-        test: D,
-    ) -> Self {
-        let (framebuffer, depth, rows) = match target {
-            Some((framebuffer, depth, rows)) => (Some(framebuffer), depth, rows),
-            None => (None, Default::default(), 0..0),
-        };
-        let clip = PixelRect { x: 0..i32::from(screen.0), y: rows };
-        Self { framebuffer, depth, first_row: clip.y.start, screen, clip, z, test }
+    /// Makes an overlay over a strip of a screen, or one that draws nothing.
+    pub(crate) fn new(target: Option<OverlayTarget<'o, F>>, screen: (u16, u16), z: u16, test: D) -> Self {
+        match target {
+            Some(OverlayTarget { framebuffer, depth, first_row, clip }) => {
+                Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test }
+            }
+            None => {
+                let clip = PixelRect { x: 0..0, y: 0..0 };
+                Self { framebuffer: None, depth: Default::default(), first_row: 0, screen, clip, z, test }
+            }
+        }
     }
 
     /// Tells if any pixel of an area is in the strip that is being drawn. If none is, a drawing that stays within the
@@ -63,7 +73,7 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     /// of the closure.
     #[inline(never)]
     pub fn is_visible(&self, area: &Rectangle) -> bool {
-        !self.clip.intersection(&pixels(area)).is_empty()
+        !self.clip.intersection(&PixelRect::of_area(area)).is_empty()
     }
 
     /// Draws a drawable if its bounding box touches the strip. For drawables that do not touch it, this is a lot
@@ -74,7 +84,7 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     pub fn draw<T: Drawable<Color = Color<F>> + Dimensions>(&mut self, drawable: &T) {
         let area = drawable.bounding_box();
         if self.is_visible(&area) {
-            let clip = self.clip.intersection(&pixels(&area));
+            let clip = self.clip.intersection(&PixelRect::of_area(&area));
             let mut part = Overlay {
                 framebuffer: self.framebuffer.as_deref_mut(),
                 depth: self.depth,
@@ -91,16 +101,21 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     /// Draws the part of an image that is in the strip, with the image's corner at `top_left`. (embedded-graphics'
     /// own `Image` passes over all pixels above the strip one by one.) Colours of another type are converted.
     pub fn draw_image<T: ImageDrawable<Color: Into<Color<F>>>>(&mut self, image: &T, top_left: Point) {
-        let area = pixels(&Rectangle::new(top_left, image.size()));
+        let area = PixelRect::of_area(&Rectangle::new(top_left, image.size()));
         let part = self.clip.intersection(&area);
         if part.is_empty() {
             return;
         }
         let corner = Point::new(part.x.start, part.y.start);
         let size = Size::new((part.x.end - part.x.start) as u32, (part.y.end - part.y.start) as u32);
-        let offset = Point::new(corner.x.wrapping_sub(top_left.x), corner.y.wrapping_sub(top_left.y));
+        let (x, y) = (corner.x.checked_sub(top_left.x), corner.y.checked_sub(top_left.y));
+        let (Some(x), Some(y)) = (x, y) else {
+            // Coordinates of embedded-graphics have no number for the part's corner in the image.
+            let Ok(()) = image.draw(&mut Moved { overlay: self, origin: top_left, color: PhantomData });
+            return;
+        };
         let mut moved = Moved { overlay: self, origin: corner, color: PhantomData };
-        let Ok(()) = image.draw_sub_image(&mut moved, &Rectangle::new(offset, size));
+        let Ok(()) = image.draw_sub_image(&mut moved, &Rectangle::new(Point::new(x, y), size));
     }
 }
 
@@ -113,18 +128,36 @@ struct Moved<'m, 'o, F, D, C> {
 
 impl<F: Framebuffer, D: DepthTest, C> Dimensions for Moved<'_, '_, F, D, C> {
     fn bounding_box(&self) -> Rectangle {
-        self.moved(&self.overlay.bounding_box(), Point::new(self.origin.x.wrapping_neg(), self.origin.y.wrapping_neg()))
+        let back = Point::new(self.origin.x.saturating_neg(), self.origin.y.saturating_neg());
+        Rectangle::new(back, self.overlay.bounding_box().size)
     }
 }
 
-impl<F, D, C> Moved<'_, '_, F, D, C> {
-    fn moved(&self, area: &Rectangle, by: Point) -> Rectangle {
-        Rectangle::new(plus(area.top_left, by), area.size)
+/// Colours that are converted. Unlike those of [`Iterator::map`], they can be passed over without making each of them.
+struct Converted<I, T>(I, PhantomData<T>);
+
+impl<T, I: Iterator<Item: Into<T>>> Iterator for Converted<I, T> {
+    type Item = T;
+
+    #[inline]
+    fn next(&mut self) -> Option<T> {
+        self.0.next().map(Into::into)
+    }
+
+    #[inline]
+    fn nth(&mut self, n: usize) -> Option<T> {
+        self.0.nth(n).map(Into::into)
     }
 }
 
-fn plus(a: Point, b: Point) -> Point {
-    Point::new(a.x.wrapping_add(b.x), a.y.wrapping_add(b.y))
+/// Moves an area; `None` if its corner would be beyond 32 bits.
+fn moved(area: &Rectangle, by: Point) -> Option<Rectangle> {
+    Some(Rectangle::new(plus(area.top_left, by)?, area.size))
+}
+
+/// Adds two points; `None` if the sum is beyond 32 bits. A sum that wrapped round could be on the screen.
+fn plus(a: Point, b: Point) -> Option<Point> {
+    Some(Point::new(a.x.checked_add(b.x)?, a.y.checked_add(b.y)?))
 }
 
 impl<F: Framebuffer, D: DepthTest, C: PixelColor + Into<Color<F>>> DrawTarget for Moved<'_, '_, F, D, C> {
@@ -133,24 +166,18 @@ impl<F: Framebuffer, D: DepthTest, C: PixelColor + Into<Color<F>>> DrawTarget fo
 
     fn draw_iter<I: IntoIterator<Item = Pixel<C>>>(&mut self, pixels: I) -> Result<(), Infallible> {
         let origin = self.origin;
-        self.overlay.draw_iter(pixels.into_iter().map(|Pixel(at, color)| Pixel(plus(at, origin), color.into())))
+        let moved = |Pixel(at, color)| Some(Pixel(plus(at, origin)?, C::into(color)));
+        self.overlay.draw_iter(pixels.into_iter().filter_map(moved))
     }
 
     fn fill_contiguous<I: IntoIterator<Item = C>>(&mut self, area: &Rectangle, colors: I) -> Result<(), Infallible> {
-        self.overlay.fill_contiguous(&self.moved(area, self.origin), colors.into_iter().map(Into::into))
+        let Some(area) = moved(area, self.origin) else { return Ok(()) };
+        self.overlay.fill_contiguous(&area, Converted(colors.into_iter(), PhantomData))
     }
 
     fn fill_solid(&mut self, area: &Rectangle, color: C) -> Result<(), Infallible> {
-        self.overlay.fill_solid(&self.moved(area, self.origin), color.into())
-    }
-}
-
-/// Returns the pixels of an area, cut at the ends of 32 bits.
-fn pixels(area: &Rectangle) -> PixelRect {
-    let Rectangle { top_left, size } = *area;
-    PixelRect {
-        x: top_left.x..top_left.x.saturating_add_unsigned(size.width),
-        y: top_left.y..top_left.y.saturating_add_unsigned(size.height),
+        let Some(area) = moved(area, self.origin) else { return Ok(()) };
+        self.overlay.fill_solid(&area, color.into())
     }
 }
 
@@ -172,6 +199,18 @@ fn depths<'r, D: DepthTest>(
     let start = (row as usize).wrapping_mul(usize::from(width)).wrapping_add(columns.start as usize);
     let stored = D::slots(depth, nothing).get_mut(start..).unwrap_or_default();
     stored.get_mut(..(columns.end - columns.start) as usize).unwrap_or_default()
+}
+
+/// Passes over items, and returns whether there were as many. A count may have more bits than an index.
+fn pass_over(items: &mut impl Iterator, mut count: u64) -> bool {
+    while count > 0 {
+        let step = usize::try_from(count).unwrap_or(usize::MAX);
+        if items.nth(step - 1).is_none() {
+            return false;
+        }
+        count -= step as u64;
+    }
+    true
 }
 
 /// Tests a depth against the stored one. A depth that passes is stored.
@@ -223,7 +262,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
         area: &Rectangle,
         colors_of_all: I,
     ) -> Result<(), Infallible> {
-        let all = pixels(area);
+        let all = PixelRect::of_area(area);
         let part = self.clip.intersection(&all);
         let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
             return Ok(());
@@ -234,9 +273,14 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
         let width = area.size.width as usize;
         let mut nothing = [(); usize::MAX];
         let mut new = colors_of_all.into_iter();
-        let rows_above = part.y.start.wrapping_sub(all.y.start) as usize;
-        let columns_left = part.x.start.wrapping_sub(all.x.start) as usize;
-        let mut skip = rows_above.saturating_mul(width).saturating_add(columns_left);
+        // Differences of 32-bit numbers need 32 bits without a sign, and the number of colours has 64 bits.
+        let rows_above = part.y.start.wrapping_sub(all.y.start) as u32;
+        let columns_left = part.x.start.wrapping_sub(all.x.start) as u32;
+        let first = u64::from(rows_above) * u64::from(area.size.width) + u64::from(columns_left);
+        if !pass_over(&mut new, first) {
+            return Ok(());
+        }
+        let mut skip = 0_usize;
         for y in part.y {
             if skip > 0 && new.nth(skip - 1).is_none() {
                 return Ok(());
@@ -257,7 +301,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
 
     #[inline(never)]
     fn fill_solid(&mut self, area: &Rectangle, color: Self::Color) -> Result<(), Infallible> {
-        let part = self.clip.intersection(&pixels(area));
+        let part = self.clip.intersection(&PixelRect::of_area(area));
         let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
             return Ok(());
         };

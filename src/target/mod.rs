@@ -12,6 +12,7 @@ mod strip_rows;
 
 pub use choice::{DepthChoice, RecordsChoice, WithDepth, WithRecords, WithoutDepth, WithoutRecords};
 pub use draw_target::Overlay;
+pub(crate) use draw_target::OverlayTarget;
 pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use packer::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use records::records_len;

@@ -18,13 +18,13 @@ mod viewport;
 mod wrapper;
 
 pub use clip::DepthRange;
-pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSlab, Outcode, weighted};
+pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSlab, Outcode, clip_triangle, weighted};
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
 pub use painters_order::{SortError, SortReport, SortScratch, painters_order};
 pub use project::{DepthScale, ScreenVertex};
-pub(crate) use project::{inverse_w, signed_area, small};
+pub(crate) use project::{inverse_w, project, signed_area, small};
 pub use shader::{Face, Side, VertexRef, VertexShader};
 pub(crate) use transform::{Projected, ScreenMatrix, Transform};
 pub(crate) use varyings::{MAX_IN_REGISTERS, PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64};
