@@ -229,7 +229,8 @@ fn given_bounds_must_hold_the_vertices() {
     let with = |bounds| Mesh::new(MeshData { bounds: Some(bounds), ..quad(&SQUARE) }).map(|_| ());
     assert_eq!(with(good), Ok(()));
     assert_eq!(with(Bounds { half: Vec3::from_milli(1, 1, 1), ..good }), Err(MeshError::Bounds { vertex: 0 }));
-    assert_eq!(with(Bounds { half: -good.half, ..good }), Err(MeshError::Bounds { vertex: 0 }));
+    let half = -good.half;
+    assert_eq!(with(Bounds { half, ..good }), Err(MeshError::HalfSize { half }));
 }
 
 #[test]

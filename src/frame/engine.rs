@@ -116,7 +116,7 @@ pub(super) struct Progress {
     strips: u16,
     layout: Layout,
     /// Draws in the records.
-    draws: u16,
+    draws: u32,
     pub(super) stats: Stats,
 }
 
@@ -162,7 +162,7 @@ impl Engine<'_> {
         framebuffer: &mut F,
         rows: u16,
         draw: &mut dyn FnMut(&mut Scene<'_, F>),
-    ) -> Result<(), u16> {
+    ) -> Result<(), u32> {
         if F::DEPTH {
             let pixels = usize::from(self.grid.viewport.width()) * usize::from(rows);
             clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
@@ -209,7 +209,7 @@ impl Engine<'_> {
         rows: u16,
         phase: Phase,
         draw: &mut dyn FnMut(&mut Scene<'_, F>),
-    ) -> Option<u16> {
+    ) -> Option<u32> {
         let rows = i32::from(progress.row)..i32::from(progress.row + rows);
         let mut scene = Scene {
             screen: self.grid.screen(),

@@ -41,9 +41,25 @@ pub enum FrameError<E = Infallible> {
     /// The sink, or the display, failed. The frame is over.
     Sink(E),
     /// The closure did not draw the same as in an earlier call for this frame. The frame is over.
+    ///
+    /// The calls that replay a band of records are compared with the call that recorded it. A change is noticed in
+    ///
+    /// - the number of draws of meshes, lines and points;
+    /// - a draw's matrix, viewport, [`State`](crate::State), type of shader, type and width of stroke, size of points;
+    /// - a mesh or lines, as far as these numbers tell: topology, format of positions, which slices there are, how many
+    ///   vertices, triangles or lines, the bounds, and the first, the middle and the last triangle or line, each with
+    ///   the position of a corner. Two meshes with equal contents are equal, wherever they lie.
+    ///
+    /// Other changes are not noticed. The frame then ends without an error, and the strips that are drawn after the
+    /// change may show other things than those before it:
+    ///
+    /// - other numbers in the slices of a mesh;
+    /// - other values of a shader of one type, such as its colour or its texture;
+    /// - other shapes on a canvas or an overlay;
+    /// - any change between two bands, and between strips that are drawn without records.
     SceneChanged {
         /// Number of the first draw that differed, counted from 0.
-        draw: u16,
+        draw: u32,
     },
     /// The colour buffer does not hold the strip, or not one row if the strip is the first of a frame. Nothing was
     /// drawn. The frame goes on with the next buffer that is long enough.

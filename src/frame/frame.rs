@@ -159,8 +159,9 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
     ///
     /// # Errors
     /// [`FrameError::BufferTooShort`] if `buffer` does not hold the strip; the frame can go on with another one.
-    /// [`FrameError::SceneChanged`] if `draw` drew something else than before in this frame; the frame is over. It is
-    /// noticed only while records are replayed: without records, the picture is torn instead.
+    /// [`FrameError::SceneChanged`] if `draw` drew something else than before in this frame; the frame is over. That
+    /// error says which changes are noticed: only while records are replayed, and not all of them. Otherwise the
+    /// picture is torn instead.
     pub fn next_strip<'c>(
         &mut self,
         buffer: &'c mut [P::Raw],

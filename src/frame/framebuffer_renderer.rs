@@ -70,7 +70,7 @@ impl<'b, D: DepthChoice> FramebufferRenderer<'b, D> {
     /// ```
     ///
     /// # Errors
-    /// [`FrameError::SceneChanged`] if `draw` draws something else in a later call.
+    /// [`FrameError::SceneChanged`] if `draw` draws something else in a later call, and it is noticed.
     pub fn frame<F: Framebuffer>(
         &mut self,
         framebuffer: &mut F,

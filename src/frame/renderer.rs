@@ -102,7 +102,8 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
     /// Draws a frame on an embedded-graphics display, strip by strip through `buffer`.
     ///
     /// `draw` draws the whole scene. It is called at least once per strip, and must draw the same each time. So
-    /// matrices and shaders are made once, outside of it.
+    /// matrices and shaders are made once, outside of it. Most changes are an error, and
+    /// [`FrameError::SceneChanged`] lists those that are not noticed.
     ///
     /// # Errors
     /// The display's own error; [`FrameError::SceneChanged`]; [`FrameError::BufferTooShort`] if `buffer` does not

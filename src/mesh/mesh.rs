@@ -202,8 +202,8 @@ pub enum MeshError {
         /// Number of triangles.
         triangles: usize,
     },
-    /// A leaf of the hierarchy does not begin with the triangle after those of the leaf before it. So some triangles are
-    /// in no leaf, or in two.
+    /// A leaf of the hierarchy does not begin with the triangle after those of the leaf before it. So some triangles
+    /// are in no leaf, or in two.
     Leaf {
         /// Number of the leaf's node.
         node: usize,
@@ -484,8 +484,8 @@ impl<'a> Mesh<'a> {
         &self.data
     }
 
-    /// Returns the box around all vertices, in object space. The w of homogeneous positions is ignored, so their box does
-    /// not tell where they are drawn.
+    /// Returns the box around all vertices, in object space. The w of homogeneous positions is ignored, so their box
+    /// does not tell where they are drawn.
     #[must_use]
     pub const fn bounds(&self) -> &Bounds {
         &self.bounds

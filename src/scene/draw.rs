@@ -39,7 +39,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         mvp: &Projective,
         shader: &S,
     ) {
-        let draw = Draw::new::<S>(state, hooks.depth_scale, mesh, mvp, Primitives::Triangles);
+        let draw = Draw::new::<S, ()>(state, hooks.depth_scale, mesh, mvp, Primitives::Triangles);
         if F::RECORDS && self.phase == Phase::Replay {
             if self.find_draw(&draw) {
                 self.replay(state, hooks, shader);

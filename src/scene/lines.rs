@@ -65,8 +65,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         shader: &S,
         stroke: &K,
     ) {
-        let primitives = Primitives::Lines { count: lines.count(), reach: stroke.reach() };
-        let draw = Draw::new::<S>(&state, Some(Transform::set_depth_scale), lines.vertices(), mvp, primitives);
+        let primitives = Primitives::Lines { lines, reach: stroke.reach() };
+        let draw = Draw::new::<S, K>(&state, Some(Transform::set_depth_scale), lines.vertices(), mvp, primitives);
         if self.begin_lines(&draw) {
             LineDraw::new(self, &draw, shader).lines(lines, stroke);
         }
@@ -106,7 +106,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     ) {
         let size = size.to_bits().max(0) as u32;
         let primitives = Primitives::Points { reach: (size.min(1 << 24) >> 9) as i32 + 1 };
-        let draw = Draw::new::<S>(&state, Some(Transform::set_depth_scale), points.vertices(), mvp, primitives);
+        let draw = Draw::new::<S, ()>(&state, Some(Transform::set_depth_scale), points.vertices(), mvp, primitives);
         if self.begin_lines(&draw) {
             LineDraw::new(self, &draw, shader).points(size);
         }

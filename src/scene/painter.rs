@@ -3,7 +3,7 @@
 //! Triangles come in with snapped vertices, their varyings and their face's word. Only pixels of the painter's clip
 //! rectangle are written.
 
-use super::scene::{Scene, Target};
+use super::scene::{Scene, Target, check};
 use super::state::State;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
 use crate::span::{
@@ -288,6 +288,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         hooks: &'p RasterHooks<F, S>,
         shader: &'p S,
     ) -> Painter<'p, 'a, F, S> {
+        check::<S>();
         Painter { target: &mut self.target, screen: self.screen, clip, state, hooks, shader }
     }
 }

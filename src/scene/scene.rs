@@ -3,7 +3,7 @@
 
 use super::state::State;
 use crate::math::Projective;
-use crate::mesh::{Bounds, BoundsNode, Mesh, Positions};
+use crate::mesh::{Bounds, BoundsNode, Lines, Mesh, MeshData, Positions};
 use crate::raster::PixelRect;
 use crate::target::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::vertex::{DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, Varyings, VertexShader, Viewport};
@@ -69,8 +69,8 @@ pub struct Scene<'a, F> {
     pub(crate) target: Target<'a, F>,
     pub(crate) stats: &'a mut Stats,
     /// Number of the next draw, and number of the first draw that differed from its record.
-    pub(crate) draws: u16,
-    pub(crate) changed: Option<u16>,
+    pub(crate) draws: u32,
+    pub(crate) changed: Option<u32>,
 }
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
@@ -215,7 +215,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         found
     }
 
-    pub(super) fn count_draw(&mut self) -> u16 {
+    pub(super) fn count_draw(&mut self) -> u32 {
         let draw = self.draws;
         self.draws = draw.saturating_add(1);
         self.stats.draws = self.stats.draws.wrapping_add(1);
@@ -224,11 +224,11 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 }
 
 /// Kinds of primitives, with the numbers that tell draws of one mesh apart.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Primitives {
+#[derive(Debug)]
+pub(super) enum Primitives<'d> {
     Triangles,
     Lines {
-        count: usize,
+        lines: &'d Lines<'d>,
         /// Largest distance from a line, in pixels, that its stroke may cover.
         reach: i32,
     },
@@ -244,11 +244,11 @@ pub(super) struct Draw<'d> {
     /// The mesh, or the vertices of lines or points as a mesh without triangles.
     pub(super) mesh: &'d Mesh<'d>,
     pub(super) mvp: &'d Projective,
-    primitives: Primitives,
+    primitives: Primitives<'d>,
     /// Number of words per vertex in the records.
     stride: usize,
-    /// Number of varyings of the shader.
-    varyings: usize,
+    /// Hash of the shader's and the stroke's types, see [`types`].
+    types: u32,
     /// Set if the shader moves vertices.
     displaced: bool,
     /// Sets the depth scale of the state. `None` if it is known at compile time that the state has no depth scale to
@@ -260,24 +260,18 @@ pub(super) struct Draw<'d> {
 const FEW_VERTICES: usize = 4;
 
 impl<'d> Draw<'d> {
-    /// Describes a draw. All draw calls come through here, so that these checks apply to every shader.
+    /// Describes a draw by a shader and, for lines, by a stroke.
     #[inline(always)]
-    pub(super) fn new<S: VertexShader>(
+    pub(super) fn new<S: VertexShader, K>(
         state: &'d State,
         depth_scale: Option<fn(&mut Transform, DepthScale)>,
         mesh: &'d Mesh<'d>,
         mvp: &'d Projective,
-        primitives: Primitives,
+        primitives: Primitives<'d>,
     ) -> Self {
-        const {
-            assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
-            assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
-            assert!(S::ZERO_BITS == 0 || S::Varyings::PERSPECTIVE == 0, "perspective takes all bits of varyings");
-            assert!(S::CLIP_DISTANCES + S::CULL_DISTANCES <= MAX_DISTANCES, "at most 4 clip and cull distances");
-            assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
-        };
-        let (stride, varyings) = (S::WORDS + VERTEX_WORDS, <S::Varyings as Varyings>::LEN);
-        Self { state, mesh, mvp, primitives, stride, varyings, displaced: S::DISPLACES, depth_scale }
+        check::<S>();
+        let (stride, types) = (S::WORDS + VERTEX_WORDS, types::<S, K>());
+        Self { state, mesh, mvp, primitives, stride, types, displaced: S::DISPLACES, depth_scale }
     }
 
     /// Returns whether the mesh's bounds, and those of its hierarchy, tell where it is drawn.
@@ -312,15 +306,75 @@ impl<'d> Draw<'d> {
     }
 }
 
-/// Returns a word that differs, almost surely, between draws that would not leave equal records.
+/// Checks the constants of a shader, while the program is compiled. Every way into a draw comes through here: meshes,
+/// lines and points by [`Draw::new`], and shapes of a canvas by `Scene::painter`.
+#[inline(always)]
+pub(super) const fn check<S: VertexShader>() {
+    const {
+        assert!(S::WORDS <= <S::Varyings as Varyings>::LEN, "a vertex needs no more words than varyings");
+        assert!(S::WORDS <= 253, "a vertex has at most 253 words of varyings");
+        assert!(S::ZERO_BITS == 0 || S::Varyings::PERSPECTIVE == 0, "perspective takes all bits of varyings");
+        assert!(S::CLIP_DISTANCES + S::CULL_DISTANCES <= MAX_DISTANCES, "at most 4 clip and cull distances");
+        assert!(S::ZERO_BITS <= 16, "at most 16 bits of varyings are known to be zero");
+        assert!(S::Varyings::PERSPECTIVE <= S::Varyings::LEN.saturating_sub(1), "1 / w takes the last varying");
+    };
+}
+
+/// Adds a word to a hash: FNV-1a over words instead of bytes.
+#[inline]
+const fn step(hash: u32, word: u32) -> u32 {
+    (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(11)
+}
+
+const EMPTY_HASH: u32 = 0x811C_9DC5;
+
+/// Returns a hash of a shader's shape, of its type and of a stroke's type. Records that one shader wrote are garbage to
+/// another one: so the number of words, and the meaning of each, are part of a draw's fingerprint.
+///
+/// Types are told apart by their names: their lengths, and up to 160 bytes of them. A `TypeId` would ask for types
+/// without borrowed data, and addresses of functions may differ from use to use. The compiler knows the names, and
+/// makes one constant of all this. It does so only of steps that stand one by one, so there is no loop; a loop would
+/// link the names.
+#[inline(always)]
+fn types<S: VertexShader, K>() -> u32 {
+    let shape = const {
+        let words = step(EMPTY_HASH, (S::WORDS | <S::Varyings as Varyings>::LEN << 8) as u32);
+        let words = step(words, S::Varyings::PERSPECTIVE as u32 | S::ZERO_BITS << 16);
+        step(words, (S::CLIP_DISTANCES | S::CULL_DISTANCES << 4) as u32 | (S::DISPLACES as u32) << 8)
+    };
+    name_hash::<K>(name_hash::<S>(shape))
+}
+
+/// Adds the name of a type to a hash.
+#[inline(always)]
+fn name_hash<T>(hash: u32) -> u32 {
+    let name = core::any::type_name::<T>().as_bytes();
+    let word = |at: usize| match name.get(at..) {
+        Some([a, b, c, d, ..]) => u32::from_le_bytes([*a, *b, *c, *d]),
+        _ => 0,
+    };
+    // Four words from the beginning, from the middle, ... The last one ends with the name.
+    let four = |hash, at: usize| step(step(step(step(hash, word(at)), word(at + 4)), word(at + 8)), word(at + 12));
+    let hash = four(four(four(step(hash, name.len() as u32), 0), 16), 32);
+    let hash = four(four(four(hash, 48), 64), 80);
+    let hash = four(four(hash, 96), 112);
+    four(four(hash, name.len().saturating_sub(32)), name.len().saturating_sub(16))
+}
+
+/// Returns a word that differs, almost surely, between draws that would not leave equal records, or would not draw them
+/// alike.
+///
+/// The contents of a mesh are too many to look at in each strip. Its addresses would tell meshes apart, but also equal
+/// meshes that the closure builds anew in each call. So a few numbers stand for the mesh: its sizes, its bounds, and
+/// its first, middle and last primitive, each with the position of a corner.
 #[inline(never)]
 fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
-    let Draw { state, mesh, mvp, primitives, stride, varyings, .. } = draw;
+    let Draw { state, mesh, mvp, primitives, .. } = draw;
     let ([ax, ay, az], [bx, by, bz]) = (mesh.bounds().center.to_bits(), mesh.bounds().half.to_bits());
-    let (kind, count) = match *primitives {
+    let (kind, count) = match primitives {
         Primitives::Triangles => (0, mesh.triangle_count()),
-        Primitives::Lines { count, reach } => (1 | reach << 2, count),
-        Primitives::Points { reach } => (2 | reach << 2, 0),
+        Primitives::Lines { lines, reach } => (1 | reach << 2, lines.count()),
+        Primitives::Points { reach } => (2 | reach << 2, mesh.vertex_count()),
     };
     let rest = [
         viewport.x() as u32 ^ (viewport.y() as u32) << 16,
@@ -333,7 +387,8 @@ fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
         bx as u32,
         by as u32,
         bz as u32,
-        *stride as u32 | (*varyings as u32) << 8 | (state.cull as u32) << 20 | (state.range as u32) << 24,
+        draw.types,
+        slices(mesh.data()) | (state.cull as u32) << 16 | (state.range as u32) << 24,
         state.depth.compare as u32 | u32::from(state.depth.write) << 8 | (state.front as u32) << 9,
         (state.bias.constant as u32) << 16 ^ state.bias.slope.to_bits() as u32,
         match state.depth_scale {
@@ -341,9 +396,99 @@ fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
             DepthScale::Uniform { far } => far.to_bits() as u32,
         },
     ];
-    // FNV-1a over words instead of bytes, with two words per step where there are many.
-    let step = |hash: u32, word: u32| (hash ^ word).wrapping_mul(0x0100_0193).rotate_left(11);
     let entries = mvp.rows().as_flattened().iter();
-    let hash = entries.fold(0x811C_9DC5, |hash, entry| step(step(hash, *entry as u32), (*entry >> 32) as u32));
-    rest.iter().fold(hash, |hash, word| step(hash, *word))
+    let hash = entries.fold(EMPTY_HASH, |hash, entry| step(step(hash, *entry as u32), (*entry >> 32) as u32));
+    let mut hash = rest.iter().fold(hash, |hash, word| step(hash, *word));
+    for number in [0, count >> 1, count.wrapping_sub(1)] {
+        let corners = match primitives {
+            Primitives::Triangles => mesh.any_triangle(number),
+            Primitives::Lines { lines, .. } => lines.line(number).map(|[i, j]| [i, j, j]),
+            Primitives::Points { .. } => Some([number as u16; 3]),
+        };
+        let [i, j, k] = corners.unwrap_or_default();
+        let [x, y, z, _] = mesh.data().positions.numbers(i.into());
+        let corner = step(step(step(hash, x as u32), y as u32), z as u32);
+        hash = step(step(corner, u32::from(i) | u32::from(j) << 16), k.into());
+    }
+    hash
+}
+
+/// Returns a number that tells which slices a mesh has, and how they form triangles.
+fn slices(data: &MeshData<'_>) -> u32 {
+    let positions = match data.positions {
+        Positions::Quantized { .. } => 0,
+        Positions::Exact(_) => 1,
+        Positions::Homogeneous(_) => 2,
+    };
+    let bit = |is: bool, place: u32| u32::from(is) << place;
+    positions
+        | (data.topology as u32) << 2
+        | bit(data.indices.is_some(), 4)
+        | bit(data.normals.is_some(), 5)
+        | bit(data.face_normals.is_some(), 6)
+        | bit(data.colors.is_some(), 7)
+        | bit(data.uvs.is_some(), 8)
+}
+
+/// Programs that draw with a shader of too many [`ZERO_BITS`](VertexShader::ZERO_BITS), in every way: none of them
+/// compiles. With 16 bits, all of them do.
+#[cfg(doctest)]
+mod every_way_checks_the_shader {
+    macro_rules! program {
+        ($fence:literal, $bits:literal, $draw:literal) => {
+            concat!(
+                "```",
+                $fence,
+                r"
+                use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+                use zstrip::{Framebuffer, Scene, ScreenPoint, Smooth, State, Thin, prelude::*};
+                use zstrip::{math::*, mesh::*, span::*, vertex::*};
+
+                struct Coarse;
+
+                impl VertexShader for Coarse {
+                    type Varyings = [i32; 1];
+                    const ZERO_BITS: u32 = ",
+                $bits,
+                r";
+                    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 1] { [0] }
+                }
+
+                impl Shader<Rgb565> for Coarse {
+                    type Setup = ();
+                    fn fragment(&self, _: &Fragment<'_, [i32; 1], ()>) -> Option<u16> { None }
+                }
+
+                let points = [Vec3::ZERO; 6];
+                let mesh = Mesh::new(MeshData::new(Positions::Exact(&points))).unwrap();
+                let vertices = Vertices::new(Positions::Exact(&points));
+                let lines = Lines::new(vertices, LineTopology::Strip, None).unwrap();
+                let dots = Points::new(vertices).unwrap();
+                let (mvp, shader, mut buffer) = (Projective::IDENTITY, Coarse, [0; 64]);
+                let mut renderer = Renderer::<Rgb565>::new(Size::new(8, 8)).unwrap();
+                let mut frame = renderer.begin(Rgb888::BLACK);
+                frame.next_strip(&mut buffer, |scene| ",
+                $draw,
+                ").unwrap();\n```"
+            )
+        };
+    }
+
+    macro_rules! ways {
+        ($($name:ident: $draw:literal)*) => { $(
+            #[doc = program!("compile_fail", "40", $draw)]
+            #[doc = program!("", "16", $draw)]
+            struct $name;
+        )* };
+    }
+
+    ways! {
+        Draw: "scene.draw(&mesh, &mvp, &shader)"
+        DrawWith: "scene.draw_with(State::DEFAULT, &mesh, &mvp, &shader)"
+        DrawLines: "scene.draw_lines(&lines, &mvp, &shader, &Thin)"
+        DrawSmoothLines: "scene.draw_lines_with(State::DEFAULT, &lines, &mvp, &shader, &Smooth::px(2))"
+        DrawPoints: "scene.draw_points(&dots, &mvp, &shader, Pixels::ONE)"
+        DrawPointsWith: "scene.draw_points_with(State::DEFAULT, &dots, &mvp, &shader, Pixels::ONE)"
+        PolygonWith: "scene.canvas().polygon_with(&[(ScreenPoint::corner(0, 0), [0])], &shader, 0)"
+    }
 }
