@@ -1,5 +1,7 @@
 //! Inverse square roots without a divider, for making vectors of length 1: a table, and chords between its entries.
 
+use super::reciprocal::leading_zeros;
+
 /// Roots: entry `n & 255` is 2¹⁹ / √n for n in 64..=256, lowered by half of the largest height of the chord to the
 /// next entry above the curve. (65,536 is kept as 65,535.)
 static ROOTS: [u16; 256] = roots();
@@ -35,7 +37,8 @@ pub const fn inverse_sqrt(x: u32) -> u32 {
 /// # Format
 /// Components are below 2¹⁵ in magnitude, in any unit. Each component of the result is within 1.5 of the exact one if
 /// the length is at least 2¹¹; for shorter vectors it is as exact as their components are. It takes some 35
-/// instructions and no loop if the length is in 2¹⁴..=2¹⁵, and a few more for each factor of two above or below.
+/// instructions if the length is in 2¹⁴..=2¹⁵, and about twice as many otherwise. For larger components, whose squares
+/// wrap, the result is some vector with components from -2¹⁵ to 2¹⁵.
 #[inline]
 pub fn unit_vector(v: [i32; 3]) -> [i32; 3] {
     let [x, y, z] = v;
@@ -53,26 +56,29 @@ fn divide_by_root([x, y, z]: [i32; 3], q: u32) -> [i32; 3] {
     [component(x), component(y), component(z)]
 }
 
-/// Returns [`unit_vector`] for any length: shifts the vector until its length is in 2¹⁴..=2¹⁵.
+/// Returns [`unit_vector`] for any length: shifts the vector until its length is in 2¹⁴..=2¹⁵. It has no loop, so
+/// that there is none to run for ever where a square wraps.
 #[inline(never)]
 fn unit_vector_of_any_length(v: [i32; 3]) -> [i32; 3] {
-    let [mut x, mut y, mut z] = v;
-    let square = |x: i32, y: i32, z: i32| {
-        x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).wrapping_add(z.wrapping_mul(z)) as u32
-    };
-    let mut q = square(x, y, z);
-    if q == 0 {
+    let moved = |[x, y, z]: [i32; 3], down: u32| [x >> down, y >> down, z >> down];
+    let square =
+        |[x, y, z]: [i32; 3]| x.wrapping_mul(x).wrapping_add(y.wrapping_mul(y)).wrapping_add(z.wrapping_mul(z)) as u32;
+    let [x, y, z] = v;
+    let widest = x.unsigned_abs() | y.unsigned_abs() | z.unsigned_abs();
+    // To 15 bits and a sign, so that the sum of the squares fits: it is at most 3 · 2³⁰.
+    let mut v = moved(v, 17_u32.saturating_sub(leading_zeros(widest)));
+    let mut q = square(v);
+    if q > 1 << 30 {
+        v = moved(v, 1);
+        q = square(v);
+    }
+    // At most 2³⁰ now, and 0 only for the vector 0. Two bits more of the square are one bit more of the length.
+    let up = leading_zeros(q).saturating_sub(2) >> 1;
+    if up > 14 {
         return [0; 3];
     }
-    while q > 1 << 30 {
-        (x, y, z) = (x >> 1, y >> 1, z >> 1);
-        q = square(x, y, z);
-    }
-    while q < 1 << 28 {
-        (x, y, z) = (x << 1, y << 1, z << 1);
-        q <<= 2;
-    }
-    divide_by_root([x, y, z], q)
+    let [x, y, z] = v;
+    divide_by_root([x << up, y << up, z << up], q << (2 * up))
 }
 
 #[cfg(test)]
@@ -119,5 +125,26 @@ mod tests {
         assert_eq!(unit_vector([32_767; 3]), [9459; 3]);
         assert_eq!(unit_vector([0; 3]), [0; 3]);
         assert_eq!(unit_vector([0, -1, 0]), [0, -16_384, 0]);
+    }
+
+    #[test]
+    fn components_of_any_size_give_components_of_16_bits() {
+        // The squares of these wrap to small numbers, to 0, and to 1.
+        let wrapping = [-131_071, 131_072, 65_535, 65_536, -65_536, 1 << 30, i32::MIN, i32::MAX];
+        let ends = [i32::MIN, i32::MIN + 1, -131_072, -32_769, -32_768, -1, 0, 1, 32_767, 32_768, 131_071, i32::MAX];
+        let mut rng = Rng::new(2);
+        let random = core::iter::repeat_with(|| [(); 3].map(|()| rng.any_magnitude(31))).take(100_000);
+        let some = ends.into_iter().flat_map(|x| ends.into_iter().flat_map(move |y| ends.map(|z| [x, y, z])));
+        for v in wrapping.map(|c| [c, 0, 0]).into_iter().chain(some).chain(random) {
+            let unit = unit_vector(v);
+            assert!(unit.iter().all(|c| c.unsigned_abs() <= 1 << 15), "{v:?}: {unit:?}");
+            // Out of line it is right for all.
+            let unit = unit_vector_of_any_length(v);
+            let length = v.iter().map(|&c| f64::from(c).powi(2)).sum::<f64>().sqrt();
+            for (u, c) in unit.into_iter().zip(v) {
+                let exact = if length == 0.0 { 0.0 } else { 16_384.0 * f64::from(c) / length };
+                assert!((f64::from(u) - exact).abs() < 4.0, "{v:?}: {unit:?} instead of {exact}");
+            }
+        }
     }
 }
