@@ -218,7 +218,7 @@ macro_rules! grey_levels {
 
             #[inline(always)]
             fn level(tones: &'static Tones, entry: u32, grey: u8) -> u8 {
-                ((u32::from(tones[usize::from(grey)]) + entry) >> 7) as u8
+                (u32::from(tones[usize::from(grey)]).wrapping_add(entry) >> 7) as u8
             }
 
             fn from_level(level: u8) -> Self {

@@ -45,7 +45,8 @@ pub trait PixelFormat {
         Self::pack(unpack_rgb565(raw))
     }
 
-    /// Mixes two pixels: (`a` · `weight` + `b` · (256 - `weight`)) / 256, rounded, in 8 bits per channel.
+    /// Mixes two pixels: (`a` · `weight` + `b` · (256 - `weight`)) / 256, rounded, in 8 bits per channel. A weight is at
+    /// most 256; a larger one gives some colour.
     ///
     /// Formats of 5 or 6 bits per channel mix in the bits that they have, with `weight` rounded to 32nds. Their result
     /// is within 1.5 steps of such a channel.
@@ -130,6 +131,11 @@ pub trait PixelFormat {
 /// Mixes two colours: `weight` 256ths of the first one, and the rest of the second one.
 #[inline(always)]
 pub(crate) fn mix([r, g, b]: [u8; 3], [s, t, u]: [u8; 3], weight: u32) -> [u8; 3] {
-    let channel = |a: u8, b: u8| ((u32::from(a) * weight + u32::from(b) * (256 - weight) + 128) >> 8) as u8;
+    // Modulo 2³²: a weight beyond 256 gives some colour.
+    let rest = 256_u32.wrapping_sub(weight);
+    let channel = |a: u8, b: u8| {
+        let sum = u32::from(a).wrapping_mul(weight).wrapping_add(u32::from(b).wrapping_mul(rest));
+        (sum.wrapping_add(128) >> 8) as u8
+    };
     [channel(r, s), channel(g, t), channel(b, u)]
 }

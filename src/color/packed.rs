@@ -24,7 +24,9 @@ pub(crate) fn spread(dither: Option<[u32; 3]>, c: [i32; 3]) -> [i32; 3] {
 #[inline(always)]
 pub(crate) fn spread_step(dither: Option<[u32; 3]>, channel: usize, step: i32) -> i32 {
     match dither {
-        Some(bits) => step.wrapping_sub(step >> bits.get(channel).copied().unwrap_or(0)).wrapping_add(step >> 7),
+        Some(bits) => {
+            step.wrapping_sub(step.wrapping_shr(bits.get(channel).copied().unwrap_or(0))).wrapping_add(step >> 7)
+        }
         None => step,
     }
 }

@@ -45,7 +45,7 @@ pub(crate) const fn mix_spread_rgb565(a: u32, b: u32, weight: u32) -> u32 {
 /// Mixes two colours: `weight` 256ths of `a`, rounded to 32nds, and the rest of `b`. One product serves all channels.
 #[inline(always)]
 pub(super) const fn mix_rgb565(a: u16, b: u16, weight: u32) -> u16 {
-    fold_rgb565(mix_spread_rgb565(spread_rgb565(a), spread_rgb565(b), (weight + 4) >> 3))
+    fold_rgb565(mix_spread_rgb565(spread_rgb565(a), spread_rgb565(b), weight.wrapping_add(4) >> 3))
 }
 
 /// Adds two colours; a channel that overflows becomes all ones.

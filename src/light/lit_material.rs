@@ -97,8 +97,8 @@ impl LitPoint {
     fn fade_at(&self, p: &[i32; 3], direction: &mut [i32; 3]) -> i32 {
         let [x, y, z] = self.position;
         let [x, y, z] = [x.wrapping_sub(p[0]), y.wrapping_sub(p[1]), z.wrapping_sub(p[2])];
-        let range = self.range;
-        if x.abs() >= range || y.abs() >= range || z.abs() >= range {
+        let range = self.range as u32;
+        if x.unsigned_abs() >= range || y.unsigned_abs() >= range || z.unsigned_abs() >= range {
             return 0;
         }
         let near = |c: i32| (c << (self.left & 31)) >> (self.right & 31);
@@ -189,7 +189,8 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
             LitViewer::Toward(direction) => long(direction),
             LitViewer::At { position: e, shift } => {
                 let shift = shift & 31;
-                unit_vector([(e[0] - p[0]) >> shift, (e[1] - p[1]) >> shift, (e[2] - p[2]) >> shift])
+                let along = |k: usize| e[k].wrapping_sub(p[k]) >> shift;
+                unit_vector([along(0), along(1), along(2)])
             }
         }
     }

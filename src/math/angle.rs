@@ -140,13 +140,15 @@ impl Mul<i32> for Angle16 {
 
 impl Div<i32> for Angle16 {
     type Output = Self;
-    /// Divides the angle, counted from 0 to 360 degrees, and rounds towards 0; a negative divisor turns back.
-    ///
-    /// # Panics
-    /// When the divisor is 0, as in any division of integers.
+    /// Divides the angle, counted from 0 to 360 degrees, and rounds towards 0; a negative divisor turns back. Division
+    /// by 0 gives the largest angle, and 0 for 0.
     fn div(self, divisor: i32) -> Self {
-        let part = Self((u32::from(self.0) / divisor.unsigned_abs()) as u16);
-        if divisor < 0 { -part } else { part }
+        match u32::from(self.0).checked_div(divisor.unsigned_abs()) {
+            Some(part) if divisor < 0 => -Self(part as u16),
+            Some(part) => Self(part as u16),
+            None if self.0 == 0 => Self::ZERO,
+            None => Self(u16::MAX),
+        }
     }
 }
 

@@ -165,21 +165,21 @@ pub struct Divisor {
 }
 
 impl Divisor {
-    /// Makes a divisor of a number that is not 0.
+    /// Makes a divisor of a number that is not 0; for 0, quotients are some numbers.
     #[inline(always)]
     pub fn new(q: u32) -> Self {
         let shift = leading_zeros(q) & 31;
         Self { shift, ..Self::of_normalized(q << shift) }
     }
 
-    /// Makes a divisor of a number whose top bit is set.
+    /// Makes a divisor of a number whose top bit is set. For any other number, quotients are some numbers.
     #[inline(always)]
     pub fn of_normalized(x: u32) -> Self {
         let r0 = SEED[(x >> 23) as usize & 0xFF] as i32;
         // As the first step of `reciprocal`, rounded to 16 bits.
         let x16 = (x >> 16) + ((x >> 15) & 1);
         let defect = (1_i32 << 31).wrapping_sub((x16 as i32).wrapping_mul(r0));
-        let r = r0 + ((r0 * (defect >> 8) + (1 << 22)) >> 23);
+        let r = r0 + (r0.wrapping_mul(defect >> 8).wrapping_add(1 << 22) >> 23);
         let product = if SMALL_CORE {
             (x >> 16).wrapping_mul(r as u32).wrapping_add((x & 0xFFFF).wrapping_mul(r as u32) >> 16)
         } else {
@@ -228,7 +228,7 @@ impl Divisor {
         } else {
             ((n as u64 * r as u64) >> 16) as u32
         };
-        h.wrapping_add_signed((((h + (1 << 16)) >> 17) as i32).wrapping_mul(self.defect) >> 14)
+        h.wrapping_add_signed(((h.wrapping_add(1 << 16) >> 17) as i32).wrapping_mul(self.defect) >> 14)
     }
 
     /// Returns `n` / q in 1.31.
@@ -262,7 +262,7 @@ pub struct ShortDivisor {
 }
 
 impl ShortDivisor {
-    /// Makes a divisor of a number that is not 0.
+    /// Makes a divisor of a number that is not 0; for 0, quotients are some numbers.
     ///
     /// # Format
     /// The table is within 2⁻⁹ where the reciprocal is near 2¹⁶, within 2⁻¹⁰ where it is near 2¹⁵. One Newton step
@@ -273,7 +273,7 @@ impl ShortDivisor {
         let x16 = ((q << shift) >> 16) as i32;
         let r = SEED[(x16 >> 7) as usize & 0xFF] as i32;
         let defect = (1_i32 << 31).wrapping_sub(x16.wrapping_mul(r));
-        let r = r + ((r * (defect >> 8) + (1 << 22)) >> 23);
+        let r = r + (r.wrapping_mul(defect >> 8).wrapping_add(1 << 22) >> 23);
         Self { shift, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(x16.wrapping_mul(r)) }
     }
 
@@ -291,7 +291,7 @@ impl ShortDivisor {
     #[inline(always)]
     pub const fn divide(&self, n: i32) -> i32 {
         let h = n.wrapping_mul(self.reciprocal);
-        h.wrapping_add(((h + (1 << 15)) >> 16).wrapping_mul(self.defect) >> 15)
+        h.wrapping_add((h.wrapping_add(1 << 15) >> 16).wrapping_mul(self.defect) >> 15)
     }
 }
 
@@ -417,6 +417,25 @@ mod tests {
             }
         }
         assert!(worst.0 > -1.55 && worst.1 < 0.55, "{worst:?}");
+    }
+
+    #[test]
+    fn divisors_take_all_numbers() {
+        let ends = [0, 1, 2, 5, 255, 0x7FFF, 0x8000, 0xFFFF, 1 << 16, 1 << 30, 0x7FFF_FFFF, 1 << 31, u32::MAX];
+        let mut rng = Rng::new(4);
+        let random = core::iter::repeat_with(|| rng.next_u32() >> rng.below(32)).take(2000);
+        for q in ends.into_iter().chain(random) {
+            let (any, normalized, short) = (Divisor::new(q), Divisor::of_normalized(q), ShortDivisor::new(q));
+            let coarse = CoarseDivisor::of_normalized(q);
+            for n in ends {
+                let signed = n as i32;
+                let _ = (any.divide(signed), any.divide_shifted(signed), normalized.fraction_normalized(n));
+                let _ = (short.divide(signed), coarse.divide_normalized(signed), reciprocal(n));
+                for divisor in [any, normalized] {
+                    let _ = (divisor.divide_by_halves(signed), divisor.divide_by_words(signed));
+                }
+            }
+        }
     }
 
     /// Returns the worst relative error over `inputs`, against exact division.
