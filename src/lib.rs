@@ -176,6 +176,7 @@ mod tests {
         logged::<crate::math::PrecisionError>();
         logged::<crate::math::ProjectionError>();
         logged::<crate::target::FramebufferError>();
+        logged::<crate::shader::FogError>();
         logged::<crate::frame::RendererError>();
         logged::<crate::target::PackerError>();
         logged::<crate::frame::FrameError>();

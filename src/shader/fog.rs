@@ -9,29 +9,70 @@ use crate::color::{PixelFormat, channels};
 use crate::math::{ProjectionError, Scalar, exp_negative};
 use crate::span::{Fragment, Shader, TriangleSetup};
 use crate::vertex::{VertexShader, Wrapper};
+use core::fmt;
 use embedded_graphics_core::pixelcolor::Rgb888;
 
-/// Law by which fog thickens with the distance from the camera's plane.
+/// Law by which fog thickens with the distance in front of the camera's plane. Behind that plane, where an orthographic
+/// camera may see something, fog is as at the plane itself.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FogCurve {
     /// No fog up to `start`, nothing but fog from `end` on, evenly in between.
     Linear {
         /// Distance at which fog begins.
         start: Scalar,
-        /// Distance from which on nothing else is seen.
+        /// Distance from which on nothing else is seen; not below `start`.
         end: Scalar,
     },
     /// Even fog, which leaves e^-(density · distance) of a colour.
     Exponential {
-        /// Density per unit of distance.
+        /// Density per unit of distance, 0 or more.
         density: Scalar,
     },
     /// Fog that is clearer close by and denser far away, which leaves e^-(density · distance)² of a colour.
     ExponentialSquared {
-        /// Density per unit of distance.
+        /// Density per unit of distance, 0 or more.
         density: Scalar,
     },
 }
+
+/// An error in the numbers that a table of fog is computed from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum FogError {
+    /// The planes are not those of a camera.
+    Planes(ProjectionError),
+    /// The density is negative: fog would make colours brighter than they are.
+    Density {
+        /// The density.
+        density: Scalar,
+    },
+    /// Fog ends before it starts.
+    Ends {
+        /// Distance at which fog begins.
+        start: Scalar,
+        /// Distance at which nothing else is seen.
+        end: Scalar,
+    },
+}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for FogError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
+}
+
+impl fmt::Display for FogError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match *self {
+            Self::Planes(error) => write!(f, "fog: {error}"),
+            Self::Density { density } => write!(f, "fog of the density {density}, must be 0 or more"),
+            Self::Ends { start, end } => write!(f, "fog ends at {end}, before it starts at {start}"),
+        }
+    }
+}
+
+impl core::error::Error for FogError {}
 
 /// Number of entries: one for each of the last 256 steps of depth, 256 of 16 steps each, 256 of 256 steps each, and the
 /// end.
@@ -67,8 +108,20 @@ pub struct FogTable {
 }
 
 impl FogCurve {
+    /// Returns the mistake in the curve's numbers.
+    const fn mistake(&self) -> Option<FogError> {
+        match *self {
+            Self::Linear { start, end } if start.to_bits() > end.to_bits() => Some(FogError::Ends { start, end }),
+            Self::Exponential { density } | Self::ExponentialSquared { density } if density.to_bits() < 0 => {
+                Some(FogError::Density { density })
+            }
+            _ => None,
+        }
+    }
+
     /// Computes the part of a colour that fog leaves at a distance in 16.16, 255 = all.
     const fn transmittance(&self, distance: i64) -> u8 {
+        let distance = if distance < 0 { 0 } else { distance };
         match *self {
             Self::Linear { start, end } => {
                 let (start, end) = (start.to_bits() as i64, end.to_bits() as i64);
@@ -87,7 +140,7 @@ impl FogCurve {
     }
 }
 
-/// Computes 255 e^-x, or 255 e^-x², for x = density · distance.
+/// Computes 255 e^-x, or 255 e^-x², for x = density · distance, neither of them negative.
 const fn fading(density: Scalar, distance: i64, squared: bool) -> u8 {
     // From x = 32 on, the result rounds to 0.
     let limit = 32 << 16;
@@ -102,10 +155,10 @@ impl FogTable {
     /// Computes the table of a [perspective camera](crate::math::Projective::perspective) with these planes.
     ///
     /// # Errors
-    /// When `near ≤ 0` or `near ≥ far`.
-    pub const fn perspective(near: Scalar, far: Scalar, curve: FogCurve) -> Result<Self, ProjectionError> {
+    /// When `near ≤ 0` or `near ≥ far`; when the curve's density is negative, or its end before its start.
+    pub const fn perspective(near: Scalar, far: Scalar, curve: FogCurve) -> Result<Self, FogError> {
         if near.to_bits() <= 0 {
-            return Err(ProjectionError::NearNotPositive { near });
+            return Err(FogError::Planes(ProjectionError::NearNotPositive { near }));
         }
         Self::new(near, far, curve, true)
     }
@@ -113,15 +166,18 @@ impl FogTable {
     /// Computes the table of an [orthographic camera](crate::math::Projective::orthographic) with these planes.
     ///
     /// # Errors
-    /// When `near ≥ far`.
-    pub const fn orthographic(near: Scalar, far: Scalar, curve: FogCurve) -> Result<Self, ProjectionError> {
+    /// When `near ≥ far`; when the curve's density is negative, or its end before its start.
+    pub const fn orthographic(near: Scalar, far: Scalar, curve: FogCurve) -> Result<Self, FogError> {
         Self::new(near, far, curve, false)
     }
 
-    const fn new(near: Scalar, far: Scalar, curve: FogCurve, perspective: bool) -> Result<Self, ProjectionError> {
+    const fn new(near: Scalar, far: Scalar, curve: FogCurve, perspective: bool) -> Result<Self, FogError> {
         let (n, f) = (near.to_bits() as i64, far.to_bits() as i64);
         if n >= f {
-            return Err(ProjectionError::NearNotBeforeFar { near, far });
+            return Err(FogError::Planes(ProjectionError::NearNotBeforeFar { near, far }));
+        }
+        if let Some(mistake) = curve.mistake() {
+            return Err(mistake);
         }
         let mut entries = [0; ENTRIES];
         let mut k = 0;

@@ -67,7 +67,7 @@ pub use blend::{Add, AddAlpha, Alpha, Blend, BlendMode, Multiply, Opacity, Repla
 pub use depth_only::DepthOnly;
 pub use discard::{AlphaTest, ScreenDoor};
 pub use flat::Flat;
-pub use fog::{FogCurve, FogTable, Fogged};
+pub use fog::{FogCurve, FogError, FogTable, Fogged};
 pub use gouraud::Gouraud;
 pub use matcap::Matcap;
 pub use phong::{Phong, PhongNear};
