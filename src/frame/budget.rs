@@ -3,7 +3,8 @@
 use crate::color::PixelFormat;
 use crate::target::records_len;
 
-/// Bytes of the buffers that a frame is drawn with. It is `const`, so that a program can assert that they fit.
+/// Bytes of the buffers that a frame is drawn with. It is `const`, so that a program can assert that they fit. A number
+/// that is too large for `usize` counts as the largest, so that such an assertion fails.
 ///
 /// ```
 /// use embedded_graphics_core::pixelcolor::Rgb565;
@@ -27,8 +28,8 @@ impl RamBudget {
     /// Counts a strip of `rows` rows of a screen `width` px wide, without records.
     #[must_use]
     pub const fn new<P: PixelFormat>(width: u32, rows: u32) -> Self {
-        let pixels = width as usize * rows as usize;
-        Self { color: pixels * size_of::<P::Raw>(), depth: pixels * 2, records: 0, rows }
+        let pixels = width as u64 * rows as u64;
+        Self { color: bytes(pixels, size_of::<P::Raw>()), depth: bytes(pixels, 2), records: 0, rows }
     }
 
     /// Leaves out the depth buffer, for scenes drawn from back to front and for 2-D drawing.
@@ -47,14 +48,14 @@ impl RamBudget {
         varying_words: usize,
         triangles: usize,
     ) -> Self {
-        let strips = (height as usize).div_ceil(if self.rows == 0 { 1 } else { self.rows as usize });
-        Self { records: 4 * records_len(strips, draws, vertices, varying_words, triangles), ..self }
+        let strips = bytes(height.div_ceil(if self.rows == 0 { 1 } else { self.rows }) as u64, 1);
+        self.with_record_words(records_len(strips, draws, vertices, varying_words, triangles))
     }
 
     /// Adds a number of words of records.
     #[must_use]
     pub const fn with_record_words(self, words: usize) -> Self {
-        Self { records: 4 * words, ..self }
+        Self { records: words.saturating_mul(4), ..self }
     }
 
     /// Returns the greatest number of rows, up to `most`, that divides a screen's height: with strips of that height
@@ -67,16 +68,35 @@ impl RamBudget {
     /// ```
     #[must_use]
     pub const fn even_rows(height: u32, most: u32) -> u32 {
-        let mut rows = if most < height { most } else { height };
-        while rows > 1 && !height.is_multiple_of(rows) {
-            rows -= 1;
+        if most >= height {
+            return height;
         }
-        rows
+        // Divisors come in pairs, one of them at most the root of the height: 65,536 rounds for any height.
+        let (mut best, mut divisor) = (if most == 0 { 0 } else { 1 }, 2);
+        while divisor <= height / divisor {
+            if height.is_multiple_of(divisor) {
+                let pair = height / divisor;
+                if divisor <= most && divisor > best {
+                    best = divisor;
+                }
+                if pair <= most && pair > best {
+                    best = pair;
+                }
+            }
+            divisor += 1;
+        }
+        best
     }
 
     /// Returns the bytes of all buffers together.
     #[must_use]
     pub const fn total(&self) -> usize {
-        self.color + self.depth + self.records
+        self.color.saturating_add(self.depth).saturating_add(self.records)
     }
+}
+
+/// Returns the bytes of `count` things of `size` bytes; `usize::MAX` if that does not fit.
+const fn bytes(count: u64, size: usize) -> usize {
+    let bytes = count.saturating_mul(size as u64);
+    if bytes > usize::MAX as u64 { usize::MAX } else { bytes as usize }
 }

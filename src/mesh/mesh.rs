@@ -498,7 +498,8 @@ impl<'a> Mesh<'a> {
     pub const fn triangle(&self, n: usize) -> Option<[u16; 3]> {
         // The usual kind of mesh, a list with indices, takes the shortest way.
         if let (Topology::Triangles, Some(indices)) = (self.data.topology, self.data.indices) {
-            return match indices.split_at_checked(3 * n) {
+            // The largest number stands for a product that does not fit.
+            return match indices.split_at_checked(n.saturating_mul(3)) {
                 Some((_, [a, b, c, ..])) => Some([*a, *b, *c]),
                 _ => None,
             };

@@ -182,12 +182,16 @@ impl<'a, P: PixelFormat> FrameSlice<'a, P> {
     /// When the slice is too short or the stride is below the width.
     pub const fn with_stride(pixels: &'a mut [P::Raw], size: Size, stride: usize) -> Result<Self, FramebufferError> {
         let Size { width, height } = size;
-        if stride < width as usize {
+        if (stride as u64) < width as u64 {
             return Err(FramebufferError::Stride { stride, width });
         }
-        let needed =
-            if height == 0 { 0 } else { (height as usize - 1).saturating_mul(stride).saturating_add(width as usize) };
-        if pixels.len() < needed {
+        // `usize` may not hold the size.
+        let needed = match height.checked_sub(1) {
+            Some(others) => (others as u64).saturating_mul(stride as u64).saturating_add(width as u64),
+            None => 0,
+        };
+        if (pixels.len() as u64) < needed {
+            let needed = if needed > usize::MAX as u64 { usize::MAX } else { needed as usize };
             return Err(FramebufferError::TooShort { pixels: pixels.len(), needed });
         }
         Ok(Self { pixels, width: width as usize, height, stride })
@@ -203,7 +207,7 @@ impl<P: PixelFormat> Framebuffer for FrameSlice<'_, P> {
             return &mut [];
         }
         // The product is at most the length of the slice, as `with_stride` has checked.
-        let start = y as usize * self.stride;
+        let start = (y as usize).wrapping_mul(self.stride);
         first(self.pixels.get_mut(start..).unwrap_or_default(), self.width)
     }
 

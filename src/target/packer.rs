@@ -48,7 +48,7 @@ impl PackedFormat for Pages {
     const ROWS: u16 = 8;
 
     fn bytes(width: u16, rows: u16) -> usize {
-        usize::from(width) * usize::from(rows.div_ceil(8))
+        usize::from(width).saturating_mul(usize::from(rows.div_ceil(8)))
     }
 
     fn pack<P: PixelFormat>(dither: &Dither<BinaryColor>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]) {
@@ -58,11 +58,11 @@ impl PackedFormat for Pages {
         let mut first = y;
         for (page, bytes) in pixels.chunks(width.saturating_mul(8)).zip(bytes.chunks_exact_mut(width)) {
             bytes.fill(0);
-            let mut y = first + (page.len() / width) as i32;
+            let mut y = first.wrapping_add((page.len() / width) as i32);
             first = y;
             // Rows go in from the bottom up: each row moves the bits of the rows below it up by one.
             for row in page.chunks_exact(width).rev() {
-                y -= 1;
+                y = y.wrapping_sub(1);
                 push_row::<P>(&dither.row(y), row, bytes);
             }
         }
@@ -99,7 +99,7 @@ impl<C: Levels> PackedFormat for Rows<C> {
     const ROWS: u16 = 1;
 
     fn bytes(width: u16, rows: u16) -> usize {
-        row_bytes::<C>(usize::from(width)) * usize::from(rows)
+        row_bytes::<C>(usize::from(width)).saturating_mul(usize::from(rows))
     }
 
     fn pack<P: PixelFormat>(dither: &Dither<C>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]) {
@@ -113,7 +113,7 @@ impl<C: Levels> PackedFormat for RowsLowFirst<C> {
     const ROWS: u16 = 1;
 
     fn bytes(width: u16, rows: u16) -> usize {
-        row_bytes::<C>(usize::from(width)) * usize::from(rows)
+        row_bytes::<C>(usize::from(width)).saturating_mul(usize::from(rows))
     }
 
     fn pack<P: PixelFormat>(dither: &Dither<C>, pixels: &[P::Raw], width: usize, y: i32, bytes: &mut [u8]) {
@@ -121,8 +121,12 @@ impl<C: Levels> PackedFormat for RowsLowFirst<C> {
     }
 }
 
+/// Counts the bytes of a row of `width` pixels.
 const fn row_bytes<C: Levels>(width: usize) -> usize {
-    (width * C::BITS as usize).div_ceil(8)
+    const { assert!(matches!(C::BITS, 1 | 2 | 4), "levels have 1, 2 or 4 bits") };
+    // Without a product that may not fit.
+    let per_byte = 8 / C::BITS as usize;
+    width.div_ceil(per_byte)
 }
 
 fn pack_rows<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
@@ -137,8 +141,10 @@ fn pack_rows<P: PixelFormat, C: Levels, const HIGH_FIRST: bool>(
         return;
     }
     let rows = pixels.chunks_exact(width).zip(bytes.chunks_exact_mut(row_bytes));
-    for ((row, bytes), y) in rows.zip(y..) {
+    let mut y = y;
+    for (row, bytes) in rows {
         pack_row::<P, C, HIGH_FIRST>(&dither.row(y), dither.tones, row, bytes);
+        y = y.wrapping_add(1);
     }
 }
 

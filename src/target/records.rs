@@ -33,6 +33,8 @@ pub(crate) const VERTEX_WORDS: usize = 2;
 /// `varying_words` is the number of words of varyings per vertex
 /// ([`VertexShader::WORDS`](crate::vertex::VertexShader::WORDS)).
 ///
+/// A number that does not fit is `usize::MAX`.
+///
 /// With fewer words, a frame takes more walks over the scene; without any, it takes one walk per strip.
 #[must_use]
 pub const fn records_len(
@@ -42,7 +44,11 @@ pub const fn records_len(
     varying_words: usize,
     triangles: usize,
 ) -> usize {
-    strips + HEADER * draws + (VERTEX_WORDS + varying_words) * vertices + TRIANGLE * triangles
+    let vertices = VERTEX_WORDS.saturating_add(varying_words).saturating_mul(vertices);
+    strips
+        .saturating_add(HEADER.saturating_mul(draws))
+        .saturating_add(vertices)
+        .saturating_add(TRIANGLE.saturating_mul(triangles))
 }
 
 /// A recorded position of a vertex, in two words: x in the upper 24 bits of the first, y in those of the second;

@@ -127,6 +127,12 @@ impl<'a, F: TexelFormat> Image<'a, F> {
     ///
     /// # Errors
     /// If there are no columns or no rows, or more than 65,535; or if the number of bytes does not fit the size.
+    ///
+    /// A format of a number of bits that [`TexelFormat::BITS`] does not allow does not compile:
+    /// ```compile_fail
+    /// use zstrip::{embedded_graphics_core::geometry::Size, texture::{Image, PaletteTexel}};
+    /// let image = Image::new(&[0; 3], Size::new(8, 1), PaletteTexel::<3>(&[]));
+    /// ```
     pub const fn new(data: &'a [u8], size: Size, format: F) -> Result<Self, TextureError> {
         if size.width == 0 || size.height == 0 {
             return Err(TextureError::Empty { size });
@@ -135,31 +141,34 @@ impl<'a, F: TexelFormat> Image<'a, F> {
         if width as u32 != size.width || height as u32 != size.height {
             return Err(TextureError::TooLarge { size });
         }
-        let stride = (width as usize * F::BITS).div_ceil(8);
-        let expected = stride.saturating_mul(height as usize);
-        if data.len() != expected {
+        const { assert!(matches!(F::BITS, 1 | 2 | 4 | 8 | 16 | 24), "texels have 1, 2, 4, 8, 16 or 24 bits") };
+        // Below 2³⁴, which `usize` may not hold. If the length is right, it does.
+        let stride = (width as u64 * F::BITS as u64).div_ceil(8);
+        let expected = stride * height as u64;
+        if data.len() as u64 != expected {
+            let expected = if expected > usize::MAX as u64 { usize::MAX } else { expected as usize };
             return Err(TextureError::Length { found: data.len(), expected });
         }
-        Ok(Self { data, width, height, stride, format })
+        Ok(Self { data, width, height, stride: stride as usize, format })
     }
 
-    /// Returns the bits of a texel; 0 outside of the image.
+    /// Returns the bits of a texel. Outside of the image, it returns some texel or 0; the arithmetic wraps there.
     #[inline(always)]
     fn texel(&self, x: u32, y: u32) -> u32 {
-        let (x, row) = (x as usize, y as usize * self.stride);
+        let (x, row) = (x as usize, (y as usize).wrapping_mul(self.stride));
         match F::BITS {
-            16 => match self.data.get(row + 2 * x..) {
+            16 => match self.data.get(row.wrapping_add(x.wrapping_mul(2))..) {
                 Some([high, low, ..]) => u32::from(u16::from_be_bytes([*high, *low])),
                 _ => 0,
             },
-            24 => match self.data.get(row + 3 * x..) {
+            24 => match self.data.get(row.wrapping_add(x.wrapping_mul(3))..) {
                 Some([r, g, b, ..]) => u32::from_be_bytes([0, *r, *g, *b]),
                 _ => 0,
             },
-            8 => self.data.get(row + x).copied().unwrap_or(0).into(),
+            8 => self.data.get(row.wrapping_add(x)).copied().unwrap_or(0).into(),
             bits => {
-                let first = x * bits;
-                let byte = u32::from(self.data.get(row + first / 8).copied().unwrap_or(0));
+                let first = x.wrapping_mul(bits);
+                let byte = u32::from(self.data.get(row.wrapping_add(first / 8)).copied().unwrap_or(0));
                 // The first texel of a byte is in its upper bits.
                 byte >> (8 - bits - first % 8) & ((1 << bits) - 1)
             }
