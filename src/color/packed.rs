@@ -61,16 +61,18 @@ pub(crate) const fn squeeze(c: i32) -> i32 {
     c - (c >> 8)
 }
 
-/// Undoes [`squeeze`]: returns the channel rounded to the nearest integer.
+/// Undoes [`squeeze`]: returns the channel rounded to the nearest integer, for values that `squeeze` returns. Others
+/// wrap.
 pub(crate) const fn unsqueeze(c: i32) -> u8 {
-    ((c + (c >> 8)) >> 16) as u8
+    (c.wrapping_add(c >> 8) >> 16) as u8
 }
 
 /// Packs squeezed channels into one word of the records: red in 8.2, green and blue in 8.3.
 #[inline]
 pub(crate) fn store(rgb: &[i32; 3], words: &mut [u32]) {
     let [r, g, b] = *rgb;
-    let packed = ((r + (1 << 13)) >> 14) << 22 | ((g + (1 << 12)) >> 13) << 11 | (b + (1 << 12)) >> 13;
+    let eighths = |c: i32| c.wrapping_add(1 << 12) >> 13;
+    let packed = (r.wrapping_add(1 << 13) >> 14) << 22 | eighths(g) << 11 | eighths(b);
     if let [word] = words {
         *word = packed as u32;
     }

@@ -107,7 +107,7 @@ impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
         let Some(Size { width, height }) = self.levels.first().map(Texture::size) else { return 0 };
         let bits = |n: u64| 64 - n.leading_zeros();
         // Half the bits of width and height are those of a square with the same area.
-        let texels = bits(texture.unsigned_abs()) + bits(width.into()) + bits(height.into()) - 2;
+        let texels = (bits(texture.unsigned_abs()) + bits(width.into()) + bits(height.into())).saturating_sub(2);
         (texels.saturating_sub(bits(area)) / 2).min(self.levels.len().saturating_sub(1) as u32)
     }
 }

@@ -181,10 +181,14 @@ impl<F: Framebuffer, D: DepthTest, C: PixelColor + Into<Color<F>>> DrawTarget fo
     }
 }
 
-/// Returns the pixels of a row of the strip, in a range of columns.
+/// Returns the pixels of a row of the strip, in a range of columns; fewer, if the framebuffer has fewer. No framebuffer
+/// gets more: callers count on the difference to the range.
 #[inline(never)]
 fn colors<'r, F: Framebuffer>(framebuffer: &'r mut F, y: i32, columns: &Range<i32>) -> &'r mut [Raw<F>] {
-    framebuffer.span(y as u32, columns.start as usize, (columns.end - columns.start) as usize)
+    let length = (columns.end - columns.start) as usize;
+    let pixels = framebuffer.span(y as u32, columns.start as usize, length);
+    let length = length.min(pixels.len());
+    pixels.get_mut(..length).unwrap_or_default()
 }
 
 /// Returns the stored depths of a range of columns in a row; nothing without a depth buffer.
@@ -256,7 +260,8 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
         Ok(())
     }
 
-    /// Fills an area. `Iterator::nth` passes over the colours of pixels that are not drawn.
+    /// Fills an area. `Iterator::nth` passes over the colours of pixels that are not drawn, however many the area has
+    /// of them.
     fn fill_contiguous<I: IntoIterator<Item = Self::Color>>(
         &mut self,
         area: &Rectangle,

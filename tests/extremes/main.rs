@@ -3,6 +3,8 @@
 //! runs for ever. Debug builds check overflow of integers as well.
 
 mod constructors;
+mod frames;
+mod implementations;
 mod numbers;
 #[path = "../reference/rng.rs"]
 #[allow(dead_code, reason = "this test uses part of the generator")]
@@ -17,6 +19,7 @@ use std::process;
 use std::sync::{Mutex, Once};
 use std::thread;
 use std::time::{Duration, Instant};
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::math::{Affine, Angle16, Pixels, Projective, Scalar, Vec3};
 
 /// Time after which a case counts as endless. Cases take milliseconds.
@@ -191,8 +194,15 @@ impl Extreme for Rng {
     }
 
     fn projective(&mut self) -> Projective {
-        match self.below(4) {
+        match self.below(6) {
             0 => Projective::from_affine(&self.affine()),
+            4 => Projective::IDENTITY,
+            5 => {
+                // A lens, through which something is often seen.
+                let near = Scalar::from_bits(1 + self.below(1 << 18) as i32);
+                let lens = Projective::perspective(Angle16(0x2000), Size::new(4, 3), near, Scalar::from_num(9));
+                lens.unwrap_or_default() * Affine::translation(Vec3::Z * Scalar::from_num(-2))
+            }
             1 => {
                 let magnitude = 1 + self.below(64) as u32;
                 Projective::from_rows([[(); 4]; 4].map(|row| row.map(|()| self.signed_bits(magnitude))))
