@@ -24,7 +24,7 @@ const SIZES: [usize; 12] =
 
 #[test]
 fn meshes_take_all_values() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(11));
+    let (mut table, mut rng) = (Table::start(), Rng::new(11));
     for round in 0..4000 {
         let (mut quantized, mut exact, mut homogeneous) = ([[0; 3]; 7], [Vec3::ZERO; 7], [[Scalar::ZERO; 4]; 7]);
         quantized.iter_mut().for_each(|p| *p = [rng.short(), rng.short(), rng.short()]);
@@ -95,7 +95,7 @@ fn meshes_take_all_values() {
 
 #[test]
 fn fog_is_refused_or_thickens_with_the_distance() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(12));
+    let (mut table, mut rng) = (Table::start(), Rng::new(12));
     let density = |rng: &mut Rng| if rng.one_in(2) { rng.scalar() } else { Scalar::from_bits(rng.any_magnitude(20)) };
     let mut made = 0;
     for round in 0..6000 {
@@ -175,7 +175,7 @@ fn images_take_all_sizes_and_coordinates() {
             sample(table, &image);
         }
     }
-    let (mut table, mut rng) = (Table::new(), Rng::new(13));
+    let (mut table, mut rng) = (Table::start(), Rng::new(13));
     images(&mut table, &mut rng, Rgb565Texel);
     images(&mut table, &mut rng, Rgb565LeTexel);
     images(&mut table, &mut rng, Rgb888Texel);
@@ -224,7 +224,7 @@ fn no_length_is_short_because_a_product_wrapped() {
 
 #[test]
 fn buffers_and_budgets_take_all_sizes() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(14));
+    let (mut table, mut rng) = (Table::start(), Rng::new(14));
     for _ in 0..20_000 {
         let size = Size::new(rng.size(), rng.size());
         let n: [usize; 5] = core::array::from_fn(|_| rng.pick(&SIZES));
@@ -304,7 +304,7 @@ fn packed_formats_take_all_sizes() {
             table.case("PackedFormat::bytes", (columns, rows), || F::bytes(columns, rows));
         }
     }
-    let (mut table, mut rng) = (Table::new(), Rng::new(15));
+    let (mut table, mut rng) = (Table::start(), Rng::new(15));
     packs::<Pages>(&mut table, &mut rng, Dither::BAYER_8);
     packs::<Rows<BinaryColor>>(&mut table, &mut rng, Dither::BAYER_8);
     packs::<Rows<Gray2>>(&mut table, &mut rng, Dither::BAYER_8);

@@ -56,7 +56,6 @@ fn state(rng: &mut Rng) -> State {
         bias: DepthBias { constant: rng.short(), slope: rng.scalar() },
         range: rng.pick(&[DepthRange::Clip, DepthRange::ClampFar, DepthRange::Clamp]),
         depth_scale,
-        ..State::DEFAULT
     }
 }
 
@@ -279,7 +278,7 @@ fn frames<P: PixelFormat>(seed: u64, rounds: u32)
 where
     P::Color: From<Rgb888>,
 {
-    let (mut table, mut rng) = (Table::new(), Rng::new(seed));
+    let (mut table, mut rng) = (Table::start(), Rng::new(seed));
     for _ in 0..rounds {
         let (mut quantized, mut exact, mut homogeneous) = ([[0; 3]; 6], [Vec3::ZERO; 6], [[Scalar::ZERO; 4]; 6]);
         quantized.iter_mut().for_each(|p| *p = [rng.short(), rng.short(), rng.short()]);
@@ -365,7 +364,7 @@ fn frames_of_three_and_of_four_bytes_take_all_scenes() {
 
 #[test]
 fn polygon_of_a_lit_shader_ends_for_normals_whose_squares_wrap() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(107));
+    let (mut table, mut rng) = (Table::start(), Rng::new(107));
     let phong = Phong::new(material::<1, 0>(&mut rng));
     for varyings in [[i32::MIN, 0, 0], [-131_071 << 14, 0, 0], [1 << 30, 0, 0], [i32::MIN; 3]] {
         table.case("Canvas::polygon_with", varyings, || {

@@ -110,7 +110,7 @@ impl Wrap for Beyond {
 
 #[test]
 fn textures_of_no_texels_and_of_too_many_are_sampled() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(201));
+    let (mut table, mut rng) = (Table::start(), Rng::new(201));
     static IMAGE: [u8; 12] = [7; 12];
     let image = Image::new(&IMAGE, Size::new(3, 4), Gray8Texel).expect("12 texels");
     let sizes = [0, 1, 65_535, 65_536, u32::MAX];
@@ -167,7 +167,7 @@ impl Framebuffer for Ragged {
 
 #[test]
 fn framebuffers_of_rows_of_any_length_are_drawn_into() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(202));
+    let (mut table, mut rng) = (Table::start(), Rng::new(202));
     for _ in 0..400 {
         let lengths: [usize; 5] = core::array::from_fn(|_| rng.pick(&[0, 1, 5, 23, 24, 25, 100, 384, 1000]));
         let joined = rng.one_in(2);
@@ -420,7 +420,7 @@ fn mangled_in<P: PixelFormat>(table: &mut Table, seed: u32) {
 
 #[test]
 fn spans_that_a_shader_changed_are_drawn() {
-    let mut table = Table::new();
+    let mut table = Table::start();
     for seed in 0..3 {
         mangled_in::<Rgb565>(&mut table, seed);
         mangled_in::<Gray8>(&mut table, seed);
@@ -432,7 +432,7 @@ fn spans_that_a_shader_changed_are_drawn() {
 
 #[test]
 fn varyings_that_are_not_what_they_say_are_interpolated() {
-    let mut table = Table::new();
+    let mut table = Table::start();
     frames_with::<Rgb565, _>(&mut table, "3 varyings", &Colored::<3>);
     frames_with::<Rgb565, _>(&mut table, "12 varyings", &Colored::<12>);
     frames_with::<Rgb565, _>(&mut table, "varyings of no length", &Lying::<0, 0>);
@@ -505,7 +505,7 @@ impl Ditherable for Odd {
 
 #[test]
 fn formats_that_contradict_themselves_are_drawn_in() {
-    let mut table = Table::new();
+    let mut table = Table::start();
     mangled_in::<Odd>(&mut table, 3);
     mangled_in::<Dithered<Odd>>(&mut table, 4);
     frames_with::<Odd, _>(&mut table, "an odd format", &Gouraud::new(Painted));

@@ -68,7 +68,7 @@ pub struct Table {
 }
 
 impl Table {
-    pub fn new() -> Self {
+    pub fn start() -> Self {
         watch();
         Self { failures: Vec::new(), cases: 0 }
     }

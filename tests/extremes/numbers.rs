@@ -14,7 +14,7 @@ use zstrip::shader::Gouraud;
 
 #[test]
 fn vectors_and_angles_take_all_values() {
-    let mut table = Table::new();
+    let mut table = Table::start();
     let mut rng = Rng::new(1);
     for _ in 0..20_000 {
         let (a, b, s, angle, n) = (rng.vector(), rng.vector(), rng.scalar(), rng.angle(), rng.bits());
@@ -47,7 +47,7 @@ fn vectors_and_angles_take_all_values() {
 
 #[test]
 fn matrices_take_all_values() {
-    let mut table = Table::new();
+    let mut table = Table::start();
     let mut rng = Rng::new(2);
     for _ in 0..10_000 {
         let (a, b, v, w, s, angle) =
@@ -120,7 +120,7 @@ where
 
 #[test]
 fn pixel_formats_take_all_values() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(3));
+    let (mut table, mut rng) = (Table::start(), Rng::new(3));
     formats_of::<Rgb565>(&mut table, &mut rng);
     formats_of::<Rgb565Be>(&mut table, &mut rng);
     formats_of::<Bgr565>(&mut table, &mut rng);
@@ -150,7 +150,7 @@ fn dithering_takes_all_values() {
         }
     }
     const RAMP: [u16; 256] = [u16::MAX; 256];
-    let mut table = Table::new();
+    let mut table = Table::start();
     for dither in [Dither::NEAREST, Dither::BAYER_4, Dither::BAYER_8, Dither::BRIGHT_4, Dither::BRIGHT_8] {
         levels_of::<BinaryColor>(&mut table, dither, ());
     }
@@ -162,7 +162,7 @@ fn dithering_takes_all_values() {
 
 #[test]
 fn lights_take_all_values() {
-    let (mut table, mut rng) = (Table::new(), Rng::new(5));
+    let (mut table, mut rng) = (Table::start(), Rng::new(5));
     for _ in 0..10_000 {
         let (model, v, w, s) = (rng.affine(), rng.vector(), rng.vector(), rng.scalar());
         let bounds = Bounds { center: rng.vector(), half: rng.vector() };
