@@ -25,7 +25,9 @@ impl Grid {
     /// Returns the rows of a strip whose colour buffer holds a number of pixels; 0 if it does not hold one row.
     fn strip_rows(&self, pixels: usize) -> u16 {
         let (width, most) = (self.viewport.width(), self.most_rows);
-        if pixels >= usize::from(width) * usize::from(most) { most } else { whole_rows(pixels, width) as u16 }
+        // At most 2²⁴, which `usize` may not hold.
+        let holds_all = usize::try_from(u32::from(width) * u32::from(most)).is_ok_and(|all| pixels >= all);
+        if holds_all { most } else { whole_rows(pixels, width) as u16 }
     }
 
     /// Returns the height of the strip that begins at `row`.

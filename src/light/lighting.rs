@@ -115,6 +115,7 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
     }
 
     fn put_on(&self, material: &Material, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
+        const { assert!(D < 1 << 13 && P < 1 << 13, "at most 8,191 lights of a kind: their sum fits 31 bits") };
         let space = ToLocal::new(model, bounds);
         let colors = |light: Rgb888| LitColors {
             diffuse: product(material.matte.diffuse, channels(light)),

@@ -427,8 +427,8 @@ impl<'a> Records<'a> {
     /// Reserves words for the vertices of a draw, all unshaded. Returns `false` if there are too few.
     fn reserve(&mut self, vertices: usize, stride: usize) -> bool {
         let start = self.layout.front;
-        // The product is at most 2¹⁶ · 255: no overflow, even in 32 bits.
-        let needs = vertices * stride;
+        // At most 2¹⁶ · 255, which `usize` may not hold.
+        let needs = vertices.saturating_mul(stride);
         if self.free() < needs {
             return false;
         }
@@ -569,7 +569,7 @@ impl<'a> Records<'a> {
         let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
         let positions = vertices.get(..VERTEX_WORDS * layout.count).unwrap_or_default();
         // Numbers of triangles must stay below `NONE`, so room for more triangles is left out.
-        let beyond = rest.len().saturating_sub(TRIANGLE * usize::from(NONE));
+        let beyond = rest.len().saturating_sub(TRIANGLE.saturating_mul(usize::from(NONE)));
         Triangles {
             lists,
             vertices,
