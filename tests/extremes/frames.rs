@@ -2,13 +2,13 @@
 
 use crate::rng::Rng;
 use crate::{Extreme, Table};
-use zstrip::color::{Dithered, PixelFormat, Rgb332, Rgb565Be, Rgba8888};
-use zstrip::embedded_graphics_core::Pixel;
+use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be, Rgba8888};
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
-use zstrip::embedded_graphics_core::geometry::{Point, Size};
-use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
+use zstrip::embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Point, Size};
+use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
-use zstrip::frame::Renderer;
+use zstrip::embedded_graphics_core::{Drawable, Pixel};
+use zstrip::frame::{FrameError, FrameView, Renderer};
 use zstrip::light::{DirectionalLight, Lighting, LitMaterial, Material, PointLight, Viewer};
 use zstrip::math::{Scalar, Vec3};
 use zstrip::mesh::{Bounds, LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices};
@@ -18,7 +18,7 @@ use zstrip::shader::{
     Opacity, Phong, PhongNear, Replace, ScreenDoor, Textured,
 };
 use zstrip::span::{Compare, DepthBias, DepthState, Shader};
-use zstrip::target::Framebuffer;
+use zstrip::target::{DitheredDisplay, Framebuffer};
 use zstrip::texture::{Bilinear, Clamp, Image, Mirror, Rgb888Texel, Tile, WithAlpha};
 use zstrip::vertex::{DepthRange, DepthScale, Perspective, Viewport};
 
@@ -377,4 +377,119 @@ fn polygon_of_a_lit_shader_ends_for_normals_whose_squares_wrap() {
         });
     }
     table.finish();
+}
+
+/// Ends no frame but by an error: whatever the closure draws from call to call, and however long the buffers are.
+#[test]
+fn scenes_and_buffers_that_change_within_a_frame_give_errors_or_pictures() {
+    let (mut table, mut rng) = (Table::start(), Rng::new(108));
+    let corners: [[Scalar; 4]; 6] = core::array::from_fn(|_| {
+        let near = |rng: &mut Rng| Scalar::from_bits(rng.between(-100_000, 100_000));
+        [near(&mut rng), near(&mut rng), near(&mut rng), Scalar::from_bits(rng.between(20_000, 90_000))]
+    });
+    let vertices = Vertices::new(Positions::Homogeneous(&corners));
+    let mesh = Mesh::new(MeshData { topology: Topology::Fan, ..MeshData::new(vertices.positions) });
+    let mesh = mesh.expect("six vertices");
+    let lines = Lines::new(vertices, LineTopology::Strip, None).expect("six vertices");
+    let points = Points::new(vertices).expect("six vertices");
+    let (mut changed, mut short, mut whole) = (0, 0, 0);
+    for _ in 0..1500 {
+        let (seed, words, rows) = (rng.next_u64(), rng.pick(&[0, 60, 400, 5000]), rng.pick(&[1, 2, 5, 19]));
+        let (kinds, lengths) = (1 + rng.below(3), rng.one_in(2));
+        table.case("a frame of changes", (seed, words, rows, kinds), || {
+            let mut color = vec![0; WIDTH as usize * rows];
+            let (mut depth, mut records) = (vec![0; WIDTH as usize * rows], vec![0; words]);
+            let renderer = Renderer::<Rgb565>::new(SCREEN).expect("a screen").with_depth(&mut depth).expect("a strip");
+            let mut renderer = renderer.with_records(&mut records);
+            let mut rng = Rng::new(seed);
+            for _ in 0..3 {
+                let mut frame = renderer.begin(Rgb888::BLACK);
+                loop {
+                    let length =
+                        if lengths && rng.one_in(4) { rng.below(color.len() as u64 + 1) as usize } else { color.len() };
+                    let draw_seed = rng.next_u64();
+                    let mut calls = 0;
+                    let strip = frame.next_strip(&mut color[..length], |scene| {
+                        calls += 1;
+                        draw_all(scene, seed ^ (draw_seed.wrapping_add(calls) % kinds), &mesh, &lines, &points);
+                    });
+                    match strip {
+                        Ok(Some(_)) => whole += 1,
+                        Ok(None) => break,
+                        Err(FrameError::SceneChanged { .. }) => changed += 1,
+                        Err(_) => short += 1,
+                    }
+                    // Some frames are dropped.
+                    if rng.one_in(40) {
+                        break;
+                    }
+                }
+            }
+        });
+    }
+    println!("{whole} strips, {changed} changes, {short} short buffers");
+    assert!(whole > 1000 && changed > 100 && short > 100, "{whole} {changed} {short}");
+    table.finish();
+}
+
+/// A display that forgets what it is sent, or fails.
+struct Sieve(bool);
+
+impl OriginDimensions for Sieve {
+    fn size(&self) -> Size {
+        Size::new(u32::MAX, u32::MAX)
+    }
+}
+
+impl DrawTarget for Sieve {
+    type Color = Rgb565;
+    type Error = ();
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<Rgb565>>>(&mut self, pixels: I) -> Result<(), ()> {
+        let _ = pixels.into_iter().count();
+        if self.0 { Err(()) } else { Ok(()) }
+    }
+}
+
+#[test]
+fn frames_are_sent_to_any_place_of_a_display() {
+    let (mut table, mut rng) = (Table::start(), Rng::new(109));
+    for round in 0..400 {
+        let (at, mut display) = (Point::new(rng.bits(), rng.bits()), Sieve(round % 5 == 0));
+        table.case("Renderer::frame_at", at, || {
+            let mut color = [0; 16 * 3];
+            let mut renderer = Renderer::<Rgb565>::new(Size::new(16, 8)).expect("a screen");
+            let _ = renderer.frame_at(&mut display, at, &mut color, Rgb888::RED, |_| ());
+            let view = FrameView::new(&mut renderer, &mut color, at, Rgb888::RED, |_| ());
+            assert_eq!(view.bounding_box().top_left, at);
+            let _ = view.draw(&mut display);
+            let _ = FrameView::new(&mut renderer, &mut [], at, Rgb888::RED, |_| ()).draw(&mut display);
+        });
+        let dither = Dither::<BinaryColor>::BAYER_8;
+        table.case("DitheredDisplay", at, || {
+            let mut panel = Panel;
+            let mut renderer = Renderer::<Gray8>::new(Size::new(16, 8)).expect("a screen");
+            renderer.frame_to(DitheredDisplay::new(&mut panel, dither), &mut [0; 16 * 3], Rgb888::RED, |_| ()).is_ok()
+        });
+    }
+    table.finish();
+}
+
+/// A panel of two colours.
+struct Panel;
+
+impl OriginDimensions for Panel {
+    fn size(&self) -> Size {
+        Size::new(16, 8)
+    }
+}
+
+impl DrawTarget for Panel {
+    type Color = BinaryColor;
+    type Error = core::convert::Infallible;
+
+    fn draw_iter<I: IntoIterator<Item = Pixel<BinaryColor>>>(&mut self, pixels: I) -> Result<(), Self::Error> {
+        let _ = pixels.into_iter().count();
+        Ok(())
+    }
 }

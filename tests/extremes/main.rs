@@ -3,6 +3,7 @@
 //! runs for ever. Debug builds check overflow of integers as well.
 
 mod constructors;
+mod documented;
 mod frames;
 mod implementations;
 mod numbers;

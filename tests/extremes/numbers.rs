@@ -95,6 +95,25 @@ fn matrices_take_all_values() {
     table.finish();
 }
 
+#[cfg(feature = "micromath")]
+#[test]
+fn floats_of_all_bits_are_converted_or_refused() {
+    use zstrip::micromath::Quaternion;
+    use zstrip::micromath::vector::F32x3;
+    let (mut table, mut rng) = (Table::start(), Rng::new(6));
+    for _ in 0..100_000 {
+        let mut float = || f32::from_bits(if rng.one_in(3) { rng.bits() as u32 } else { rng.next_u32() });
+        let [x, y, z, w] = [float(), float(), float(), float()];
+        table.case("Vec3::try_from", (x, y, z), || Vec3::try_from(F32x3 { x, y, z }).is_ok());
+        table.case("Affine::try_from a quaternion", (x, y, z, w), || {
+            Affine::try_from(Quaternion::new(w, x, y, z)).is_ok()
+        });
+        table.case("Affine::try_from rows", (x, y, z, w), || Affine::try_from([[x, y, z, w]; 3]).is_ok());
+        table.case("Projective::try_from rows", (x, y, z, w), || Projective::try_from([[x, y, z, w]; 4]).is_ok());
+    }
+    table.finish();
+}
+
 fn formats_of<P: PixelFormat>(table: &mut Table, rng: &mut Rng)
 where
     P::Raw: std::fmt::Debug,
