@@ -45,8 +45,8 @@ pub trait PixelFormat {
         Self::pack(unpack_rgb565(raw))
     }
 
-    /// Mixes two pixels: (`a` · `weight` + `b` · (256 - `weight`)) / 256, rounded, in 8 bits per channel. A weight is at
-    /// most 256; a larger one gives some colour.
+    /// Mixes two pixels: (`a` · `weight` + `b` · (256 - `weight`)) / 256, rounded, in 8 bits per channel. A weight is
+    /// at most 256; a larger one gives some colour.
     ///
     /// Formats of 5 or 6 bits per channel mix in the bits that they have, with `weight` rounded to 32nds. Their result
     /// is within 1.5 steps of such a channel.

@@ -1,4 +1,5 @@
-//! Frames of extreme scenes: any matrices, positions, states, strokes, varyings and areas, under every ready-made shader.
+//! Frames of extreme scenes: any matrices, positions, states, strokes, varyings and areas, under every shader of the
+//! crate.
 
 use crate::rng::Rng;
 use crate::{Extreme, Table};

@@ -1,5 +1,6 @@
 //! Traits that a user implements, implemented wrongly: textures without texels, framebuffers with rows of any length,
-//! varyings and words that are not what they say, spans that shaders hand on after changing them. Pictures may be wrong.
+//! varyings and words that are not what they say, spans that shaders hand on after changing them. Pictures may be
+//! wrong.
 
 use crate::rng::Rng;
 use crate::{Extreme, Table};
