@@ -9,7 +9,7 @@
 //! This takes one reciprocal per line, and no division. Values are kept modulo 2³², as planes over triangles are.
 
 use super::line::Line;
-use crate::math::{mul_high, reciprocal};
+use crate::math::{divide_modulo, mul_high, reciprocal};
 
 /// The part of the interpolation that is common to all values on a line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -69,6 +69,20 @@ impl Along {
             (start.wrapping_add(way), step as i32)
         }
     }
+
+    /// Returns the value at the pixel `origin` and its change per pixel as [`value`](Self::value) does, with 32
+    /// fractional bits, by long division.
+    ///
+    /// # Format
+    /// Differences of 33 bits times 2²⁴ are below 2⁵⁸. Both results are rounded down. The line's length is not 0.
+    #[inline(never)]
+    pub fn wide(&self, line: &Line, from: i32, to: i32) -> (i64, i64) {
+        let difference = i64::from(to) - i64::from(from);
+        // As in `new`: not before the line's start, and not beyond its end.
+        let way = (line.lead() + 256 * self.origin as i32).max(0).min(line.length() as i32);
+        let divided = |n: i64| divide_modulo(n >> 32, n as u32, line.length().into());
+        ((i64::from(from) << 32).wrapping_add(divided(difference * i64::from(way))), divided(difference << 8))
+    }
 }
 
 #[cfg(test)]
@@ -116,6 +130,25 @@ mod tests {
         }
         assert!(seen > 15_000);
         println!("worst error beside half a unit a pixel: {worst}");
+    }
+
+    #[test]
+    fn wide_values_are_exact() {
+        for (a, b, from, to) in lines(20_000) {
+            let line = Line::new(a.into(), b.into());
+            if line.count() == 0 {
+                continue;
+            }
+            let along = Along::new(&line);
+            let (start, step) = along.wide(&line, from, to);
+            for k in [0, 1, line.count() / 2, line.count() - 1] {
+                let Some(after) = k.checked_sub(along.origin()).filter(|_| k < line.count()) else { continue };
+                let value = (start + i64::from(after) * step) as f64 / 4_294_967_296.0;
+                // f64 itself rounds to 2⁻²².
+                let error = (value - exact(&line, k, from, to)).abs();
+                assert!(error < 1e-5, "{a:?} {b:?} {from} {to}, pixel {k}: {error}");
+            }
+        }
     }
 
     #[test]

@@ -10,7 +10,9 @@
 //! so a pixel takes the planes of d q and of q, and one reciprocal. |d| q is at most an eighth of q at the vertices,
 //! and therefore at every pixel.
 
+use super::along::Along;
 use super::gradient::Gradients;
+use super::line::{Line, LinePixels};
 use crate::math::mul_high_signed;
 use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64, ScreenVertex, Varyings};
 
@@ -53,6 +55,32 @@ fn planes_in_64_bits(
     }
 }
 
+/// Computes the planes of d q and q along a line in 64 bits, where 32 are too few. They change along the line's longer
+/// axis only. `pixel` is the first pixel that is drawn, `on` pixels after the pixel `origin` of `along`.
+#[inline]
+pub fn widen_along<C: PerspectiveSetup>(
+    (line, along): (&Line, &Along),
+    values: &[&[i32]; 2],
+    (pixel, on): (&LinePixels, i32),
+    perspective: &mut C,
+) {
+    let Some((PerspectiveClass::Planes64, inverse_w64, planes)) = perspective.parts_mut() else { return };
+    let plane = |from: i32, to: i32| {
+        let (start, step) = along.wide(line, from, to);
+        let ((x, y), straight) = (pixel.position, pixel.straight);
+        let mut plane = Plane64 { base: 0, dx: step * i64::from(straight.0), dy: step * i64::from(straight.1) };
+        plane.base = start.wrapping_add(step.wrapping_mul(on.into())).wrapping_sub(plane.at((x, y)));
+        plane
+    };
+    let [a, b] = *values;
+    for ((to, a), b) in planes.iter_mut().zip(a).zip(b) {
+        to.wide = plane(*a, *b);
+    }
+    if let ([.., a], [.., b]) = (a, b) {
+        *inverse_w64 = plane(*a, *b);
+    }
+}
+
 /// Returns the number of columns and rows that a plane's value may have to be carried over.
 fn extent(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
     let [a, b, c] = v;
@@ -67,7 +95,7 @@ fn extent(v: &[ScreenVertex; 3], (width, height): (u16, u16)) -> u32 {
 /// Planes in 32 bits are off by less than extent + 64 units (see [`Gradients`](crate::raster::Gradients)). So are q and
 /// d q, which makes h, of 28 bits, wrong by some 2³¹ (extent + 64) / q. [`Planes32`](PerspectiveClass::Planes32) keeps
 /// this error below 2¹⁵ units, 2⁻¹³ of the largest difference. Where q differs by less than 2⁻¹⁴, h bends by a quarter
-/// of that, 2⁻¹⁶.
+/// of that, 2⁻¹⁶. Equal q, whatever they are, are no perspective.
 #[inline(never)]
 fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], extent: u32) -> PerspectiveClass {
     let [a, b, c] = values;
@@ -79,7 +107,7 @@ fn convert(values: [&mut [i32]; 3], planes: &mut [PerspectivePlane], extent: u32
     (*wa, *wb, *wc) = (qa as i32, qb as i32, qc as i32);
     let (least, most) = (qa.min(qb).min(qc), qa.max(qb).max(qc));
     let class = match () {
-        () if most - least < most >> 14 => PerspectiveClass::Affine,
+        () if most - least <= most >> 14 => PerspectiveClass::Affine,
         () if (extent + 64).saturating_mul(most >> 14) <= least => PerspectiveClass::Planes32,
         () => PerspectiveClass::Planes64,
     };

@@ -12,7 +12,7 @@ use crate::shader::{Flat, Gouraud};
 use crate::span::{DepthState, Shader};
 use crate::target::Framebuffer;
 use crate::vertex::{
-    ClipCorner, ClipVertex, DepthSlab, Outcode, ScreenVertex, clip_line, clip_triangle, project, weighted,
+    ClipCorner, ClipVertex, DepthSlab, Outcode, ScreenVertex, Varyings, clip_line, clip_triangle, project, weighted,
 };
 use embedded_graphics_core::geometry::Point;
 use embedded_graphics_core::pixelcolor::Rgb888;
@@ -256,7 +256,9 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
     }
 
     /// Fills a convex polygon with a shader. The shader's vertex stage is not called: its varyings are given at the
-    /// corners, and `face` is its face word.
+    /// corners, and `face` is its face word, see [`VertexShader::shape`](crate::vertex::VertexShader::shape).
+    ///
+    /// All corners are at one depth, so [`Perspective`](crate::vertex::Perspective) varyings are linear on the screen.
     pub fn polygon_with<S: Shader<F::Format>>(
         &mut self,
         corners: &[(ScreenPoint, S::Varyings)],
@@ -275,6 +277,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         face: u32,
     ) {
         let mut corners = corners.iter().map(corner);
+        let face = shader.shape(face);
         let (Some(first), Some(mut last)) = (corners.next(), corners.next()) else { return };
         for next in corners {
             let [a, b, c] = [first.0, last.0, next.0];
@@ -299,7 +302,8 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
     ) {
         let Self { scene, clip, state, .. } = self;
         if !pixel_rect(v).intersection(clip).is_empty() {
-            scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(v, varyings, face);
+            let varyings = varyings.map(level);
+            scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(v, &varyings, face);
         }
     }
 
@@ -357,6 +361,18 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         }
     }
 
+    /// Draws a line with a shader, and with any stroke. The shader's vertex stage is not called: its varyings are given
+    /// at the ends, and `face` is its face word, as in [`polygon_with`](Self::polygon_with).
+    pub fn shaded_line<S: Shader<F::Format>>(
+        &mut self,
+        ends: &[(ScreenPoint, S::Varyings); 2],
+        shader: &S,
+        face: u32,
+        stroke: &impl Stroke,
+    ) {
+        self.segment(ends, shader, face, stroke);
+    }
+
     #[inline(never)]
     fn segment<S: Shader<F::Format>, K: Stroke>(
         &mut self,
@@ -366,6 +382,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         stroke: &K,
     ) {
         let [(a, from), (b, to)] = *ends;
+        let face = shader.shape(face);
         let codes = [a, b].map(|point| point.outcode().0);
         if codes == [0; 2] {
             self.near_segment(&[(a.vertex(self.z), from), (b.vertex(self.z), to)], shader, face, stroke);
@@ -393,14 +410,22 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         stroke: &K,
     ) {
         let Self { scene, clip, state, .. } = self;
-        let [(a, _), (b, _)] = ends;
+        let [(a, from), (b, to)] = ends;
         let reach = stroke.reach();
         let near = PixelRect {
             x: (a.x.min(b.x) >> 8) - reach..(a.x.max(b.x) >> 8) + reach + 1,
             y: (a.y.min(b.y) >> 8) - reach..(a.y.max(b.y) >> 8) + reach + 1,
         };
         if !near.intersection(clip).is_empty() {
-            stroke.draw(&mut scene.painter(clip, state, &const { RasterHooks::ANY }, shader), ends, face);
+            let ends = [(*a, level(*from)), (*b, level(*to))];
+            stroke.draw(&mut scene.painter(clip, state, &const { RasterHooks::ANY }, shader), &ends, face);
         }
     }
+}
+
+/// Gives varyings the 1 / w that all points of a canvas have.
+#[inline]
+fn level<V: Varyings>(mut varyings: V) -> V {
+    varyings.set_inverse_w(1 << 31);
+    varyings
 }

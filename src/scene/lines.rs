@@ -21,8 +21,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// Draws lines with a stroke: nearer fragments win, and lines are clipped at the near and the far plane.
     ///
     /// `mvp` takes object space to clip space: camera · view · model. A shader sees a line as a face without a normal
-    /// that shows its front. The line's first end is the provoking vertex. Varyings are interpolated along the line,
-    /// linearly on the screen.
+    /// that shows its front. The line's first end is the provoking vertex. Varyings are interpolated along the line:
+    /// linearly on the screen, or in space if they are [`Perspective`](crate::vertex::Perspective).
     ///
     /// ```
     /// # use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};

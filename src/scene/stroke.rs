@@ -6,13 +6,13 @@
 use super::painter::{Painter, RasterHooks};
 use crate::color::PixelFormat;
 use crate::math::Pixels;
-use crate::raster::{Along, Line, LinePixels, PixelRect, unit};
+use crate::raster::{Along, Line, LinePixels, PixelRect, homogenize, unit, widen_along};
 use crate::span::{
     Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Shader, Span, SpanOf,
     TriangleSetup,
 };
 use crate::target::Framebuffer;
-use crate::vertex::{ScreenVertex, Side, Varyings, VertexShader, Wrapper};
+use crate::vertex::{PerspectiveSetup, ScreenVertex, Side, Varyings, VertexShader, Wrapper};
 
 /// Style in which lines are drawn: [`Thin`], [`Dashed`], [`Thick`] or [`Smooth`].
 ///
@@ -172,8 +172,19 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     }
     let along = Along::new(&line);
     let (z, dz) = along.value(i32::from(a.z), i32::from(b.z), 16);
-    let (mut values, mut change) = (*from, S::Varyings::ZERO);
-    for ((value, step), to) in values.as_mut().iter_mut().zip(change.as_mut()).zip(to.as_ref()) {
+    let mut perspective = <S::Varyings as Varyings>::PerspectiveSetup::NONE;
+    let mut homogeneous;
+    let [start, end] = if S::Varyings::PERSPECTIVE > 0 {
+        // A line is a triangle that has its second end twice.
+        homogeneous = [*from, *to, *to];
+        homogenize(&mut homogeneous, &[*a, *b, *b], painter.screen, &mut perspective);
+        let [start, end, _] = &homogeneous;
+        [start, end]
+    } else {
+        [from, to]
+    };
+    let (mut values, mut change) = (*start, S::Varyings::ZERO);
+    for ((value, step), to) in values.as_mut().iter_mut().zip(change.as_mut()).zip(end.as_ref()) {
         let (start, change) = along.value(*value, *to, 0);
         (*value, *step) = (start as i32, change);
     }
@@ -208,10 +219,11 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     let (mut d_dx, mut d_dy) = (S::Varyings::ZERO, S::Varyings::ZERO);
     d_dx.advance(&change, pixels.straight.0);
     d_dy.advance(&change, pixels.straight.1);
+    widen_along((&line, &along), &[start.as_ref(), end.as_ref()], (&pixels, on), &mut perspective);
     values.advance(&change, on);
     values.advance(&d_dx, x.wrapping_neg());
     values.advance(&d_dy, y.wrapping_neg());
-    let primitive = primitive(values, d_dx, d_dy);
+    let primitive = Primitive { perspective, ..primitive(values, d_dx, d_dy) };
     draw_line::<F, S, DASHED>(painter, &LineRun { pixels, z, pattern, primitive: &primitive });
 }
 

@@ -58,6 +58,15 @@ impl<S: Surface> VertexShader for Flat<S> {
     fn face(&self, face: &Face<'_>) -> u32 {
         self.surface.face(face).into_storage()
     }
+
+    /// Returns the surface's own colour if it has one; otherwise `word`, as a colour.
+    #[inline]
+    fn shape(&self, word: u32) -> u32 {
+        match self.surface.shape() {
+            Some(color) => color.into_storage(),
+            None => word,
+        }
+    }
 }
 
 impl<P: PixelFormat, S: Surface> Shader<P> for Flat<S> {

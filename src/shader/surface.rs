@@ -43,6 +43,12 @@ pub trait Surface {
     fn face(&self, face: &Face<'_>) -> Rgb888 {
         self.vertex(&face.provoking()).into()
     }
+
+    /// Returns the colour of a shape that is no part of a mesh; `None` if the colour depends on the mesh.
+    #[inline]
+    fn shape(&self) -> Option<Rgb888> {
+        None
+    }
 }
 
 impl<S: Surface + ?Sized> Surface for &S {
@@ -54,6 +60,11 @@ impl<S: Surface + ?Sized> Surface for &S {
     #[inline]
     fn face(&self, face: &Face<'_>) -> Rgb888 {
         S::face(self, face)
+    }
+
+    #[inline]
+    fn shape(&self) -> Option<Rgb888> {
+        S::shape(self)
     }
 }
 
@@ -79,6 +90,11 @@ impl Surface for Unlit {
             Some(color) => rgb(color),
             None => rgb(face.provoking().color()),
         }
+    }
+
+    #[inline]
+    fn shape(&self) -> Option<Rgb888> {
+        self.color().map(rgb)
     }
 }
 

@@ -234,6 +234,13 @@ pub trait VertexShader {
         0
     }
 
+    /// Returns the word that is handed to the fragment stage for a shape of a [`Canvas`](crate::scene::Canvas), which
+    /// is no face of a mesh. `word` is the one that the caller of [`polygon_with`](crate::scene::Canvas::polygon_with)
+    /// gave. A shader whose word does not depend on the mesh returns its own word instead.
+    fn shape(&self, word: u32) -> u32 {
+        word
+    }
+
     /// Packs varyings into `WORDS` words of a record. To save memory, override it together with [`load`](Self::load).
     #[inline]
     fn store(varyings: &Self::Varyings, words: &mut [u32]) {

@@ -75,6 +75,11 @@ impl<W: Wrapper> VertexShader for W {
     }
 
     #[inline]
+    fn shape(&self, word: u32) -> u32 {
+        self.inner().shape(word)
+    }
+
+    #[inline]
     fn store(varyings: &Self::Varyings, words: &mut [u32]) {
         W::Inner::store(varyings, words);
     }

@@ -7,6 +7,7 @@
 //! | [`diamonds`] | lines by the diamond-exit rule | integers, exact |
 //! | [`exact`] | coverage, depth and attributes of one snapped triangle | integers, exact |
 //! | [`homogeneous`] | clip space to pixels with no clipper (Olano & Greer) | f64 |
+//! | [`interpolation`] | perspective-correct values of triangles and lines, from clip space | f64 |
 //! | [`snapped`] | depth-tested frames from snapped vertices | exact coverage and depth, f64 colour |
 //! | [`ray`], [`camera`], [`surface`] | image-order ray caster for triangles and quadrics | f64 |
 //! | [`frame`] | the picture those three renderers produce, and its comparison | f64 |
@@ -23,6 +24,7 @@ pub mod diamonds;
 pub mod exact;
 pub mod frame;
 pub mod homogeneous;
+pub mod interpolation;
 pub mod meshes;
 pub mod mistakes;
 pub mod model;
