@@ -7,12 +7,14 @@ use reference::exact;
 use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{difference, strips, whole};
+use zstrip::color::{Dithered, PixelFormat, Rgb332};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::FramebufferRenderer;
 use zstrip::internals::{Line, PixelRect};
 use zstrip::math::Pixels;
+use zstrip::shader::{Alpha, AlphaTest, Blend, Gouraud, Multiply, Opacity, ScreenDoor};
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::{FrameSlice, Framebuffer};
 use zstrip::vertex::{VertexRef, VertexShader};
@@ -243,4 +245,40 @@ fn framebuffers_get_the_same_bytes_with_a_stride_and_a_low_depth_buffer() {
     renderer.frame(&mut frame, Rgb565::BLACK, |scene| draw_any(scene, 5)).expect("a frame");
     let packed: Vec<_> = color.chunks(80).flat_map(|row| &row[..64]).copied().collect();
     assert_eq!(difference(&packed, &expected, SCREEN.0), None);
+}
+
+/// Draws a triangle over the whole screen with a shader whose varyings are out of range, by each depth test that has a
+/// loop of its own.
+fn draw_out_of_range<P: PixelFormat<Raw: PartialEq>, S: Shader<P>>(shader: &S, varyings: S::Varyings) {
+    for depth in [DepthState::OFF, DepthState::LESS, DepthState { compare: Compare::LessEqual, write: false }] {
+        whole::<P>((20, 4), P::to_color(P::pack([0; 3])), |scene| {
+            let corners = [(0, 0), (20, 0), (20, 4), (0, 4)].map(|(x, y)| (ScreenPoint::corner(x, y), varyings));
+            let mut canvas = scene.canvas_with(9, depth);
+            canvas.polygon_with(&corners, shader, u32::MAX);
+            canvas.shaded_line(&[corners[0], corners[2]], shader, 7, &Thin);
+            canvas.shaded_line(&[corners[0], corners[2]], shader, 7, &Smooth::px(3));
+        });
+    }
+}
+
+/// Varyings of a canvas come from the caller, so they may be anything.
+#[test]
+fn colours_out_of_range_are_some_colour_in_every_format_and_wrapper() {
+    fn all<P: PixelFormat<Raw: PartialEq>>(varyings: [i32; 3]) {
+        let shader = Gouraud::vertex_colors();
+        draw_out_of_range::<P, _>(&shader, varyings);
+        draw_out_of_range::<P, _>(&Blend::new(shader, Alpha), varyings);
+        draw_out_of_range::<P, _>(&Blend::new(shader, Multiply), varyings);
+        draw_out_of_range::<P, _>(&Blend::new(shader, Opacity(77)), varyings);
+        draw_out_of_range::<P, _>(&AlphaTest::new(shader, 9), varyings);
+        draw_out_of_range::<P, _>(&ScreenDoor::new(shader, 9), varyings);
+    }
+    let numbers = [i32::MIN, -1, 1 << 24, i32::MAX];
+    for varyings in numbers.into_iter().flat_map(|a| numbers.map(|b| [a, b, a ^ b])) {
+        all::<Rgb565>(varyings);
+        all::<Rgb888>(varyings);
+        all::<Gray8>(varyings);
+        all::<Rgb332>(varyings);
+        all::<Dithered<Rgb565>>(varyings);
+    }
 }
