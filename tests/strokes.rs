@@ -10,12 +10,13 @@ use core::fmt::Debug;
 use reference::rng::Rng;
 use std::cell::RefCell;
 use support::{difference, strips, whole};
-use zstrip::color::{PixelFormat, Rgb565Be};
-use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
-use zstrip::math::{Pixels, Projective, Vec3};
+use zstrip::color::{Dithered, PixelFormat, Rgb565Be};
+use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
+use zstrip::math::{Pixels, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Positions, Topology, Vertices};
 use zstrip::shader::{
-    Add, AddAlpha, Alpha, AlphaTest, Blend, DepthOnly, Flat, Gouraud, Multiply, Opacity, Replace, ScreenDoor,
+    Add, AddAlpha, Alpha, AlphaTest, Blend, DepthOnly, Flat, FogCurve, FogTable, Fogged, Gouraud, Multiply, Opacity,
+    Replace, ScreenDoor,
 };
 use zstrip::span::{Compare, DepthState, Fragment, Shader};
 use zstrip::target::Framebuffer;
@@ -73,6 +74,43 @@ impl<P: PixelFormat> Shader<P> for Source {
     }
 }
 
+/// A shader of one's own that paints over what is there, keeps or discards it, by the column.
+struct Negative;
+
+impl VertexShader for Negative {
+    type Varyings = [i32; 3];
+
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 3] {
+        end(vertex.index())
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for Negative {
+    type Setup = ();
+
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 3]>) -> Option<P::Raw> {
+        Some(P::pack_rgba(rgba(fragment.varyings, fragment.position), fragment.position))
+    }
+
+    fn paint(&self, fragment: &Fragment<'_, [i32; 3]>, pixel: &mut P::Raw) -> bool {
+        match fragment.position.0 % 3 {
+            0 => return false,
+            1 => *pixel = P::pack(P::unpack(*pixel).map(|c| !c)),
+            _ => *pixel = P::pack_rgba(rgba(fragment.varyings, fragment.position), fragment.position),
+        }
+        true
+    }
+}
+
+static FOG: FogTable = match FogTable::perspective(
+    Scalar::ONE,
+    Scalar::from_bits(10 << 16),
+    FogCurve::Linear { start: Scalar::ONE, end: Scalar::from_bits(5 << 16) },
+) {
+    Ok(table) => table,
+    Err(_) => panic!("near and far"),
+};
+
 /// Keeps the fragments.
 struct Recorder<'a>(&'a RefCell<Vec<Hit>>);
 
@@ -114,7 +152,8 @@ fn hits(line: &Lines<'_>, stroke: &impl Stroke) -> Vec<Hit> {
     for hit in &mut hits {
         let pair = (white[hit.place()], black[hit.place()]);
         let is_covered = |coverage: i32| pair == (mix(0, 255, coverage), mix(255, 0, coverage));
-        hit.coverage = (0..=256).find(|coverage| is_covered(*coverage)).expect("a coverage that yields this pixel");
+        // A pixel that is not covered has no fragment, so no depth is written there.
+        hit.coverage = (1..=256).find(|coverage| is_covered(*coverage)).expect("a coverage that yields this pixel");
     }
     hits
 }
@@ -242,6 +281,15 @@ impl<K: Stroke + Debug> Strokes<K> {
             self.compare::<P>("AlphaTest", &AlphaTest::new(Source, 100), |hit, _| {
                 (hit.rgba()[3] >= 100).then(|| opaque::<P>(hit))
             }),
+            self.compare::<P>("Fogged", &Fogged::new(Source, &FOG, Rgb888::CSS_TEAL), |hit, _| {
+                let left = u32::from(FOG.transmittance(hit.depth));
+                Some(P::mix(opaque::<P>(hit), P::pack([0, 128, 128]), left + (left >> 7)))
+            }),
+            self.compare::<P>("a shader of one's own", &Negative, |hit, there| match hit.position.0 % 3 {
+                0 => None,
+                1 => Some(P::pack(P::unpack(there).map(|c| !c))),
+                _ => Some(opaque::<P>(hit)),
+            }),
             self.compare::<P>("ScreenDoor", &ScreenDoor::new(Source, 7), |hit, _| {
                 (order(hit.position) < 7).then(|| opaque::<P>(hit))
             }),
@@ -280,9 +328,15 @@ impl<K: Stroke + Debug> Strokes<K> {
 
     /// All colours in several formats.
     fn check(&self) {
-        let opaque = [self.opaque::<Rgb565>(), self.opaque::<Rgb565Be>(), self.opaque::<Gray8>()];
+        let opaque = [
+            self.opaque::<Rgb565>(),
+            self.opaque::<Rgb565Be>(),
+            self.opaque::<Rgb888>(),
+            self.opaque::<Gray8>(),
+            self.opaque::<Dithered<Rgb565>>(),
+        ];
         let blended = [self.blended::<Rgb565>(), self.blended::<Rgb888>(), self.blended::<Gray8>()];
-        assert_eq!([opaque, blended].concat().concat(), [""; 0]);
+        assert_eq!(opaque.into_iter().chain(blended).flatten().collect::<Vec<_>>(), [""; 0]);
     }
 }
 
@@ -349,4 +403,26 @@ fn lines_leave_nothing_but_depth() {
 #[test]
 fn smooth_lines_leave_nothing_but_depth() {
     assert_eq!(Strokes::new(Smooth::new(Pixels::from_bits(700))).depth_only::<Rgb565>(), [""; 0]);
+}
+
+/// White over black shows each 256th of coverage.
+#[test]
+fn smooth_lines_leave_depth_where_they_cover_something_and_nowhere_else() {
+    let mut rng = Rng::new(16);
+    let (mut covered, mut faint) = (0, 0);
+    for _ in 0..200 {
+        let [a, b] = [(); 2].map(|()| Vec3::from_milli(rng.between(-1100, 1100), rng.between(-1100, 1100), 500));
+        let width = rng.pick(&[1, 3, 20, 200, 700]);
+        let (colors, depths, _) = whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| {
+            let (shader, stroke) = (Flat::unlit(Rgb888::WHITE), Smooth::new(Pixels::from_bits(width)));
+            scene.draw_lines(&line(&[a, b]), &Projective::IDENTITY, &shader, &stroke);
+        });
+        for (k, (color, depth)) in colors.iter().zip(depths).enumerate() {
+            let case = format!("seed {}: {a:?} {b:?}, width {width}, pixel {k}: {color:?}, {depth}", rng.seed());
+            assert_eq!(*color != [0; 3], depth != u16::MAX, "{case}");
+            covered += u32::from(color[0] == 255);
+            faint += u32::from((1..9).contains(&color[0]));
+        }
+    }
+    assert!(covered > 500 && faint > 500, "{covered} pixels covered, {faint} pixels hardly covered");
 }

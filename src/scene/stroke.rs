@@ -66,6 +66,9 @@ pub struct Thick(u32);
 /// Draws a line as [`Thick`] does, but smoothly, in any width down to parts of a pixel. A pixel is covered as much as
 /// the line covers a box of one pixel around its centre, and is blended accordingly with what is there.
 ///
+/// A pixel that is covered by less than 1/256 is left as it is, with its depth. Every other pixel gets the colour that
+/// the shader's [`paint`](Shader::paint) gives it, as far as it is covered, and the whole depth.
+///
 /// Draw it after everything that is farther away. Consider not to write depths: a pixel at the rim hides later draws as
 /// much as a pixel inside does. Colours and depths are stretched, so that they reach half a pixel beyond either end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -536,13 +539,15 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
             let across = outer.wrapping_sub(distance.wrapping_abs()).min(most) >> 12;
             let along = (way.wrapping_add(1 << 15)).min(end.wrapping_sub(way)).min(longest) >> 8;
             let depth = (z >> 16) as u16;
-            if across > 0 && along > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
+            // A pixel that is covered by less than 1/256 has no fragment, and keeps its depth.
+            let part = if across > 0 && along > 0 { (across * along) >> 8 } else { 0 };
+            if part > 0 && (!D::ENABLED || test.passes(depth, *stored)) {
                 let fragment = Fragment { flat, varyings: &varyings, position, depth, side, setup };
                 // A shader that blends does so with the pixel that is there.
                 let mut painted = *color;
                 if self.shader.paint(&fragment, &mut painted) {
                     test.write(depth, stored);
-                    *color = mix::<P>(*color, painted, (across * along) >> 8);
+                    *color = mix::<P>(*color, painted, part);
                 }
             }
             position.0 = position.0.wrapping_add(1);

@@ -123,7 +123,7 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     fn fragment(&self, fragment: &Fragment<'_, Self::Varyings, Self::Setup>) -> Option<P::Raw>;
 
     /// Colours a pixel and returns `true`, or discards the fragment and returns `false`. Only shaders that blend with
-    /// the pixel that is there have to override it.
+    /// the pixel that is there, or leave it as it is and write its depth, have to override it.
     #[inline(always)]
     fn paint(&self, fragment: &Fragment<'_, Self::Varyings, Self::Setup>, pixel: &mut P::Raw) -> bool {
         match self.fragment(fragment) {
@@ -135,7 +135,9 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         }
     }
 
-    /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster.
+    /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster. The pixels and
+    /// depths have to be those that [`paint`](Self::paint) leaves, because [`Smooth`](crate::scene::Smooth) strokes call
+    /// `paint` for each pixel, and never this function.
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         draw_fragments(self, span, test);
