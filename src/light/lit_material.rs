@@ -167,6 +167,22 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
         self.two_sided
     }
 
+    /// Returns whether the colour at a point depends on where the point is: point lights do, and highlights that are
+    /// seen from close by.
+    #[inline(always)]
+    pub(crate) const fn depends_on_place(&self) -> bool {
+        P > 0 || (D > 0 && self.shininess != 0 && self.is_seen_from_close_by())
+    }
+
+    /// Returns whether the direction to the viewer differs from point to point.
+    #[inline(always)]
+    pub(crate) const fn is_seen_from_close_by(&self) -> bool {
+        matches!(self.viewer, LitViewer::At { .. })
+    }
+
+    /// Returns whether there are lights that a normal matters to.
+    pub(crate) const HAS_LIGHTS: bool = D > 0 || P > 0;
+
     /// Returns a position of the mesh in 2⁻¹⁴ local units: below 2²⁹.
     #[inline]
     pub(crate) fn fine_position(&self, position: Vec3) -> [i32; 3] {
@@ -253,7 +269,7 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     pub(crate) fn shade_at_inlined(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> LitColor {
         let mut look = self.look(normal);
         let seen_from_afar = matches!(self.viewer, LitViewer::Toward(_));
-        if self.shininess != 0 {
+        if self.shininess != 0 && self.depends_on_place() {
             look.viewer = self.viewer(p);
         }
         for light in &self.directional {

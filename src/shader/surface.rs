@@ -127,8 +127,9 @@ impl Surface for Sunlit {
 /// viewer, because the vertex may belong to faces of both sides.
 impl<const D: usize, const P: usize> Surface for LitMaterial<D, P> {
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
-        let p = self.local(vertex.position());
         let mut normal = long(vertex.normal());
+        let turns_by_place = self.is_two_sided() && self.is_seen_from_close_by();
+        let p = if self.depends_on_place() || turns_by_place { self.local(vertex.position()) } else { [0; 3] };
         if self.is_two_sided() {
             normal = self.towards_viewer(normal, p);
         }
@@ -136,13 +137,24 @@ impl<const D: usize, const P: usize> Surface for LitMaterial<D, P> {
     }
 
     fn face(&self, face: &Face<'_>) -> Rgb888 {
-        let mut normal = long(face.normal());
+        // Without lights, no normal is computed; where no light needs it, no middle of the face.
+        let mut normal = if Self::HAS_LIGHTS { long(face.normal()) } else { [0; 3] };
         if self.is_two_sided() && face.side() == Side::Back {
             normal = normal.map(|c| -c);
         }
+        let middle = if self.depends_on_place() { self.middle(face) } else { [0; 3] };
+        self.shade_at(&normal, &middle, face.provoking().color()).into()
+    }
+}
+
+impl<const D: usize, const P: usize> LitMaterial<D, P> {
+    /// Returns the middle of a face in local units. Out of line, so that the corners are not on the stack while light
+    /// is added up.
+    #[inline(never)]
+    fn middle(&self, face: &Face<'_>) -> [i32; 3] {
         let [a, b, c] = face.corners().map(|corner| self.local(corner.position()));
         // Thirds, near enough: 21,845 / 2¹⁶, of sums below 2¹⁷ / 2³.
         let third = |k: usize| (((a[k] + b[k] + c[k]) >> 3) * 21_845) >> 13;
-        self.shade_at(&normal, &[third(0), third(1), third(2)], face.provoking().color()).into()
+        [third(0), third(1), third(2)]
     }
 }
