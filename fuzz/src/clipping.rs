@@ -156,8 +156,11 @@ fn is_edge_on(triangle: &[[i32; 4]]) -> bool {
     a[0] * minor(1, 2) + a[1] * minor(2, 0) + a[2] * minor(0, 1) == 0
 }
 
-/// Whether each w is at least 1/1024 of the largest coordinate, or 0: the range for which a precision is stated.
+/// Whether each w is at least 1/1024 of the largest coordinate, or 0: the range for which a precision is stated. The
+/// transform has to expect any coordinates of 32 bits, so that it cuts where w is 1/8 of their last bit; corners whose
+/// coordinates are a few of these bits would show it.
 fn is_precise(vertices: &[[i32; 4]]) -> bool {
-    let extent = vertices.as_flattened().iter().fold(0, |most, c| c.unsigned_abs().max(most));
-    vertices.iter().all(|v| v[3] == 0 || v[3].unsigned_abs() >= extent >> 10)
+    let most = |values: &[i32]| values.iter().fold(0, |most, c| c.unsigned_abs().max(most));
+    let least = (most(vertices.as_flattened()) >> 10).max(1 << 10);
+    vertices.iter().all(|v| (v[3] == 0 || v[3].unsigned_abs() >= least) && most(v) >= 1 << 10)
 }

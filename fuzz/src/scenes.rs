@@ -234,7 +234,8 @@ fn polygon<F: Framebuffer, S: Shader<F::Format>>(
     let varyings = |k: usize| {
         let mut varyings = S::Varyings::ZERO;
         for (value, j) in varyings.as_mut().iter_mut().zip(0..) {
-            *value = kit.distances[(k + j) % 4];
+            // The same at all corners, or others.
+            *value = kit.distances[(k * usize::from(kit.byte & 1) + j) % 4];
         }
         varyings
     };
