@@ -116,6 +116,11 @@ pub(super) struct Progress {
     band: (u16, u16),
     /// Strips to try to record at once; 0 to draw the next one directly.
     strips: u16,
+    /// Walks that may still be given up in this frame, so that records that are too small cost little.
+    tries: u16,
+    /// Strips to draw directly before the next try to record a band, and such strips drawn so far.
+    patience: u16,
+    waited: u16,
     layout: Layout,
     /// Draws in the records.
     draws: u32,
@@ -125,7 +130,17 @@ pub(super) struct Progress {
 impl Progress {
     /// Starts a frame.
     pub(super) fn new() -> Self {
-        Self { row: 0, band: (0, 0), strips: u16::MAX, layout: Layout::default(), draws: 0, stats: Stats::default() }
+        Self {
+            row: 0,
+            band: (0, 0),
+            strips: u16::MAX,
+            tries: 0,
+            patience: 1,
+            waited: 0,
+            layout: Layout::default(),
+            draws: 0,
+            stats: Stats::default(),
+        }
     }
 
     /// Returns the first row of the next strip.
@@ -137,11 +152,20 @@ impl Progress {
     #[inline]
     fn end_strip(&mut self, rows: u16, phase: Phase) {
         if phase == Phase::Direct {
-            self.strips = 1;
+            self.waited += 1;
+            if self.waited == self.patience && self.tries > 0 {
+                (self.strips, self.patience, self.waited) = (2, 2 * self.patience, 0);
+            }
             self.stats.direct_strips = self.stats.direct_strips.wrapping_add(1);
         }
         self.row += rows;
         self.stats.strips = self.stats.strips.wrapping_add(1);
+    }
+
+    /// Gives up a band that did not fit, and goes on to half of it. A band of one strip would save nothing.
+    fn halve_band(&mut self) {
+        self.band.1 = self.band.0;
+        self.strips = if self.strips < 4 || self.tries == 0 { 0 } else { self.strips / 2 };
     }
 }
 
@@ -156,7 +180,10 @@ impl Engine<'_> {
     /// the number of the draw that differed.
     ///
     /// If the strip is not in the records, a band that begins with it is recorded first: all the rest of the screen,
-    /// or half of the band tried last, until it fits. If not even one strip fits, the strip is drawn directly.
+    /// or half of the band tried last, until it fits. If not even two strips fit, the strip is drawn directly.
+    ///
+    /// A walk that records in vain may take as long as a strip that is drawn directly. So a frame gives up two walks,
+    /// or one for eight of its strips, at most, and from try to try it draws twice as many strips directly.
     #[inline]
     pub(super) fn next_strip<F: Framebuffer>(
         &mut self,
@@ -186,7 +213,7 @@ impl Engine<'_> {
     /// Decides what the next walk does, and makes the records ready for it.
     #[inline(never)]
     fn begin_walk(&mut self, progress: &mut Progress, rows: u16) -> Phase {
-        let Progress { row, band, strips, layout, .. } = progress;
+        let Progress { row, band, strips, tries, layout, .. } = progress;
         let mut records = Records::new(self.records, layout);
         if *row < band.1 {
             records.begin_replay(self.grid.strips.of(u32::from(*row - band.0)));
@@ -197,7 +224,11 @@ impl Engine<'_> {
             records.clear();
             return Phase::Direct;
         }
-        *strips = self.grid.strips_from(*row).min(*strips);
+        let rest = self.grid.strips_from(*row);
+        if *strips == u16::MAX {
+            *tries = (rest >> 3).max(2);
+        }
+        *strips = rest.min(*strips);
         *band = self.grid.band(*row, *strips);
         records.begin_band(usize::from(*strips));
         Phase::Record
@@ -226,7 +257,8 @@ impl Engine<'_> {
             changed: None,
         };
         // Records too short for the lists have overflowed already, and need no walk.
-        if !scene.overflowed() {
+        let ready = !scene.overflowed();
+        if ready {
             scene.stats.walks = scene.stats.walks.wrapping_add(1);
             draw(&mut scene);
         }
@@ -237,8 +269,8 @@ impl Engine<'_> {
         match scene.phase {
             Phase::Record if scene.overflowed() => {
                 scene.stats.overflows = scene.stats.overflows.wrapping_add(1);
-                progress.strips /= 2;
-                progress.band.1 = progress.band.0;
+                progress.tries = progress.tries.saturating_sub(ready.into());
+                progress.halve_band();
             }
             Phase::Record => progress.draws = draws,
             Phase::Replay if draws != progress.draws => return changed.or(Some(draws.min(progress.draws))),

@@ -2,7 +2,7 @@
 //! and go out as triangles on the screen, drawn or recorded. The part that is the same for all shaders is in `scan`.
 
 use super::painter::RasterHooks;
-use super::scan::{PendingFace, Scan, ScanEvent, ScreenTriangle};
+use super::scan::{PendingFace, Scan, ScanEvent, ScreenTriangle, may_reach};
 use super::scene::Scene;
 use super::state::{Culling, State};
 use crate::math::Projective;
@@ -26,6 +26,9 @@ struct FanCorner {
     /// See [`inverse_w`]; 0 if no varying is perspective-correct.
     inverse_w: u32,
 }
+
+/// Number of a corner that is not in the records. Vertices have lower numbers.
+const UNSTORED: u16 = u16::MAX;
 
 type ClampedSlabs<F, S> = fn(&mut Assembly<'_, '_, F, S>, &mut ScreenTriangle, Outcode);
 
@@ -198,10 +201,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         } else if common != 0 {
             self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             ScanEvent::Done
-        } else {
+        } else if self.may_reach(&triangle.corners) {
             self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
             ScanEvent::NeedsClip(Outcode(all))
+        } else {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            ScanEvent::Done
         }
+    }
+
+    /// Returns whether a triangle that has to be clipped may cover pixels of this strip or band.
+    #[inline(never)]
+    fn may_reach(&self, [i, j, k]: &[u16; 3]) -> bool {
+        let corner = |index: &u16| self.transformed(usize::from(*index));
+        may_reach(&self.clip, 0, &[corner(i), corner(j), corner(k)])
     }
 
     /// Shades the face of a single triangle on the screen, stage 7, and records or draws the triangle.
@@ -298,22 +311,29 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
         let mut corners = Vec::<FanCorner, N>::new();
         self.clipped::<N>(triangle.corners, codes, slab, &mut corners);
         let recording = self.scene.is_recording();
-        let mut indices = [0; 3];
+        // Numbers of the first, the previous and the current corner in the records. A corner is stored when the first
+        // triangle with it is recorded, so that those in other strips take no words.
+        let mut indices = [UNSTORED; 3];
         for (k, corner) in corners.iter().enumerate() {
             triangle.v[2] = corner.vertex.screen();
-            if recording {
-                indices[2] = self.store_corner(triangle.corners, corner);
-            }
             if k >= 2 && triangle.passes_culling(self.culling, &self.clip, self.scene.stats) {
+                let (Some(first), Some(previous)) = (corners.first(), corners.get(k - 1)) else { return };
+                let fan = [first, previous, corner];
                 if recording {
+                    for (index, corner) in indices.iter_mut().zip(fan) {
+                        if *index == UNSTORED {
+                            *index = self.store_corner(triangle.corners, corner);
+                        }
+                    }
                     self.record(triangle.row, indices, self.face(triangle));
-                } else if let (Some(first), Some(previous)) = (corners.first(), corners.get(k - 1)) {
-                    self.draw_corners(triangle, [first, previous, corner]);
+                } else {
+                    self.draw_corners(triangle, fan);
                 }
             }
             // The first corner stays. The last corner becomes the second one of the next triangle.
             let place = usize::from(k > 0);
             (triangle.v[place], indices[place]) = (triangle.v[2], indices[2]);
+            indices[2] = UNSTORED;
         }
     }
 

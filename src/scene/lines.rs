@@ -7,6 +7,7 @@
 
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::{Painter, RasterHooks};
+use super::scan::may_reach;
 use super::scene::{Draw, Phase, Primitives, Scene};
 use super::state::State;
 use super::stroke::{Stroke, block};
@@ -287,6 +288,10 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
             self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
             return;
         }
+        if !self.may_reach(corners, stroke.reach()) {
+            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+            return;
+        }
         self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
         let all = Outcode(codes[0] | codes[1]);
         for slab in [DepthSlab::Inside].into_iter().chain(self.draw.state.range.clamped_slabs(all)) {
@@ -294,6 +299,13 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
                 self.draw(&ends, corners, number, stroke);
             }
         }
+    }
+
+    /// Returns whether a line that has to be cut may cover pixels of this strip.
+    #[inline(never)]
+    fn may_reach(&mut self, corners: [u16; 2], reach: i32) -> bool {
+        let assembly = self.assembly();
+        may_reach(&assembly.clip, reach, &corners.map(|index| assembly.transformed(usize::from(index))))
     }
 
     /// Cuts a line to one slab of depth, and returns the ends of the remaining part on the screen. Not inlined, so that

@@ -5,7 +5,7 @@ use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
 use crate::raster::{PixelRect, pixel_rect};
 use crate::target::{PackedVertex, Records, Stats, StripRows};
-use crate::vertex::{Outcode, ScreenVertex, signed_area, small};
+use crate::vertex::{ClipVertex, Outcode, ScreenVertex, signed_area, small};
 use core::ops::Range;
 
 /// A pass over the triangles of a mesh: its position, and the triangle that it stopped at.
@@ -108,6 +108,34 @@ fn small_sides(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
     let [bx, by, cx, cy] = [(b[0] >> 8) - ax, (b[1] >> 8) - ay, (c[0] >> 8) - ax, (c[1] >> 8) - ay];
     let far = a[0].wrapping_add(1 << 30) | a[1].wrapping_add(1 << 30);
     if far >= 0 && small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
+}
+
+/// Returns whether a triangle in clip space may cover pixels of a rectangle, or up to `reach` px away from it. Looks at
+/// its corners only, and errs on the side of `true`: so that triangles and lines are cut only in strips that they
+/// reach.
+///
+/// # Format
+/// If 512 x < left w holds at all corners, it holds all over the triangle, whatever the signs of w are, and also for
+/// the part in front of the eye: this part is left of a column. Both sides are divided by 2⁷, so that they are below
+/// 2⁵⁷ and 2⁶². The bits that w loses move a border by at most border · 2⁷ / w: 1/2 px on the screen. One pixel more is
+/// left for that, and for what clipping and snapping round.
+#[inline(never)]
+pub(super) fn may_reach(clip: &PixelRect, reach: i32, corners: &[ClipVertex]) -> bool {
+    let mut sides = [false; 4];
+    let reach = reach + 1;
+    let borders = [clip.x.start - reach, clip.x.end + reach, clip.y.start - reach, clip.y.end + reach];
+    if borders.iter().any(|border| border.abs() > 1 << 14) {
+        return true;
+    }
+    for vertex in corners {
+        let w = vertex.w >> 7;
+        let along = [vertex.x, vertex.x, vertex.y, vertex.y];
+        for (k, ((inside, border), value)) in sides.iter_mut().zip(&borders).zip(along).enumerate() {
+            let beyond = (value << 2) - i64::from(*border) * w;
+            *inside |= if k & 1 == 0 { beyond >= 0 } else { beyond <= 0 };
+        }
+    }
+    sides == [true; 4] && !clip.is_empty()
 }
 
 /// A rectangle to the right of all triangles.

@@ -31,7 +31,8 @@ pub struct Stats {
     pub back_facing: u32,
     /// Triangles without area on the screen.
     pub degenerate: u32,
-    /// Triangles that are all outside of the view, or of the strips at hand; lines outside of the view.
+    /// Triangles that are all outside of the view, or of the strips at hand; lines outside of the view, and lines to be
+    /// cut that are outside of the strip.
     pub outside: u32,
     /// Triangles that cover no pixel centre.
     pub empty: u32,
