@@ -6,6 +6,7 @@
 use super::lit_material::{LitColors, LitDirection, LitMaterial, LitPoint, LitViewer, short};
 use super::local_space::ToLocal;
 use super::material::Material;
+use super::uneven::{NormalMatrix, moved};
 use crate::color::channels;
 use crate::math::{Affine, Scalar, Vec3, unit_vector};
 use crate::mesh::Bounds;
@@ -103,8 +104,11 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
     /// Puts the lights on a material of a mesh that `model` brings into the lights' space, and whose positions are in
     /// `bounds` ([`Mesh::bounds`](crate::mesh::Mesh::bounds)).
     ///
-    /// `model` may rotate, move and scale evenly. This takes some thousand instructions: call it outside of the closure
-    /// that draws a frame, which runs once per strip where there are no records.
+    /// `model` may be any transform. One that does more than rotate, move, mirror and scale evenly takes some hundred
+    /// instructions more per vertex, because it turns normals otherwise than positions.
+    ///
+    /// This function takes some thousand instructions: call it outside of the closure that draws a frame, which runs
+    /// once per strip where there are no records.
     ///
     /// # Format
     /// Directions within 2⁻¹⁴; positions of lights within 2⁻¹⁵ of the extent of the mesh, and at most 16,384 extents
@@ -116,7 +120,12 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
 
     fn put_on(&self, material: &Material, model: &Affine, bounds: &Bounds) -> LitMaterial<D, P> {
         const { assert!(D < 1 << 13 && P < 1 << 13, "at most 8,191 lights of a kind: their sum fits 31 bits") };
-        let space = ToLocal::new(model, bounds);
+        let normals = NormalMatrix::new(model);
+        let space = match normals {
+            None => ToLocal::new(model, bounds),
+            // Normals and positions are brought to the lights.
+            Some(_) => ToLocal::new(&Affine::IDENTITY, &moved(bounds, model)),
+        };
         let colors = |light: Rgb888| LitColors {
             diffuse: product(material.matte.diffuse, channels(light)),
             specular: product(material.specular, channels(light)),
@@ -153,6 +162,8 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
             two_sided: material.two_sided,
             vertex_colors: material.matte.vertex_colors,
             space: space.local(),
+            normals,
+            model: *model,
         }
     }
 }

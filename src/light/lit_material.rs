@@ -13,7 +13,8 @@
 use super::lit_color::{LitColor, WHITE};
 use super::local_space::LocalSpace;
 use super::normal::{ONE, cosine, long};
-use crate::math::{Vec3, unit_vector};
+use super::uneven::{NormalMatrix, turned};
+use crate::math::{Affine, Vec3, unit_vector};
 
 /// A [`Material`](crate::light::Material) under a [`Lighting`](crate::light::Lighting), in a mesh's own space; made by
 /// [`Lighting::on`](crate::light::Lighting::on).
@@ -29,6 +30,9 @@ pub struct LitMaterial<const D: usize, const P: usize> {
     pub(super) two_sided: bool,
     pub(super) vertex_colors: bool,
     pub(super) space: LocalSpace,
+    /// Brings normals to the lights, if the lights could not be brought to them; and positions, by the model.
+    pub(super) normals: Option<NormalMatrix>,
+    pub(super) model: Affine,
 }
 
 /// A vector in 2.14.
@@ -186,7 +190,18 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// Returns a position of the mesh in 2⁻¹⁴ local units: below 2²⁹.
     #[inline]
     pub(crate) fn fine_position(&self, position: Vec3) -> [i32; 3] {
-        self.space.fine(position)
+        match self.normals {
+            None => self.space.fine(position),
+            Some(_) => self.space.fine(self.model.transform_point(position)),
+        }
+    }
+
+    /// Returns the unit normal to shade, 2.14, for a unit normal of the mesh. It is the normal itself if the model
+    /// scales evenly.
+    #[inline]
+    #[must_use]
+    pub fn turned(&self, normal: [i16; 3]) -> [i16; 3] {
+        turned(&self.normals, normal)
     }
 
     /// Turns a normal towards the viewer, seen from the point `p` (local units) of the surface: for a vertex that
@@ -225,7 +240,7 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// [`vertex_colors`](crate::light::Material::vertex_colors).
     ///
     /// # Format
-    /// `normal` in object space, 2.14, of length 1.
+    /// `normal` as [`turned`](Self::turned) returns it, 2.14, of length 1.
     ///
     /// [`Viewer::At`]: crate::light::Viewer::At
     #[inline]
@@ -257,7 +272,7 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
     /// [`vertex_colors`](crate::light::Material::vertex_colors).
     ///
     /// # Format
-    /// `normal` in object space, 2.14, of length 1.
+    /// `normal` as [`turned`](Self::turned) returns it, 2.14, of length 1.
     #[inline(never)]
     #[must_use]
     pub fn shade_at(&self, normal: &[i32; 3], p: &[i32; 3], color: [u8; 3]) -> LitColor {

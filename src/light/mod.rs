@@ -79,6 +79,7 @@ mod local_space;
 mod material;
 mod normal;
 mod sun;
+mod uneven;
 mod unlit;
 
 pub use lighting::{DirectionalLight, Lighting, PointLight, Viewer};
@@ -88,4 +89,5 @@ pub use material::{Material, Matte};
 pub use normal::NORMAL_ONE;
 pub(crate) use normal::long;
 pub use sun::{Sun, Sunlit};
+pub(crate) use uneven::{NormalMatrix, turned};
 pub use unlit::Unlit;

@@ -23,9 +23,9 @@ impl<F: Framebuffer> Scene<'_, F> {
         self.target_at(0, DepthOff)
     }
 
-    /// Returns an embedded-graphics target at a depth. A pixel is drawn where nothing is nearer than this depth, and the
-    /// depth buffer then takes this depth. So drawings at one depth cover each other in their order, as a letter covers
-    /// its background.
+    /// Returns an embedded-graphics target at a depth. A pixel is drawn where nothing is nearer than this depth, and
+    /// the depth buffer then takes this depth. So drawings at one depth cover each other in their order, as a letter
+    /// covers its background.
     ///
     /// [`project`](Self::project) tells the depth of a point. Without a depth buffer, this is
     /// [`overlay`](Self::overlay).

@@ -1,6 +1,7 @@
 //! Material captures: a picture of a lit ball, from which a surface takes the colour of its normal.
 
 use crate::color::PixelFormat;
+use crate::light::{NormalMatrix, turned};
 use crate::math::{Affine, Vec3};
 use crate::span::{Fragment, Shader};
 use crate::vertex::{VertexRef, VertexShader};
@@ -12,23 +13,25 @@ use crate::vertex::{VertexRef, VertexShader};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Matcap<'a, T: PixelFormat, const N: usize> {
     picture: &'a [[T::Raw; N]; N],
-    /// Directions to the right and down in eye space, seen from object space, 2.14.
+    /// Directions to the right and down in eye space, seen from object space, 2.14; from eye space if normals are
+    /// brought there.
     right: [i32; 3],
     down: [i32; 3],
+    normals: Option<NormalMatrix>,
 }
 
 impl<'a, T: PixelFormat, const N: usize> Matcap<'a, T, N> {
-    /// Returns the shader of a picture for a mesh that `model` (which may rotate, move and scale evenly) brings into
-    /// eye space.
+    /// Returns the shader of a picture for a mesh that `model` (which may be any transform) brings into eye space.
     #[must_use]
     pub fn new(picture: &'a [[T::Raw; N]; N], model: &Affine) -> Self {
         const { assert!(N.is_power_of_two() && N <= 4096, "the side of a matcap is a power of two, up to 4096") };
-        let [x, y, _] = model.to_rows();
+        let normals = NormalMatrix::new(model);
+        let [x, y, _] = if normals.is_some() { Affine::IDENTITY.to_rows() } else { model.to_rows() };
         let unit = |row: [i32; 4], sign: i32| {
             let row = Vec3::from_bits([row[0], row[1], row[2]]).normalized().unwrap_or(Vec3::ZERO);
             row.to_bits().map(|c| sign * ((c + 2) >> 2))
         };
-        Self { picture, right: unit(x, 1), down: unit(y, -1) }
+        Self { picture, right: unit(x, 1), down: unit(y, -1), normals }
     }
 }
 
@@ -51,7 +54,8 @@ impl<T: PixelFormat, const N: usize> VertexShader for Matcap<'_, T, N> {
     const ZERO_BITS: u32 = 16;
 
     fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 2] {
-        [place(vertex.normal(), self.right), place(vertex.normal(), self.down)]
+        let normal = turned(&self.normals, vertex.normal());
+        [place(normal, self.right), place(normal, self.down)]
     }
 
     #[inline]

@@ -105,7 +105,7 @@ impl<const D: usize> VertexShader for Phong<D> {
     const ZERO_BITS: u32 = 16;
 
     fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 3] {
-        varying(vertex.normal())
+        varying(self.material.turned(vertex.normal()))
     }
 
     fn face(&self, face: &Face<'_>) -> u32 {
@@ -148,7 +148,7 @@ impl<const D: usize, const P: usize> VertexShader for PhongNear<D, P> {
     const ZERO_BITS: u32 = 16;
 
     fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 6] {
-        let [x, y, z] = varying(vertex.normal());
+        let [x, y, z] = varying(self.material.turned(vertex.normal()));
         let [px, py, pz] = self.material.fine_position(vertex.position());
         // Below 2²⁹; rounded to 14 bits.
         let rounded = |c: i32| (c + (1 << 15)) & !0xFFFF;

@@ -103,18 +103,18 @@ impl Surface for Sunlit {
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
         if self.has_vertex_colors() {
-            self.colored(vertex.color()).shade(vertex.normal())
+            self.colored(vertex.color()).shade(self.turned(vertex.normal()))
         } else {
-            self.shade(vertex.normal())
+            self.shade(self.turned(vertex.normal()))
         }
     }
 
     #[inline]
     fn face(&self, face: &Face<'_>) -> Rgb888 {
         let word = if self.has_vertex_colors() {
-            self.colored(face.provoking().color()).shade_word(face.normal())
+            self.colored(face.provoking().color()).shade_word(self.turned(face.normal()))
         } else {
-            self.shade_word(face.normal())
+            self.shade_word(self.turned(face.normal()))
         };
         Rgb888::from(RawU24::new(word))
     }
@@ -127,7 +127,7 @@ impl Surface for Sunlit {
 /// viewer, because the vertex may belong to faces of both sides.
 impl<const D: usize, const P: usize> Surface for LitMaterial<D, P> {
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
-        let mut normal = long(vertex.normal());
+        let mut normal = long(self.turned(vertex.normal()));
         let turns_by_place = self.is_two_sided() && self.is_seen_from_close_by();
         let p = if self.depends_on_place() || turns_by_place { self.local(vertex.position()) } else { [0; 3] };
         if self.is_two_sided() {
@@ -138,7 +138,7 @@ impl<const D: usize, const P: usize> Surface for LitMaterial<D, P> {
 
     fn face(&self, face: &Face<'_>) -> Rgb888 {
         // Without lights, no normal is computed; where no light needs it, no middle of the face.
-        let mut normal = if Self::HAS_LIGHTS { long(face.normal()) } else { [0; 3] };
+        let mut normal = if Self::HAS_LIGHTS { long(self.turned(face.normal())) } else { [0; 3] };
         if self.is_two_sided() && face.side() == Side::Back {
             normal = normal.map(|c| -c);
         }

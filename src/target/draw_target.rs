@@ -25,9 +25,9 @@ type Color<F> = <<F as Framebuffer>::Format as PixelFormat>::Color;
 /// A target for embedded-graphics, over the strip that is being drawn; from
 /// [`Scene::overlay`](crate::scene::Scene::overlay) and [`Scene::at_depth`](crate::scene::Scene::at_depth).
 ///
-/// Pixels outside of the scene's [viewport](crate::scene::Scene::set_viewport) are left as they are. The bounding box is
-/// the whole screen, whatever the viewport is. While the closure is only recorded there are no pixels, and drawing does
-/// nothing.
+/// Pixels outside of the scene's [viewport](crate::scene::Scene::set_viewport) are left as they are. The bounding box
+/// is the whole screen, whatever the viewport is. While the closure is only recorded there are no pixels, and drawing
+/// does nothing.
 #[derive(Debug)]
 pub struct Overlay<'o, F, D> {
     /// The strip's pixels; `None` while the closure is recorded.
