@@ -5,7 +5,7 @@ mod support;
 
 use reference::rng::Rng;
 use std::f64::consts::TAU;
-use support::{angle, apply, matrix, rigid, scalar, vector};
+use support::{accuracy, angle, apply, matrix, rigid, scalar, vector};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3, Wide};
 
@@ -41,7 +41,7 @@ fn sine_and_cosine_are_right_at_all_angles() {
         assert!(off((-a).sin(), -a.sin()) <= 1 && off((-a).cos(), a.cos()) <= 1, "{a:?}");
     }
     println!("worst sine or cosine is off by {:.3} · 2⁻¹⁶", worst / STEP);
-    assert!(worst <= STEP, "{worst}");
+    accuracy::check("sine, cosine", worst / STEP);
     for (degrees, sin, cos) in [(0, 0, 1), (90, 1, 0), (180, 0, -1), (270, -1, 0), (-90, -1, 0), (450, 1, 0)] {
         let a = Angle16::from_degrees(degrees);
         assert_eq!((a.sin(), a.cos()), (Scalar::from_num(sin), Scalar::from_num(cos)), "{degrees}°");
@@ -90,7 +90,7 @@ fn rotations_are_orthonormal_and_go_the_right_way() {
         worst[0] / STEP,
         worst[1] / STEP
     );
-    assert!(worst[0] <= 4.0 * STEP, "entries are within 2⁻¹⁴: {}", worst[0]);
+    accuracy::check("entry of a rotation", worst[0] / STEP);
     assert!(worst[1] <= 12.0 * STEP, "{}", worst[1]);
 
     let quarter = Angle16::from_degrees(90);
@@ -141,7 +141,7 @@ fn vectors_agree_with_f64() {
     }
     println!("worst dot, cross, length, normalized, in 2⁻¹⁶: {:?}", worst.map(|w| w / STEP));
     assert!(worst[..3].iter().all(|w| *w <= 1.01 * STEP), "rounded down to 2⁻¹⁶");
-    assert!(worst[3] <= 2.0 * STEP, "within 2⁻¹⁵");
+    accuracy::check("component of a unit vector", worst[3] / STEP);
     assert_eq!(Vec3::ZERO.normalized(), None);
     let huge = Vec3::from_bits([i32::MIN; 3]);
     assert_eq!(
@@ -254,6 +254,93 @@ fn composition_is_application_one_after_the_other() {
     assert!(worst[..2].iter().all(|w| *w <= 250.0) && worst[2] <= 500.0, "{worst:?}");
     assert_eq!(Affine::IDENTITY * Affine::translation(Vec3::X), Affine::translation(Vec3::X));
     assert_eq!(Projective::IDENTITY * Projective::IDENTITY, Projective::IDENTITY);
+}
+
+#[test]
+fn products_are_the_exact_ones_rounded_to_nearest() {
+    let mut rng = Rng::new(91);
+    let nearest = |sum: i128| ((sum + (1 << 15)) >> 16).clamp(i32::MIN.into(), i32::MAX.into()) as i32;
+    for _ in 0..20_000 {
+        let bits = rng.between(4, 31) as u32;
+        let mut vector = || Vec3::from_bits([(); 3].map(|()| rng.any_magnitude(bits)));
+        let [a, b] = [(); 2].map(|()| Affine::from_rows(vector(), vector(), vector(), vector()));
+        let p = vector();
+        let (ra, rb) = (a.to_rows(), b.to_rows());
+        let sum = |i: usize, v: [i32; 3]| (0..3).map(|k| i128::from(ra[i][k]) * i128::from(v[k])).sum::<i128>();
+        for i in 0..3 {
+            for j in 0..4 {
+                let moved = if j == 3 { i128::from(ra[i][3]) << 16 } else { 0 };
+                let exact = nearest(sum(i, [0, 1, 2].map(|k| rb[k][j])) + moved);
+                assert_eq!((a * b).to_rows()[i][j], exact, "seed {}: {a:?} {b:?}", rng.seed());
+            }
+            let moved = i128::from(ra[i][3]) << 16;
+            assert_eq!(a.transform_point(p).to_bits()[i], nearest(sum(i, p.to_bits()) + moved), "{a:?} {p:?}");
+            assert_eq!(a.transform_vector(p).to_bits()[i], nearest(sum(i, p.to_bits())), "{a:?} {p:?}");
+        }
+    }
+}
+
+/// How far products of two rows are from 0 and 1, at most.
+fn skew(a: &Affine) -> f64 {
+    let m = rows(a);
+    let product = |i: usize, j: usize| (0..3).map(|k| m[i][k] * m[j][k]).sum::<f64>() - f64::from(u8::from(i == j));
+    (0..9).map(|k| product(k / 3, k % 3).abs()).fold(0.0, f64::max)
+}
+
+#[test]
+fn a_thousand_small_turns_leave_a_rotation_and_it_can_be_made_exact_again() {
+    let (mut worst, mut kept) = (0.0_f64, 0.0_f64);
+    for seed in 0..60 {
+        let mut rng = Rng::new(seed);
+        let (mut drifting, mut straight) = (Affine::IDENTITY, Affine::IDENTITY);
+        let (axis, small) = (vector(&mut rng, 1.0), rng.between(1, 400) as u16);
+        for _ in 0..1000 {
+            let axis = if seed % 2 == 0 { axis } else { vector(&mut rng, 1.0) };
+            let step = Affine::rotation(axis, Angle16(small));
+            drifting = step * drifting;
+            straight = (step * straight).orthonormalized().expect("a rotation");
+            kept = kept.max(skew(&straight));
+        }
+        worst = worst.max(skew(&drifting));
+    }
+    accuracy::check("rotation turned 1,000 times", worst);
+    accuracy::check("rotation made orthonormal", kept / STEP);
+}
+
+#[test]
+fn orthonormalizing_keeps_the_first_row_the_plane_of_two_the_mirror_and_the_translation() {
+    let mut worst = 0.0_f64;
+    for seed in 0..3000 {
+        let mut rng = Rng::new(seed);
+        let size = (rng.unit() * 14.0 - 6.0).exp2();
+        let [x, y, z] = [(); 3].map(|()| vector(&mut rng, size));
+        let model = Affine::from_rows(x, y, z, vector(&mut rng, 9.0));
+        let (f, m) = (|v: Vec3| to_f64(v), rows(&model));
+        let cross = |a: [f64; 3], b: [f64; 3]| {
+            [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+        };
+        let normal = cross(f(x), f(y));
+        let sine = length(normal) / (length(f(x)) * length(f(y)));
+        let volume = (0..3).map(|k| normal[k] * f(z)[k]).sum::<f64>() / (length(normal) * length(f(z)));
+        // Rows that are nearly in one plane leave their order to rounding.
+        if sine < 0.1 || volume.abs() < 0.01 {
+            continue;
+        }
+        let straight = model.orthonormalized().expect("rows in different directions");
+        worst = worst.max(skew(&straight));
+        let s = rows(&straight);
+        let unit = |v: [f64; 3]| v.map(|c| c / length(v));
+        let (first, third) = (unit(f(x)), unit(normal).map(|c| c * volume.signum()));
+        for k in 0..3 {
+            assert!((s[0][k] - first[k]).abs() <= 2.0 * STEP, "seed {seed}: {model:?} {straight:?}");
+            assert!((s[2][k] - third[k]).abs() <= 4.0 * STEP / sine, "seed {seed}: {model:?} {straight:?}");
+            assert_eq!(s[k][3], m[k][3]);
+        }
+    }
+    accuracy::check("any matrix made orthonormal", worst / STEP);
+    assert_eq!(Affine::scale(Scalar::ZERO).orthonormalized(), None);
+    assert_eq!(Affine::from_rows(Vec3::X, Vec3::X, Vec3::Y, Vec3::ZERO).orthonormalized(), None);
+    assert_eq!(Affine::scale(-Scalar::ONE).orthonormalized(), Some(Affine::scale(-Scalar::ONE)));
 }
 
 #[test]
