@@ -49,6 +49,7 @@
 //! | draw text, images and shapes among meshes | [`Scene::overlay`], [`Scene::at_depth`], [`Scene::canvas`] |
 //! | find a point of the world on the screen, and back | [`Scene::project`], [`Scene::unproject`] |
 //! | choose the format of pixels, or dither | [`color`], [`target::Packer`] |
+//! | know how exact positions, depths, colours and light are | `docs/accuracy.md`: bounds and worst errors seen |
 //!
 //! # The pipeline
 //!

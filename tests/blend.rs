@@ -78,6 +78,7 @@ fn pixels_of_565_mix_and_add_as_their_channels_would_for_all_values() {
     }
     println!("mixtures of RGB565 are within {worst:.3} steps of a channel of the exact ones");
     assert!(worst < 1.5, "{worst}");
+    support::accuracy::check("mixture of two colours in RGB565", worst);
 }
 
 #[test]
@@ -264,6 +265,7 @@ fn left(curve: FogCurve, distance: f64) -> f64 {
 #[test]
 fn fog_leaves_what_it_should_at_every_depth() {
     let scalar = |v: f64| Scalar::from_num(v);
+    let mut worst_of_all = 0.0_f64;
     for (near, far) in [(1.0, 12.0), (0.1, 100.0), (0.02, 50.0), (1.0, 1000.0), (5.0, 20_000.0)] {
         let (n, f) = (f64::from(scalar(near)), f64::from(scalar(far)));
         for (curve, allowed, what) in [
@@ -283,10 +285,12 @@ fn fog_leaves_what_it_should_at_every_depth() {
                 let exact = 255.0 * left(curve, n + z * (f - n));
                 worst_flat = worst_flat.max((f64::from(flat.transmittance(depth)) - exact).abs());
             }
+            worst_of_all = worst_of_all.max(worst).max(worst_flat);
             println!("{what} fog from {near} to {far}: {worst:.3} of 255, orthographic {worst_flat:.3}");
             assert!(worst <= allowed && worst_flat <= allowed, "{what}: {near}, {far}");
         }
     }
+    support::accuracy::check("light that fog leaves", worst_of_all);
     assert!(FogTable::perspective(Scalar::ZERO, Scalar::ONE, FogCurve::Exponential { density: Scalar::ONE }).is_err());
     assert!(FogTable::orthographic(Scalar::ONE, Scalar::ONE, FogCurve::Exponential { density: Scalar::ONE }).is_err());
 }

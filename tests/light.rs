@@ -5,7 +5,7 @@ mod support;
 
 use core::cell::Cell;
 use reference::rng::Rng;
-use support::{strips, whole};
+use support::{accuracy, strips, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::light::{DirectionalLight, Lighting, LitColor, Material, Matte, PointLight, Sun, Unlit, Viewer};
@@ -176,6 +176,7 @@ fn cube(center: V, half: f64) -> [Vec3; 3] {
 fn sampled_normals_are_lit_as_in_double_precision() {
     let seed = 0x11c7;
     let mut rng = Rng::new(seed);
+    let mut worst = [[0.0_f64; 2]; 2];
     for (scale, what) in [(1.0, "models of scale 1"), (0.125, "models of scale 1/8"), (30.0, "models of scale 30")] {
         for shininess in [0, 1, 5, 32, 128] {
             let (mut far, mut near) = (Errors::default(), Errors::default());
@@ -235,6 +236,9 @@ fn sampled_normals_are_lit_as_in_double_precision() {
                 }
             }
             assert!(skipped < 1000, "{skipped}");
+            if let Some(row) = [0, 128].iter().position(|s| *s == shininess) {
+                worst[row] = [worst[row][0].max(far.worst), worst[row][1].max(near.worst)];
+            }
             let s = f64::from(shininess);
             // Matrices of 16.16 scale by an eighth not quite evenly: 1/8192 off.
             let uneven = if scale < 1.0 { 0.5 } else { 0.0 };
@@ -250,6 +254,10 @@ fn sampled_normals_are_lit_as_in_double_precision() {
             );
         }
     }
+    accuracy::check("light of far lamps, matte", worst[0][0]);
+    accuracy::check("light of near lamps, matte", worst[0][1]);
+    accuracy::check("light of far lamps, shininess 128", worst[1][0]);
+    accuracy::check("light of near lamps, shininess 128", worst[1][1]);
 }
 
 fn without_points<const D: usize, const P: usize>(lighting: &Lighting<D, P>) -> Lighting<D, 0> {
@@ -440,31 +448,33 @@ fn two_sided_materials_light_their_backs() {
 
 /// Colours of a surface at vertices that have these normals.
 fn at_vertices(surface: &impl Surface, normals: &[[i16; 3]; 4]) -> [LitColor; 4] {
-    /// A shader that keeps what it is told.
-    struct Seen<'a, S>(&'a S, Cell<[LitColor; 4]>);
+    /// A shader that keeps what it is told. Without varyings, vertices would not be asked for.
+    struct Seen<'a, S>(&'a S, Cell<[LitColor; 4]>, Cell<u32>);
 
     impl<S: Surface> VertexShader for Seen<'_, S> {
-        type Varyings = [i32; 0];
+        type Varyings = [i32; 1];
 
-        fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 0] {
+        fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 1] {
             let mut all = self.1.get();
             all[vertex.index()] = self.0.vertex(vertex);
             self.1.set(all);
-            []
+            self.2.set(self.2.get() + 1);
+            [0]
         }
     }
 
     impl<S: Surface> Shader<Rgb888> for Seen<'_, S> {
         type Setup = ();
 
-        fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<[u8; 3]> {
+        fn fragment(&self, _: &Fragment<'_, [i32; 1]>) -> Option<[u8; 3]> {
             None
         }
     }
 
-    let seen = Seen(surface, Cell::default());
+    let seen = Seen(surface, Cell::default(), Cell::default());
     let mesh = square(normals, &COLORS);
     whole::<Rgb888>(SCREEN, Rgb888::BLACK, |scene| scene.draw_with(BOTH, &mesh, &Projective::IDENTITY, &seen));
+    assert!(seen.2.get() >= 4, "only {} vertices were asked for", seen.2.get());
     seen.1.get()
 }
 
@@ -486,6 +496,139 @@ fn lights_of_models_scaled_far_down_keep_their_direction() {
             }
         }
     }
+}
+
+/// A model with its columns' lengths in any ratio up to 16, sheared, mirrored or flattened at times.
+fn uneven_model(rng: &mut Rng) -> Affine {
+    let mut factor = || Scalar::from_num(2f64.powf(4.0 * rng.unit() - 2.0) * if rng.one_in(4) { -1.0 } else { 1.0 });
+    let scale = Affine::scale_axes(Vec3::new(factor(), factor(), factor()));
+    let mut turn = || Affine::rotation(fixed(random_vector(rng, 1.0)), Angle16(word(rng) as u16));
+    Affine::translation(Vec3::from_ints(1, -2, 3)) * turn() * scale * turn()
+}
+
+/// The normal in the lights' space, and the rate at which the model shortens it: 1 for the longest.
+fn turned_normal(model: &Affine, n: [i16; 3]) -> (V, f64) {
+    let m = model.to_rows().map(|row| row.map(|c| f64::from(c) / 65_536.0));
+    let cross =
+        |a: [f64; 4], b: [f64; 4]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let cofactors = [cross(m[1], m[2]), cross(m[2], m[0]), cross(m[0], m[1])];
+    let determinant = dot([m[0][0], m[0][1], m[0][2]], cofactors[0]);
+    let turned = cofactors.map(|row| dot(row, n.map(f64::from)) / 16_384.0 * determinant.signum());
+    let widest = cofactors.iter().flatten().fold(0.0, |widest: f64, c| widest.max(c.abs()));
+    (unit(turned), dot(turned, turned).sqrt() / widest)
+}
+
+#[test]
+fn light_is_right_on_models_of_any_scale() {
+    let seed = 0x5ca1e;
+    let mut rng = Rng::new(seed);
+    let (mut sun_errors, mut lamp_errors) = (Errors::default(), Errors::default());
+    let mut worst_normal = 0.0_f64;
+    for case in 0..300 {
+        let model = if case == 0 { Affine::scale_axes(Vec3::from_ints(4, 1, 1)) } else { uneven_model(&mut rng) };
+        let normals = [(); 4].map(|()| quantized(random_vector(&mut rng, 1.0)));
+        let direction = fixed(random_vector(&mut rng, 9.0));
+        let sun = Sun::new(direction, Rgb888::WHITE, Rgb888::BLACK).on(&Matte::WHITE, &model);
+        let middle = apply(&model, [0.0, 0.0, 0.35], 1.0);
+        let lighting = Lighting {
+            ambient: Rgb888::new(30, 20, 10),
+            directional: [DirectionalLight::new(direction, Rgb888::new(90, 120, 100))],
+            points: [PointLight::new(
+                fixed(plus(middle, random_vector(&mut rng, 6.0))),
+                Rgb888::new(100, 90, 120),
+                Scalar::from_num(9),
+            )],
+            viewer: Viewer::At(fixed(plus(middle, times(unit(random_vector(&mut rng, 1.0)), 12.0)))),
+        };
+        let paint = Paint {
+            ambient: [200; 3],
+            diffuse: [250, 200, 150],
+            specular: [90; 3],
+            shininess: 8,
+            vertex_colors: false,
+        };
+        let mesh = square(&normals, &COLORS);
+        let lit = lighting.on(paint.material(), &model, mesh.bounds());
+        let found = [at_vertices(&sun, &normals), at_vertices(&lit, &normals)].map(|all| all.map(|c| c.to_bits()));
+        for k in 0..4 {
+            let (normal, length) = turned_normal(&model, normals[k]);
+            // Entries of the normals' matrix are within 2⁻¹⁴ of the widest one.
+            if length < 1.0 / 8.0 {
+                continue;
+            }
+            for (found, exact) in lit.turned(normals[k]).into_iter().zip(normal) {
+                // A model that turned out to be even takes normals as they are.
+                if lit.turned(normals[k]) != normals[k] {
+                    worst_normal = worst_normal.max((f64::from(found) - 16_384.0 * exact).abs());
+                }
+            }
+            let float_of = |c: [i32; 3]| c.map(|c| f64::from(c) / 256.0);
+            let lambert = 255.0 * dot(normal, unit(float(direction))).max(0.0);
+            let off = sun_errors.add(float_of(found[0][k]), [lambert; 3]);
+            assert!(off < 1.0, "seed {seed:#x} case {case}, sun: off by {off} of 255, {model:?} {:?}", normals[k]);
+            let position = apply(&model, float(CORNERS[k]), 1.0);
+            let (exact, edge) = reference(&lighting, &paint, normal, position, [0; 3]);
+            if edge > 1.0 / 128.0 {
+                let off = lamp_errors.add(float_of(found[1][k]), exact);
+                assert!(
+                    off < 2.0,
+                    "seed {seed:#x} case {case}, lamps: off by {off} of 255, {model:?} {:?}",
+                    normals[k]
+                );
+            }
+        }
+    }
+    sun_errors.check("uneven models, sun", 1.0, 0.2);
+    lamp_errors.check("uneven models, lamps", 2.0, 0.3);
+    accuracy::check("light of a sun, uneven model", sun_errors.worst);
+    accuracy::check("light of lamps, uneven model, shininess 8", lamp_errors.worst);
+    accuracy::check("component of a normal, uneven model", worst_normal);
+}
+
+#[test]
+fn shaders_per_face_and_per_fragment_are_right_on_models_of_any_scale() {
+    let mut picture = [[[0_u8; 3]; 64]; 64];
+    for (y, row) in picture.iter_mut().enumerate() {
+        for (x, texel) in row.iter_mut().enumerate() {
+            *texel = [(4 * x) as u8, (4 * y) as u8, 77];
+        }
+    }
+    let model = Affine::rotation_y(Angle16::from_degrees(20)) * Affine::scale_axes(Vec3::from_milli(4000, 1000, 2000));
+    // Nearly flat, so that interpolating a turned normal is turning an interpolated one.
+    let normals = [[-0.20, -0.15, 1.0], [-0.16, -0.15, 1.0], [-0.16, -0.12, 1.0], [-0.20, -0.12, 1.0]].map(quantized);
+    let mesh = square(&normals, &COLORS);
+    let exact_normal =
+        |corners: [usize; 3], weights: V| unit(interpolated(corners, weights, |k| turned_normal(&model, normals[k]).0));
+    let matcap = Matcap::<Rgb888, 64>::new(&picture, &model);
+    compare(
+        "matcap, uneven",
+        &matcap,
+        &mesh,
+        |corners, weights| {
+            let n = exact_normal(corners, weights);
+            [128.0 + 128.0 * n[0] - 2.0, 128.0 - 128.0 * n[1] - 2.0, 77.0]
+        },
+        (2.7, 1.2),
+    );
+    let direction = Vec3::from_milli(-500, -400, 900);
+    let lighting = Lighting::directional(Rgb888::BLACK, [DirectionalLight::new(direction, Rgb888::WHITE)]);
+    let shades = |corners: [usize; 3], weights: V| {
+        [255.0 * dot(exact_normal(corners, weights), unit(float(direction))).max(0.0); 3]
+    };
+    let lit = lighting.on(Material::matte(Rgb888::WHITE), &model, mesh.bounds());
+    compare("Phong, uneven", &Phong::new(lit), &mesh, shades, (1.6, 0.7));
+    compare("PhongNear, uneven", &PhongNear::new(lit), &mesh, shades, (1.6, 0.7));
+    let sun = Sun::new(direction, Rgb888::WHITE, Rgb888::BLACK).on(&Matte::WHITE, &model);
+    compare("Gouraud, uneven", &Gouraud::new(sun), &mesh, shades, (1.6, 0.7));
+    // The square's two faces have normals of their own.
+    let faces = |corners: [usize; 3], _: V| {
+        let [a, b, c] = corners.map(|k| float(CORNERS[k]));
+        let (p, q) = (minus(b, a), minus(c, a));
+        let cross = unit([p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]);
+        [255.0 * dot(turned_normal(&model, quantized(cross)).0, unit(float(direction))).max(0.0); 3]
+    };
+    compare("Flat, uneven", &Flat::new(sun), &mesh, faces, (1.0, 0.7));
+    compare("Flat under lamps, uneven", &Flat::new(lit), &mesh, faces, (1.0, 0.7));
 }
 
 #[test]

@@ -64,6 +64,7 @@ fn random(rng: &mut Rng, octaves: f64) -> PerspectiveTriangle {
 
 #[test]
 fn every_pixel_is_within_a_sixteenth_of_a_texel_whatever_w_is() {
+    let mut worst = 0.0_f64;
     for octaves in [0.5_f64, 2.0, 5.0, 8.0, 11.0] {
         let (mut total, mut ends) = (Error::default(), Error::default());
         let mut rng = Rng::new(octaves.to_bits());
@@ -72,8 +73,10 @@ fn every_pixel_is_within_a_sixteenth_of_a_texel_whatever_w_is() {
         }
         let mean = total.sum / total.pixels as f64;
         println!("w up to 2^{octaves}: worst {:.5}, mean {mean:.6} of {} values", total.worst, total.pixels);
-        assert!(total.pixels > 50_000 && total.worst <= 1.0 / 16.0, "w up to 2^{octaves}: {total:?}");
+        assert!(total.pixels > 50_000, "w up to 2^{octaves}: {total:?}");
+        worst = worst.max(total.worst);
     }
+    support::accuracy::check("coordinate in a texture of 256 texels, at each pixel", worst);
 }
 
 /// Sub-spans over the conformance data and random triangles with w as there: how far off they are, and that span ends

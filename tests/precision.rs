@@ -9,7 +9,7 @@ use reference::exact;
 use reference::rng::Rng;
 use reference::scenes::{screen_triangle, sliver};
 use reference::subject::Subject;
-use support::{apply, matrix, on_screen, position, rigid, scalar, vector, whole};
+use support::{accuracy, apply, matrix, on_screen, position, rigid, scalar, vector, whole};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
@@ -167,11 +167,15 @@ fn positions_are_within_a_256th_of_a_pixel_of_f64() {
     assert!(near[1].vertices > 2000, "the long path is taken");
     let far = objects("quantized, far away", 1000..1400, true, [2.0, 30.0], false);
     assert!(far[0].vertices > 4000, "the short path is taken");
-    objects("exact, close by", 2000..2400, false, [0.0, 1.5], false);
-    objects("exact, far away", 3000..3400, false, [2.0, 30.0], false);
+    let exact_near = objects("exact, close by", 2000..2400, false, [0.0, 1.5], false);
+    let exact_far = objects("exact, far away", 3000..3400, false, [2.0, 30.0], false);
     let flat = objects("quantized, orthographic", 4000..4400, true, [1.2, 30.0], true);
     assert!(flat[0].vertices > 4000, "the short path is taken");
-    objects("exact, orthographic", 5000..5400, false, [1.2, 30.0], true);
+    let exact_flat = objects("exact, orthographic", 5000..5400, false, [1.2, 30.0], true);
+    let all = [near, far, exact_near, exact_far, flat, exact_flat];
+    let worst = |of: fn(&Worst) -> f64| all.iter().flatten().map(of).fold(0.0, f64::max);
+    accuracy::check("position of a vertex", worst(|w| w.position));
+    accuracy::check("depth of a vertex", worst(|w| w.depth));
 }
 
 #[test]
@@ -193,6 +197,7 @@ fn homogeneous_positions_are_within_a_256th_of_a_pixel_of_f64() {
         measure(&mut worst, &mvp, &viewport, &Positions::Homogeneous(&points), extent, &format!("seed {seed}"));
     }
     println!("homogeneous: {worst:?}");
+    accuracy::check("position of a homogeneous vertex", worst.position);
     assert!(worst.vertices > 10_000);
 }
 
@@ -261,6 +266,7 @@ fn depth_is_within_one_step_of_the_exact_plane() {
         }
     }
     println!("{pixels} pixels; worst depth is off by {:.4} steps: {}", worst.0, worst.1);
+    accuracy::check("depth of a pixel", worst.0);
     assert!(pixels > 100_000);
 }
 
@@ -307,6 +313,7 @@ fn gouraud_channels_are_within_1_of_255_of_the_exact_plane() {
         }
     });
     println!("{pixels} pixels; worst channel is off by {:.4} of 255: {}", worst.0, worst.1);
+    accuracy::check("colour of a pixel, 24 bits", worst.0);
     assert!(pixels > 50_000);
 }
 
@@ -329,5 +336,6 @@ fn packed_channels_were_within_1_of_255_before_they_lost_bits() {
         }
     });
     println!("{pixels} pixels; worst channel is off by {:.4} of 255: {}", worst.0, worst.1);
+    accuracy::check("colour of a pixel, 16 bits, before bits are cut", worst.0);
     assert!(pixels > 50_000);
 }

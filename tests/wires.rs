@@ -368,6 +368,7 @@ fn smooth_lines_cover_pixels_in_proportion() {
         }
     }
     println!("worst error of coverage: {worst} of 255");
+    support::accuracy::check("coverage of a pixel by a smooth line", worst);
 }
 
 /// Ends anywhere within ±32,767 px, so that the line crosses the screen.

@@ -1,6 +1,8 @@
 //! What the tests share: frames as whole pictures, random scenes, and numbers as f64.
 #![allow(dead_code)] // each test binary uses its part
 
+pub mod accuracy;
+
 use crate::reference::rng::Rng;
 use crate::reference::scenes::clip_soup;
 use zstrip::Scene;
