@@ -6,15 +6,19 @@ mod reference;
 mod scenes;
 mod support;
 
+use reference::rng::Rng;
 use scenes::{Draw, Room};
 use support::{difference, strips};
 use zstrip::color::Rgb565Be;
-use zstrip::embedded_graphics_core::geometry::Size;
+use zstrip::embedded_graphics_core::Pixel;
+use zstrip::embedded_graphics_core::draw_target::DrawTarget;
+use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors};
+use zstrip::embedded_graphics_core::primitives::{PointsIter, Rectangle};
 use zstrip::frame::{Frame, FrameError, FramebufferRenderer, RamBudget, Renderer};
 use zstrip::math::Angle16;
 use zstrip::target::{DepthChoice, Depthless, FrameSlice, RecordsChoice, WithDepth, WithRecords};
-use zstrip::{Framebuffer, Scene};
+use zstrip::{Framebuffer, Scene, ScreenPoint, Smooth, Thick};
 
 const SCREEN: (u16, u16) = (80, 60);
 const SIZE: Size = Size::new(80, 60);
@@ -273,4 +277,60 @@ fn even_rows_divide_the_height_and_no_more_do() {
         }
     }
     assert_eq!([RamBudget::even_rows(0, 9), RamBudget::even_rows(9, 0)], [0, 0]);
+}
+
+/// A framebuffer of one's own, with rows of different lengths, and fewer of them than the screen has.
+struct Ragged(Vec<Vec<u16>>);
+
+impl Framebuffer for Ragged {
+    type Format = Rgb565;
+
+    fn row(&mut self, y: u32) -> &mut [u16] {
+        self.0.get_mut(y as usize).map(Vec::as_mut_slice).unwrap_or_default()
+    }
+}
+
+/// Draws the room, lines of each stroke, shapes, and what embedded-graphics draws.
+fn everything<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>) {
+    room(scene, Angle16::from_degrees(30));
+    let mut canvas = scene.canvas();
+    let (a, b) = (ScreenPoint::center(-5, 3), ScreenPoint::center(90, 55));
+    canvas.line(a, b, Rgb888::CSS_LIME);
+    canvas.line_with(b, ScreenPoint::center(3, 50), Rgb888::CSS_GOLD, &Thick::px(4));
+    canvas.line_with(ScreenPoint::center(70, 2), a, Rgb888::CSS_PINK, &Smooth::px(3));
+    canvas.point(ScreenPoint::corner(60, 40), zstrip::math::Pixels::from_num(30), Rgb888::CSS_TEAL);
+    canvas.polygon(&[a, b, ScreenPoint::center(79, 0)], Rgb888::CSS_PURPLE);
+    let all = Rectangle::new(Point::new(20, 20), Size::new(70, 9));
+    let Ok(()) = scene.overlay().fill_solid(&all, Rgb565::CSS_TOMATO);
+    let Ok(()) = scene.at_depth(7).fill_contiguous(
+        &Rectangle::new(Point::new(30, 35), Size::new(50, 25)),
+        (0..1250).map(|k: u16| Rgb565::new(k as u8 & 31, 9, 1)),
+    );
+    let Ok(()) = scene.overlay().draw_iter(all.points().map(|at| Pixel(at + Point::new(0, 30), Rgb565::CSS_TAN)));
+}
+
+#[test]
+fn rows_that_are_shorter_than_the_screen_get_their_own_pixels_and_no_others() {
+    let expected = strips::<Rgb565>(SCREEN, 60, 40_000, Rgb565::CSS_NAVY, |scene| everything(scene)).0;
+    let mut rng = Rng::new(51);
+    for rows in [1, 7, 60] {
+        for case in 0..8 {
+            let height = rng.between(1, 64) as usize;
+            let narrow = rng.between(1, 80) as usize;
+            // Every fourth framebuffer has one width; others have rows of any length, some longer than the screen.
+            let length = |rng: &mut Rng| if case % 4 == 0 { narrow } else { rng.between(0, 90) as usize };
+            let mut ragged = Ragged((0..height).map(|_| vec![0x5A5A; length(&mut rng)]).collect());
+            let (mut depth, mut words) = (vec![9; WIDTH * rows], vec![9; 700]);
+            let renderer = FramebufferRenderer::new(SIZE).expect("a renderer").with_depth(&mut depth).expect("a row");
+            let mut renderer = renderer.with_records(&mut words);
+            renderer.frame(&mut ragged, Rgb888::CSS_NAVY, |scene| everything(scene)).expect("a frame");
+            for (y, row) in ragged.0.iter().enumerate() {
+                for (x, pixel) in row.iter().enumerate() {
+                    let inside = x < WIDTH && y < usize::from(SCREEN.1);
+                    let right = if inside { expected[y * WIDTH + x] } else { 0x5A5A };
+                    assert_eq!(*pixel, right, "seed {}: ({x}, {y}), case {case}, {rows} rows", rng.seed());
+                }
+            }
+        }
+    }
 }
