@@ -135,9 +135,9 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         }
     }
 
-    /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster. It has to leave
-    /// the pixels and depths that [`paint`](Self::paint) leaves: [`Smooth`](crate::scene::Smooth) strokes call `paint`
-    /// for each pixel, and never this function.
+    /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster. It has to
+    /// leave the pixels and depths that [`paint`](Self::paint) leaves: [`Smooth`](crate::scene::Smooth) strokes call
+    /// `paint` for each pixel, and never this function.
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         draw_fragments(self, span, test);
