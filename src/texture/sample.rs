@@ -5,6 +5,7 @@
 use super::image::Texture;
 use super::texel::OPAQUE;
 use crate::color::{PixelFormat, fold_rgb565, mix_spread_rgb565, spread_rgb565};
+use crate::math::{leading_zeros, mul_high, reciprocal};
 use embedded_graphics_core::geometry::Size;
 
 /// Rule for coordinates outside of the texture.
@@ -118,8 +119,8 @@ impl Filter for Nearest {
 /// Mixes the four texels whose centres surround the coordinates, with weights by their distances. Weights are 1/256 for
 /// 8 bits per channel, and 1/32 for RGB565, whose three channels are mixed in one word.
 ///
-/// Where some of the four are transparent, the colour is that of the others, and alpha says how much they weigh
-/// together.
+/// Alpha is mixed like a channel. A texel's part in the colour is its weight times its alpha, so that the hidden colours
+/// of transparent texels do not show, at any alpha: the result is not premultiplied.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bilinear;
 
@@ -140,28 +141,34 @@ const fn mix(a: u32, b: u32, t: u32) -> u32 {
     ((a * (256 - t) + b * t + 0x0080_0080) >> 8) & 0x00FF_00FF
 }
 
-/// Factors 255 / alpha in 8.8, for alpha from 128 on.
-static UNMIX: [u16; 128] = {
-    let mut table = [0; 128];
-    let mut k = 0;
-    while k < 128 {
-        table[k] = ((255 << 8) / (128 + k as u32)) as u16;
-        k += 1;
-    }
-    table
-};
+/// Weights of two columns or rows, in 1/256; see [`pair`].
+type Weights = [u32; 2];
 
-impl Bilinear {
-    /// Undoes premultiplication: divides the mixed channels by the mixed alpha. Transparent texels entered the mixture
-    /// as black, so this restores the brightness of the others.
-    #[inline(never)]
-    fn unmix([r, g, b, a]: [u8; 4]) -> [u8; 4] {
-        let Some(factor) = UNMIX.get(usize::from(a).wrapping_sub(128)) else {
-            return [r, g, b, a];
-        };
-        let up = |c: u8| ((u32::from(c) * u32::from(*factor) + 128) >> 8).min(255) as u8;
-        [up(r), up(g), up(b), a]
+/// Mixes four texels of which some are not opaque: each colour counts as much as its alpha and its weight say.
+///
+/// # Format
+/// The sum of weight · alpha is at most 2¹⁶ · 255, and that of weight · alpha · channel at most 2¹⁶ · 255², which is
+/// below 2³². A channel is the quotient of both, rounded to nearest, from a reciprocal whose error is below 2⁻²⁰ of a
+/// step.
+#[inline(never)]
+fn mix_by_alpha(texels: [[u8; 4]; 4], [left, right]: Weights, [above, below]: Weights) -> [u8; 4] {
+    let weights = [above * left, above * right, below * left, below * right];
+    let (mut sums, mut all) = ([0_u32; 3], 0);
+    for ([r, g, b, a], weight) in texels.into_iter().zip(weights) {
+        let weight = weight * u32::from(a);
+        all += weight;
+        for (sum, channel) in sums.iter_mut().zip([r, g, b]) {
+            *sum += weight * u32::from(channel);
+        }
     }
+    if all == 0 {
+        return [0; 4];
+    }
+    // `all` is below 2²⁴, so the shift is 8 at least, and a sum of at most 255 `all` can be shifted by 8 less.
+    let shift = leading_zeros(all) & 31;
+    let inverse = reciprocal(all << shift);
+    let [r, g, b] = sums.map(|sum| ((mul_high(sum << (shift - 8), inverse) + (1 << 22)) >> 23) as u8);
+    [r, g, b, ((all + (1 << 15)) >> 16) as u8]
 }
 
 impl Filter for Bilinear {
@@ -170,20 +177,18 @@ impl Filter for Bilinear {
         let Size { width, height } = texture.size();
         let (x0, x1, tx) = pair::<W>(u, width);
         let (y0, y1, ty) = pair::<W>(v, height);
-        // Red and blue go into one word, green and alpha into the other. Transparent texels become black.
-        let at = |x: u32, y: u32| {
-            let [r, g, b, a] = texture.rgba(x, y);
-            let word = u32::from_le_bytes([r, g, b, a]);
-            let word = if a == 255 { word } else { premultiplied([r, g, b, a]) };
-            (word & 0x00FF_00FF, word >> 8 & 0x00FF_00FF)
+        let texels = [texture.rgba(x0, y0), texture.rgba(x1, y0), texture.rgba(x0, y1), texture.rgba(x1, y1)];
+        let [a, b, c, d] = texels.map(u32::from_le_bytes);
+        if a & b & c & d < 0xFF00_0000 {
+            return mix_by_alpha(texels, [256 - tx, tx], [256 - ty, ty]);
+        }
+        // Red and blue go into one word, green and alpha into the other.
+        let row = |a: u32, b: u32| {
+            let half = |shift: u32| mix(a >> shift & 0x00FF_00FF, b >> shift & 0x00FF_00FF, tx);
+            (half(0), half(8))
         };
-        let row = |y: u32| {
-            let (a, b) = (at(x0, y), at(x1, y));
-            (mix(a.0, b.0, tx), mix(a.1, b.1, tx))
-        };
-        let (above, below) = (row(y0), row(y1));
-        let [r, g, b, a] = (mix(above.0, below.0, ty) | mix(above.1, below.1, ty) << 8).to_le_bytes();
-        if a == 255 { [r, g, b, a] } else { Self::unmix([r, g, b, a]) }
+        let (above, below) = (row(a, b), row(c, d));
+        (mix(above.0, below.0, ty) | mix(above.1, below.1, ty) << 8).to_le_bytes()
     }
 
     #[inline]
@@ -202,13 +207,6 @@ impl Filter for Bilinear {
         let [r, g, b, a] = Self::rgba::<T, W>(texture, [u, v]);
         if a >= OPAQUE { Some(P::pack([r, g, b])) } else { None }
     }
-}
-
-/// Multiplies the channels by alpha.
-#[inline(never)]
-fn premultiplied([r, g, b, a]: [u8; 4]) -> u32 {
-    let scaled = |c: u8| ((u32::from(c) * u32::from(a) * 257 + (1 << 15)) >> 16) as u8;
-    u32::from_le_bytes([scaled(r), scaled(g), scaled(b), a])
 }
 
 #[cfg(test)]
@@ -345,6 +343,61 @@ mod tests {
             // In RGB565 weights are off by 1/64, and two roundings add half of 255/31 each.
             assert!(worst565 <= 16.5 && mean565 <= 4.0, "{mode:?}");
         }
+    }
+
+    /// Four texels of red, green, blue and alpha.
+    struct Four([[u8; 4]; 4]);
+
+    impl Texture for Four {
+        fn size(&self) -> Size {
+            Size::new(2, 2)
+        }
+
+        fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
+            self.0[(2 * y + x) as usize]
+        }
+
+        fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw> {
+            Some(P::pack_rgba(self.rgba(x, y), (0, 0)))
+        }
+    }
+
+    #[test]
+    fn colours_at_any_alpha_are_the_mean_of_texels_weighted_by_alpha() {
+        const SEED: u64 = 11;
+        println!("seed {SEED}");
+        let mut random = random(SEED);
+        let mut worst = [0.0_f64; 2];
+        for case in 0..60_000_u32 {
+            let alpha = (case / 4 % 256) as u8;
+            let mut texel = |k: u32| {
+                let [r, g, b, a] = random().to_le_bytes();
+                // One alpha for all, transparent neighbours, faint ones, or anything.
+                [r, g, b, [alpha, if k % 2 == 0 { alpha } else { 0 }, a % 8, a][(case % 4) as usize]]
+            };
+            let texture = Four([0, 1, 2, 3].map(&mut texel));
+            let uv = [random() as i32 >> 14, random() as i32 >> 14];
+            let at = |f: &dyn Fn([u8; 4]) -> f64| filtered(Mode::Clamp, uv, (2, 2), |x, y| f(texture.rgba(x, y)));
+            let found = Bilinear::rgba::<_, Clamp>(&texture, uv).map(f64::from);
+            let alpha = at(&|[.., a]| a.into());
+            worst[1] = worst[1].max((found[3] - alpha).abs());
+            // Weights are off by 1/256, so where there is hardly any alpha the colour is one of the texels' still.
+            for channel in 0..3 {
+                let of = |[r, g, b, _]: [u8; 4]| f64::from([r, g, b][channel]);
+                if texture.0.iter().all(|texel| texel[3] == texture.0[0][3]) && texture.0[0][3] > 0 {
+                    worst[0] = worst[0].max((found[channel] - at(&|texel| of(texel))).abs());
+                }
+                let seen = || texture.0.iter().filter(|texel| texel[3] > 0).map(|texel| of(*texel));
+                let (least, most) = (seen().fold(255.0, f64::min), seen().fold(0.0, f64::max));
+                if found[3] > 0.0 {
+                    let range = least..=most;
+                    assert!(range.contains(&found[channel]), "{:?} at {uv:?}: {found:?}", texture.0);
+                }
+            }
+        }
+        println!("worst colour {:.2}, worst alpha {:.2} of 255", worst[0], worst[1]);
+        // Weights are off by 1/256 in both directions.
+        assert!(worst[0] <= 2.6 && worst[1] <= 2.6, "{worst:?}");
     }
 
     #[test]
