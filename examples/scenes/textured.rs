@@ -6,7 +6,7 @@ use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::light::{Matte, NORMAL_ONE, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
-use zstrip::shader::{LitTexture, Textured};
+use zstrip::shader::{LitTexture, Mipmapped, Textured};
 use zstrip::texture::{Filter, Image, MaskTexel, Repeat, Rgb565Texel, Tile};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
@@ -260,7 +260,7 @@ struct Crate<G> {
 /// Crates on a floor, with a fence behind them.
 pub struct Crates<G> {
     floor: Projective,
-    ground: Textured<'static, Level, Repeat, G>,
+    ground: Textured<'static, Level, Repeat, G, Mipmapped>,
     crates: Kept<[Crate<G>]>,
     fence: Projective,
 }
@@ -269,8 +269,10 @@ impl<G: Filter> Crates<G> {
     pub fn new(screen: Size, turn: Angle16, filter: G, levels: Levels) -> Self {
         let camera = camera(screen, Scalar::from_bits(1 << 14), Scalar::from_bits(24 << 16));
         let view = around(turn);
-        let mipmapped = if levels == Levels::All { Textured::mipmapped(floor_levels()).ok() } else { None };
-        let ground = mipmapped.unwrap_or(Textured::new(&floor_levels()[0]));
+        let all = floor_levels();
+        let Ok(ground) = Textured::mipmapped(if levels == Levels::All { all } else { &all[..1] }) else {
+            panic!("the levels have the sizes of a mip chain")
+        };
         let floor = camera * view;
         Self {
             floor,

@@ -305,11 +305,11 @@ pub struct CoarseDivisor {
 }
 
 impl CoarseDivisor {
-    /// Makes a divisor of a number whose top bit is set.
+    /// Makes a divisor of a number whose top bit is set, for a small core or another one: bit by bit alike.
     #[inline(always)]
-    pub fn of_normalized(x: u32) -> Self {
+    pub fn of_normalized<const SMALL: bool>(x: u32) -> Self {
         let r = SEED[(x >> 23) as usize & 0xFF] as u32;
-        let defect = if SMALL_CORE {
+        let defect = if SMALL {
             let product = (x >> 16).wrapping_mul(r).wrapping_add((x & 0xFFFF).wrapping_mul(r) >> 16);
             // The subtraction from 2³¹ is a negation without that bit: the difference fits 31 bits.
             (product.wrapping_neg() << 1) as i32 >> 7
@@ -325,8 +325,8 @@ impl CoarseDivisor {
     /// |n| < x / 4. The error is less than 2⁻¹⁸ of the quotient, which is the square of the table's error, and 192
     /// units for the bits that are cut.
     #[inline(always)]
-    pub fn divide_normalized(&self, n: i32) -> i32 {
-        if SMALL_CORE {
+    pub fn divide_normalized<const SMALL: bool>(&self, n: i32) -> i32 {
+        if SMALL {
             let low = (n as u32 & 0xFFFF).wrapping_mul(self.reciprocal as u32) >> 16;
             let h = (n >> 16).wrapping_mul(self.reciprocal).wrapping_add(low as i32);
             h.wrapping_add((h >> 16).wrapping_mul(self.defect) >> 9)
@@ -391,7 +391,9 @@ mod tests {
                         let n = n.unsigned_abs();
                         assert_eq!(Divisor::of_normalized(1 << 31).fraction_normalized(n), n);
                         let n = n as i32 / 2 * if off < 0.0 { -1 } else { 1 };
-                        let coarse = CoarseDivisor::of_normalized(x).divide_normalized(n);
+                        let coarse = CoarseDivisor::of_normalized::<false>(x).divide_normalized::<false>(n);
+                        let small = CoarseDivisor::of_normalized::<true>(x).divide_normalized::<true>(n);
+                        assert_eq!(coarse, small, "{n} / {x}");
                         let exact = f64::from(n) / f64::from(x) * 2f64.powi(31);
                         worst_coarse = worst_coarse.max((f64::from(coarse) - exact).abs() - exact.abs() / 262_144.0);
                     }
@@ -426,11 +428,11 @@ mod tests {
         let random = core::iter::repeat_with(|| rng.next_u32() >> rng.below(32)).take(2000);
         for q in ends.into_iter().chain(random) {
             let (any, normalized, short) = (Divisor::new(q), Divisor::of_normalized(q), ShortDivisor::new(q));
-            let coarse = CoarseDivisor::of_normalized(q);
+            let coarse = CoarseDivisor::of_normalized::<false>(q);
             for n in ends {
                 let signed = n as i32;
                 let _ = (any.divide(signed), any.divide_shifted(signed), normalized.fraction_normalized(n));
-                let _ = (short.divide(signed), coarse.divide_normalized(signed), reciprocal(n));
+                let _ = (short.divide(signed), coarse.divide_normalized::<false>(signed), reciprocal(n));
                 for divisor in [any, normalized] {
                     let _ = (divisor.divide_by_halves(signed), divisor.divide_by_words(signed));
                 }

@@ -16,6 +16,6 @@ pub use along::Along;
 pub(crate) use direction::unit;
 pub use gradient::{Gradients, PlaneEquation};
 pub use line::{Line, LinePixels};
-pub use perspective::{homogenize, widen, widen_along};
+pub use perspective::{homogenize, straighten, widen, widen_along};
 pub use point::{square, wide_square};
 pub use triangle::{Outline, PixelRect, Spans, pixel_rect, spans};

@@ -5,7 +5,7 @@
 
 use super::scene::{Scene, Target, check};
 use super::state::State;
-use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, widen};
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, straighten, widen};
 use crate::span::{
     DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Primitive, Shader, Span, SpanOf, TriangleSetup,
 };
@@ -134,19 +134,22 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             let mut homogeneous;
             let [a, b, c] = if S::Varyings::PERSPECTIVE > 0 {
                 homogeneous = *varyings;
-                homogenize(&mut homogeneous, v, self.screen, &mut primitive.perspective);
+                homogenize(&mut homogeneous, v, self.screen, S::STEP, &mut primitive.perspective);
                 homogeneous.each_ref()
             } else {
                 corners
             };
             let values = [a.as_ref(), b.as_ref(), c.as_ref()];
             widen(&gradients, &values, &mut primitive.perspective);
-            let Primitive { at_origin, d_dx, d_dy, .. } = &mut *primitive;
+            let Primitive { at_origin, d_dx, d_dy, perspective, .. } = &mut *primitive;
             let planes = at_origin.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut());
             for (k, ((at_origin, dx), dy)) in planes.enumerate() {
                 let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
                 let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
                 (*at_origin, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
+            }
+            if S::Varyings::PERSPECTIVE > 0 && S::STEP > 1 {
+                straighten(d_dx.as_ref(), S::STEP.trailing_zeros(), perspective);
             }
         }
         primitive.dz_dx = depth.dx;
@@ -154,9 +157,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             let steps = bias(&self.state.bias, v, depth);
             depth.base = depth.base.wrapping_add((steps as u32) << 16);
         }
-        let Primitive { at_origin, d_dx, flat, side, .. } = &*primitive;
+        let Primitive { at_origin, d_dx, d_dy, flat, side, perspective, .. } = &*primitive;
+        let position = (v[0].x >> 8, v[0].y >> 8);
         let area = area.unsigned_abs();
-        let triangle = TriangleSetup { corners, area, flat: *flat, side: *side, at_origin, d_dx };
+        let (flat, side) = (*flat, *side);
+        let triangle = TriangleSetup { corners, area, flat, side, at_origin, d_dx, d_dy, position, perspective };
         primitive.setup = self.shader.setup(&triangle);
     }
 

@@ -180,7 +180,7 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     let [start, end] = if S::Varyings::PERSPECTIVE > 0 {
         // A line is a triangle that has its second end twice.
         homogeneous = [*from, *to, *to];
-        homogenize(&mut homogeneous, &[*a, *b, *b], painter.screen, &mut perspective);
+        homogenize(&mut homogeneous, &[*a, *b, *b], painter.screen, 1, &mut perspective);
         let [start, end, _] = &homogeneous;
         [start, end]
     } else {
@@ -196,7 +196,18 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     // line.
     let primitive = |at_origin: S::Varyings, d_dx: S::Varyings, d_dy: S::Varyings| {
         let (area, side, at, corners) = (0, Side::Front, &at_origin, [from, to, to]);
-        let setup = shader.setup(&TriangleSetup { corners, area, flat, side, at_origin: at, d_dx: &change });
+        let (d_dx_of_line, perspective) = (&change, &<S::Varyings as Varyings>::PerspectiveSetup::NONE);
+        let setup = shader.setup(&TriangleSetup {
+            corners,
+            area,
+            flat,
+            side,
+            at_origin: at,
+            d_dx: d_dx_of_line,
+            d_dy: &S::Varyings::ZERO,
+            position: (a.x >> 8, a.y >> 8),
+            perspective,
+        });
         Primitive { dz_dx: dz, d_dx, d_dy, ..Primitive::constant(at_origin, flat, side, setup) }
     };
     // Both depths below include the bias and the half that rounds.
@@ -584,7 +595,18 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
         return;
     }
     let (side, d_dx, corners) = (Side::Front, &S::Varyings::ZERO, [varyings; 3]);
-    let setup = painter.shader.setup(&TriangleSetup { corners, area: 0, flat, side, at_origin: varyings, d_dx });
+    let position = (rect.x.start, rect.y.start);
+    let setup = painter.shader.setup(&TriangleSetup {
+        corners,
+        area: 0,
+        flat,
+        side,
+        at_origin: varyings,
+        d_dx,
+        d_dy: d_dx,
+        position,
+        perspective: &<S::Varyings as Varyings>::PerspectiveSetup::NONE,
+    });
     let primitive = &Primitive::constant(*varyings, flat, side, setup);
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
     let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));

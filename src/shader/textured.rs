@@ -1,14 +1,18 @@
 //! Textures as shaders: as they are, and on a surface under light.
 
+use super::mipmap::{BLOCK, Levels, Mipmapped, OneLevel};
 use super::surface::Surface;
 use crate::color::PixelFormat;
-use crate::span::{DepthTest, Fragment, STEP, Shader, SpanOf, TriangleSetup, draw_fragments, texture_span};
+use crate::span::{
+    DepthTest, Fragment, Primitive, STEP, Shader, SpanOf, TriangleSetup, UvStepper, draw_fragments, texture_span,
+};
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
-use crate::vertex::{Perspective, PerspectiveClass, PerspectiveSetup, VertexRef, VertexShader};
+use crate::vertex::{Perspective, VertexRef, VertexShader};
 use core::marker::PhantomData;
 use embedded_graphics_core::geometry::Size;
 
-/// The colours of a texture, perspective-correct: divided every 16 pixels and at both ends of a span.
+/// The colours of a texture, perspective-correct: divided at every 16th column of the screen, or at another
+/// [`step`](Self::step).
 ///
 /// The mesh's coordinates go from 0 to 1 over the texture; it repeats, and its nearest texels are shown, unless another
 /// [`Wrap`] and [`Filter`] are chosen. Texels whose alpha is below one half are not drawn.
@@ -22,10 +26,10 @@ use embedded_graphics_core::geometry::Size;
 /// # let _ = (pixelated, smooth);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Textured<'a, T, W = Repeat, F = Nearest> {
+pub struct Textured<'a, T, W = Repeat, F = Nearest, L = OneLevel, const N: usize = STEP> {
     /// The texture, and smaller ones of half its size each.
     levels: &'a [T],
-    how: PhantomData<(W, F)>,
+    how: PhantomData<(W, F, L)>,
 }
 
 impl<'a, T: Texture> Textured<'a, T> {
@@ -36,11 +40,13 @@ impl<'a, T: Texture> Textured<'a, T> {
     }
 
     /// Returns the shader of a mip chain: each level has half the size of the previous level, rounded down, at least 1.
-    /// Each triangle takes the level whose texels are nearest in size to its pixels, and at least half as large.
+    /// Each pixel takes the level whose texels are nearest in size to the pixels around it, along the direction in
+    /// which they are smallest on the screen. Levels change at columns that are multiples of 16, and at any row. They
+    /// depend on the triangle's plane alone, so neither clipping nor the shape of triangles makes them jump.
     ///
     /// # Errors
     /// When a level has another size, or there are no levels.
-    pub fn mipmapped(levels: &'a [T]) -> Result<Self, TextureError> {
+    pub fn mipmapped(levels: &'a [T]) -> Result<Textured<'a, T, Repeat, Nearest, Mipmapped>, TextureError> {
         let mut sizes = levels.iter().map(Texture::size);
         let mut size = sizes.next().ok_or(TextureError::NoLevels)?;
         for found in sizes {
@@ -50,20 +56,37 @@ impl<'a, T: Texture> Textured<'a, T> {
             }
             size = found;
         }
-        Ok(Self { levels, how: PhantomData })
+        Ok(Textured { levels, how: PhantomData })
     }
 }
 
-impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
+impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a, T, W, F, L, N> {
     /// Returns the shader with another rule for what is outside of the texture.
     #[must_use]
-    pub const fn wrap<V: Wrap>(self, _: V) -> Textured<'a, T, V, F> {
+    pub const fn wrap<V: Wrap>(self, _: V) -> Textured<'a, T, V, F, L, N> {
         Textured { levels: self.levels, how: PhantomData }
     }
 
     /// Returns the shader with another filter.
     #[must_use]
-    pub const fn filter<G: Filter>(self, _: G) -> Textured<'a, T, W, G> {
+    pub const fn filter<G: Filter>(self, _: G) -> Textured<'a, T, W, G, L, N> {
+        Textured { levels: self.levels, how: PhantomData }
+    }
+
+    /// Returns the shader with coordinates that are divided at every `M`-th column of the screen instead of every
+    /// 16th: 1, 2, 4, 8, 16 or 32. At 1, every texel is exact. [`Perspective`](Perspective#sub-spans) tells how far off
+    /// texels are otherwise.
+    ///
+    /// ```
+    /// use zstrip::shader::Textured;
+    /// # use zstrip::texture::Tile;
+    /// # static TILE: Tile<'static, 2, 2> = Tile::new(&[[0xFFFF, 0], [0, 0xFFFF]]);
+    /// let exact = Textured::new(&TILE).step::<1>();
+    /// # let _ = exact;
+    /// ```
+    #[must_use]
+    pub const fn step<const M: usize>(self) -> Textured<'a, T, W, F, L, M> {
+        const { assert!(M.is_power_of_two() && M <= 32, "steps are 1, 2, 4, 8, 16 or 32 pixels") };
         Textured { levels: self.levels, how: PhantomData }
     }
 
@@ -75,44 +98,26 @@ impl<'a, T: Texture, W: Wrap, F: Filter> Textured<'a, T, W, F> {
     ///
     /// Colours of the surface are interpolated linearly on the screen.
     #[must_use]
-    pub const fn lit<S: Surface>(self, surface: S) -> LitTexture<'a, T, S, W, F> {
+    pub const fn lit<S: Surface>(self, surface: S) -> LitTexture<'a, T, S, W, F, L, N> {
         LitTexture { texture: self, surface }
     }
 
     /// Returns a level by its number; there is always one.
     #[inline]
-    fn level(&self, level: u32) -> Option<&'a T> {
-        self.levels.get(level as usize)
+    fn level(&self, level: usize) -> Option<&'a T> {
+        self.levels.get(level)
     }
 
-    /// Chooses the level for a triangle; lines and points take the first one.
-    #[inline]
-    fn level_of<const N: usize>(&self, triangle: &TriangleSetup<'_, Perspective<2, N>>) -> u32 {
-        if self.levels.len() < 2 || triangle.area == 0 {
-            return 0;
-        }
-        self.level_for(triangle.corners.map(Perspective::corrected), triangle.area)
-    }
-
-    /// The level whose texels have the size of pixels, or are up to half as large: from the areas of a triangle in
-    /// texels and in pixels, by their numbers of bits.
-    ///
-    /// # Format
-    /// `area` in 2⁻¹⁶ px², differences of coordinates are cut to 16.8 bits: products below 2⁴⁸, 2⁻¹⁶ of the texture.
-    #[inline(never)]
-    fn level_for(&self, uv: [[i32; 2]; 3], area: u64) -> u32 {
-        let [a, b, c] = uv;
-        let difference = |a: i32, b: i32| i64::from(b.wrapping_sub(a) >> 8);
-        let texture = difference(a[0], b[0]) * difference(a[1], c[1]) - difference(a[0], c[0]) * difference(a[1], b[1]);
-        let Some(Size { width, height }) = self.levels.first().map(Texture::size) else { return 0 };
-        let bits = |n: u64| 64 - n.leading_zeros();
-        // Half the bits of width and height are those of a square with the same area.
-        let texels = (bits(texture.unsigned_abs()) + bits(width.into()) + bits(height.into())).saturating_sub(2);
-        (texels.saturating_sub(bits(area)) / 2).min(self.levels.len().saturating_sub(1) as u32)
+    /// Returns the texture for a fragment.
+    #[inline(always)]
+    fn texture<const K: usize>(&self, fragment: &Fragment<'_, Perspective<2, K>, L::Scale>) -> Option<&'a T> {
+        let values: &[i32] = fragment.varyings.as_ref();
+        let q = values.last().copied().unwrap_or(0);
+        self.level(L::level(fragment.setup, fragment.position, q))
     }
 }
 
-impl<T, W, F> VertexShader for Textured<'_, T, W, F> {
+impl<T, W, F, L, const N: usize> VertexShader for Textured<'_, T, W, F, L, N> {
     type Varyings = Perspective<2, 3>;
 
     #[inline]
@@ -121,20 +126,22 @@ impl<T, W, F> VertexShader for Textured<'_, T, W, F> {
     }
 }
 
-impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, T, W, F> {
-    const STEP: usize = STEP;
+impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Shader<P>
+    for Textured<'_, T, W, F, L, N>
+{
+    const STEP: usize = N;
 
-    /// Number of the level.
-    type Setup = u32;
+    /// Sizes of texels on the triangle.
+    type Setup = L::Scale;
 
     #[inline]
-    fn setup(&self, triangle: &TriangleSetup<'_, Perspective<2, 3>>) -> u32 {
-        self.level_of(triangle)
+    fn setup(&self, triangle: &TriangleSetup<'_, Perspective<2, 3>>) -> L::Scale {
+        L::scale(self.levels, triangle)
     }
 
     #[inline(always)]
-    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>, u32>) -> Option<P::Raw> {
-        let (texture, uv) = (self.level(*fragment.setup)?, fragment.varyings.corrected());
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>, L::Scale>) -> Option<P::Raw> {
+        let (texture, uv) = (self.texture(fragment)?, fragment.varyings.corrected());
         if P::ALPHA || P::DITHER.is_some() {
             return visible::<P>(F::rgba::<T, W>(texture, uv), fragment.position);
         }
@@ -143,29 +150,81 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter> Shader<P> for Textured<'_, 
 
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
-        match self.level(span.primitive.setup) {
-            _ if P::ALPHA || P::DITHER.is_some() => draw_fragments(self, span, test),
-            Some(texture)
-                if W::REPEATS && F::NEAREST && span.primitive.perspective.class() != PerspectiveClass::Planes64 =>
-            {
-                texture_span(texture, span, test);
-            }
-            _ => draw_fragments(self, span, test),
+        if P::ALPHA || P::DITHER.is_some() || !W::REPEATS || !F::NEAREST || N == 1 {
+            return draw_fragments(self, span, test);
         }
+        if !L::MANY {
+            let Some(texture) = self.level(0) else { return };
+            return self.texels::<P, D>(texture, span, test);
+        }
+        let (primitive, mut span) = (span.primitive, span);
+        while !span.color.is_empty() {
+            let (texture, pixels) = self.level_run(primitive, span.position, span.color.len());
+            let (Some(texture), Some((part, rest))) = (texture, span.split_at(pixels)) else { return };
+            self.texels::<P, D>(texture, part, test);
+            span = rest;
+        }
+    }
+}
+
+impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a, T, W, F, L, N> {
+    /// Returns the texture of the pixels from `position` on, and the number of pixels, up to `length`, that share it.
+    #[inline(never)]
+    fn level_run(
+        &self,
+        primitive: &Primitive<Perspective<2, 3>, L::Scale>,
+        (x, y): (i32, i32),
+        length: usize,
+    ) -> (Option<&'a T>, usize) {
+        let level = |x: i32| {
+            let values = primitive.at((x, y));
+            let q: &[i32] = values.as_ref();
+            L::level(&primitive.setup, (x, y), q.last().copied().unwrap_or(0))
+        };
+        let (first, end) = (level(x), x.wrapping_add(length as i32));
+        let mut next = (x | (BLOCK - 1)) + 1;
+        while next < end && level(next) == first {
+            next += BLOCK;
+        }
+        (self.level(first), next.min(end).wrapping_sub(x) as usize)
+    }
+
+    /// Draws a span of nearest, repeated texels of one level.
+    #[inline(always)]
+    fn texels<P: PixelFormat, D: DepthTest>(&self, texture: &T, span: SpanOf<'_, P, Self, D>, test: D) {
+        let (mut span, mut stepper) = (span, UvStepper::EMPTY);
+        // Where coordinates are not straight enough, which is at one end of the span, half the step may do.
+        let mut log_step = N.trailing_zeros();
+        while log_step > 0 {
+            let length = span.color.len().min(span.depth.len());
+            let halvings = N.trailing_zeros() - log_step;
+            let straight = stepper.begin(span.primitive, span.position, length, log_step, halvings);
+            if straight == length {
+                return texture_span(texture, span, test, &mut stepper);
+            }
+            if straight > 0 {
+                let Some((first, rest)) = span.split_at(stepper.before()) else { return };
+                let Some((straight, last)) = rest.split_at(straight) else { return };
+                texture_span(texture, straight, test, &mut stepper);
+                span = if first.color.is_empty() { last } else { first };
+            }
+            log_step -= 1;
+        }
+        draw_fragments(self, span, test);
     }
 }
 
 /// A texture on a [`Surface`] under light: see [`Textured::lit`].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LitTexture<'a, T, S, W = Repeat, F = Nearest> {
-    texture: Textured<'a, T, W, F>,
+pub struct LitTexture<'a, T, S, W = Repeat, F = Nearest, L = OneLevel, const N: usize = STEP> {
+    texture: Textured<'a, T, W, F, L, N>,
     surface: S,
 }
 
 /// Texture coordinates 16.16; red, green and blue of the surface, 8.16, linear on the screen.
 type LitVaryings = Perspective<2, 6>;
 
-impl<T, S: Surface, W, F> VertexShader for LitTexture<'_, T, S, W, F> {
+impl<T, S: Surface, W, F, L, const N: usize> VertexShader for LitTexture<'_, T, S, W, F, L, N> {
     type Varyings = LitVaryings;
 
     /// u, v, the colour of the surface in 10 bits per channel, 1 / w.
@@ -209,20 +268,22 @@ fn under(channel: u8, light: i32) -> u8 {
     ((i32::from(channel) * light) >> 8) as u8
 }
 
-impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter> Shader<P> for LitTexture<'_, T, S, W, F> {
-    const STEP: usize = STEP;
+impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, const N: usize> Shader<P>
+    for LitTexture<'_, T, S, W, F, L, N>
+{
+    const STEP: usize = N;
 
-    /// Number of the level.
-    type Setup = u32;
+    /// Sizes of texels on the triangle.
+    type Setup = L::Scale;
 
     #[inline]
-    fn setup(&self, triangle: &TriangleSetup<'_, LitVaryings>) -> u32 {
-        self.texture.level_of(triangle)
+    fn setup(&self, triangle: &TriangleSetup<'_, LitVaryings>) -> L::Scale {
+        L::scale(self.texture.levels, triangle)
     }
 
     #[inline(always)]
-    fn fragment(&self, fragment: &Fragment<'_, LitVaryings, u32>) -> Option<P::Raw> {
-        let [r, g, b, a] = F::rgba::<T, W>(self.texture.level(*fragment.setup)?, fragment.varyings.corrected());
+    fn fragment(&self, fragment: &Fragment<'_, LitVaryings, L::Scale>) -> Option<P::Raw> {
+        let [r, g, b, a] = F::rgba::<T, W>(self.texture.texture(fragment)?, fragment.varyings.corrected());
         let [lr, lg, lb] = fragment.varyings.linear() else { return None };
         visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
     }

@@ -24,4 +24,4 @@ pub(crate) use shader::draw_fragments;
 pub use shader::{Shader, SpanOf};
 pub(crate) use solid::flat_span;
 pub use span::{Fragment, Primitive, Span, TriangleSetup};
-pub(crate) use textured::{STEP, texture_span};
+pub(crate) use textured::{STEP, UvStepper, texture_span};

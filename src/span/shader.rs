@@ -1,7 +1,7 @@
 //! The seam of the fragment stage, and the loops that call a shader for the pixels of a span.
 
 use super::depth::{DepthDyn, DepthState, DepthTest};
-use super::perspective::{correct_at, per_pixel};
+use super::perspective::{correct_at, straight_log_step};
 use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
 use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
@@ -103,9 +103,9 @@ use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
 /// # Ok::<(), Box<dyn core::error::Error>>(())
 /// ```
 pub trait Shader<P: PixelFormat>: VertexShader {
-    /// Number of pixels over which perspective-correct varyings are taken as linear. 1 divides at each pixel. 4, 8, 16
-    /// or 32 divide at every fourth, eighth, ... pixel and at both ends of a span; that is faster, and off by little,
-    /// see [`Perspective`](crate::vertex::Perspective).
+    /// Number of pixels over which perspective-correct varyings are taken as linear. 1 divides at each pixel. 2, 4, 8,
+    /// 16 or 32 divide at the columns of the screen that are multiples of it; that is faster, and off by little, see
+    /// [`Perspective`](crate::vertex::Perspective#sub-spans).
     const STEP: usize = 1;
 
     /// Data that [`setup`](Self::setup) computes once per triangle for its fragments and spans; `()` for most shaders.
@@ -258,47 +258,74 @@ fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     mut span: SpanOf<'_, P, S, D>,
     test: D,
 ) {
-    const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 4, 8, 16 or 32 pixels") };
+    const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 2, 4, 8, 16 or 32 pixels") };
     let linear = span.varyings();
-    let mut varyings = linear;
-    correct_at(&span.primitive.perspective, span.position, &mut varyings);
-    let mut stretch = Stretch { span: &mut span, linear, varyings, change: varyings, next: varyings, test };
+    let mut stretch = Stretch {
+        change: span.primitive.d_dx,
+        span: &mut span,
+        linear,
+        varyings: linear,
+        divided: linear,
+        column: None,
+        test,
+    };
     while !stretch.span.color.is_empty() {
-        let pixels = stretch.aim(S::STEP);
+        let pixels = stretch.aim(S::STEP.trailing_zeros());
         stretch.draw(shader, pixels);
     }
 }
 
-/// A part of a span, from a pixel at which varyings are divided to the next such pixel.
+/// A part of a span: one pixel whose varyings are divided, or the pixels between two columns at which they are divided.
 struct Stretch<'a, 's, P: PixelFormat, V: Varyings, T, D: DepthTest> {
     /// Pixels of the span that are not drawn yet.
     span: &'a mut Span<'s, P, V, T, D::Depth>,
-    /// Values that are linear on the screen, at the end of the stretch.
+    /// Values that are linear on the screen, at the first of these pixels.
     linear: V,
     varyings: V,
     change: V,
-    /// Varyings at the end of the stretch.
-    next: V,
+    /// Varyings at the column that was divided last.
+    divided: V,
+    /// That column, if there is one.
+    column: Option<i32>,
     test: D,
 }
 
 impl<P: PixelFormat, V: Varyings, T, D: DepthTest> Stretch<'_, '_, P, V, T, D> {
-    /// Moves on to the next stretch, whose end is the next pixel that is divided, or the last pixel of the span.
-    /// Returns the number of its pixels.
+    /// Moves on to the next part, and returns the number of its pixels. Values that are linear on the screen are exact
+    /// at each pixel. Perspective-correct ones are so at columns that are multiples of 1 << `log_step`, or of half of
+    /// it, and so on, where they are not straight enough.
     #[inline(never)]
-    fn aim(&mut self, step: usize) -> usize {
-        let Self { span, linear, varyings, change, next, .. } = self;
-        let pixels = span.color.len().min(step);
-        let way = if span.color.len() > step { step } else { pixels.wrapping_sub(1) };
-        *varyings = *next;
-        linear.advance(&span.primitive.d_dx, way as i32);
-        *next = *linear;
-        let end = (span.position.0.wrapping_add(way as i32), span.position.1);
-        correct_at(&span.primitive.perspective, end, next);
-        let ends = varyings.as_ref().iter().zip(next.as_ref());
-        for (change, (from, to)) in change.as_mut().iter_mut().zip(ends) {
-            *change = if way == 0 { 0 } else { per_pixel(to.wrapping_sub(*from), way) };
+    fn aim(&mut self, log_step: u32) -> usize {
+        let Self { span, linear, varyings, change, divided, column, .. } = self;
+        let Primitive { perspective, d_dx, .. } = span.primitive;
+        let (x, y) = span.position;
+        *varyings = *linear;
+        let log_step = straight_log_step(span.primitive, linear, span.position, log_step);
+        if log_step == 0 {
+            correct_at::<V>(perspective, span.position, varyings);
+            linear.advance(d_dx, 1);
+            return 1;
         }
+        let step = 1 << log_step;
+        let back = x & (step - 1);
+        let (first, next) = (x.wrapping_sub(back), x.wrapping_sub(back).wrapping_add(step));
+        if *column != Some(first) {
+            *divided = *linear;
+            divided.advance(d_dx, back.wrapping_neg());
+            correct_at::<V>(perspective, (first, y), divided);
+        }
+        let from = *divided;
+        *divided = *linear;
+        divided.advance(d_dx, step.wrapping_sub(back));
+        correct_at::<V>(perspective, (next, y), divided);
+        *column = Some(next);
+        let ends = from.as_ref().iter().zip(divided.as_ref()).take(V::PERSPECTIVE);
+        for ((value, change), (from, to)) in varyings.as_mut().iter_mut().zip(change.as_mut()).zip(ends) {
+            *change = to.wrapping_sub(*from).wrapping_add(step >> 1) >> log_step;
+            *value = from.wrapping_add(change.wrapping_mul(back));
+        }
+        let pixels = span.color.len().min(step.wrapping_sub(back) as usize);
+        linear.advance(d_dx, pixels as i32);
         pixels
     }
 

@@ -23,7 +23,7 @@ pub struct Fragment<'a, V, T = ()> {
 /// A triangle as [`Shader::setup`](crate::span::Shader::setup) sees it. Lines and points are handed over in this form
 /// too.
 #[derive(Clone, Copy, Debug)]
-pub struct TriangleSetup<'a, V> {
+pub struct TriangleSetup<'a, V: Varyings> {
     /// Varyings at the vertices, as the vertex stage returned them. A line has its second end twice; a point has its
     /// only vertex three times.
     pub corners: [&'a V; 3],
@@ -39,6 +39,12 @@ pub struct TriangleSetup<'a, V> {
     /// Change of the varyings from a pixel to its right neighbour, modulo 2³². For a line, it is the change from a
     /// pixel of the line to the next one.
     pub d_dx: &'a V,
+    /// Change of the varyings from a pixel to its lower neighbour, modulo 2³²; 0 for lines and points.
+    pub d_dy: &'a V,
+    /// The pixel of the first vertex. It may lie outside of the screen.
+    pub position: (i32, i32),
+    /// Data that turns values that are linear on the screen into perspective-correct varyings.
+    pub(crate) perspective: &'a V::PerspectiveSetup,
 }
 
 /// Data that all spans of a triangle, a line or a point share: plane equations, and data of the shader.
@@ -99,7 +105,21 @@ pub struct Span<'a, P: PixelFormat, V: Varyings, T, Z> {
     pub primitive: &'a Primitive<V, T>,
 }
 
-impl<P: PixelFormat, V: Varyings, T, Z> Span<'_, P, V, T, Z> {
+impl<'a, P: PixelFormat, V: Varyings, T, Z> Span<'a, P, V, T, Z> {
+    /// Splits the span after `pixels` pixels; `None` if it has fewer of them.
+    #[inline(always)]
+    pub(crate) fn split_at(self, pixels: usize) -> Option<(Self, Self)> {
+        let Self { color, depth, z, position: (x, y), primitive } = self;
+        let (color, colors) = color.split_at_mut_checked(pixels)?;
+        let (depth, depths) = depth.split_at_mut_checked(pixels)?;
+        let next = z.wrapping_add_signed(primitive.dz_dx.wrapping_mul(pixels as i32));
+        let position = (x.wrapping_add(pixels as i32), y);
+        Some((
+            Span { color, depth, z, position: (x, y), primitive },
+            Span { color: colors, depth: depths, z: next, position, primitive },
+        ))
+    }
+
     /// Computes the varyings at the first pixel. Perspective-correct varyings are returned in an internal form that is
     /// linear on the screen; [`Corrected`](crate::span::Corrected) computes the varyings themselves.
     #[inline(always)]

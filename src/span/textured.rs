@@ -12,15 +12,14 @@
 //! The departures from it, with what each gained on a Cortex-M0+ and a Cortex-M4 when it was made. Gains are
 //! instructions per pixel of W3, a tilted quad:
 //!
-//! 1. **Coordinates are divided every 16 pixels**, and at the last pixel. In between u and v are linear, both in one
-//!    word:
+//! 1. **Coordinates are divided every 16 pixels**, or at another [step](crate::span::Shader::STEP), at columns of the
+//!    screen that are multiples of it. In between u and v are linear, both in one word:
 //!
 //!    ```text
 //!    bits   31 .. 16   15 .. 0
 //!              v          u        fractions of the texture; a carry from u adds 2⁻¹⁶ to v
 //!    ```
-//!    Steps are rounded to 2⁻¹⁶, so a pixel of a run is off by at most 2⁻¹³. The last run of a span is stepped
-//!    backwards from its end, so that both ends are exact.
+//!    Steps are rounded to 2⁻¹⁶, so a pixel of a run is off by at most 2⁻¹³.
 //! 2. **Runs of 16 pixels are drawn in two passes** on small cores, first depths and then texels. Each pass has its
 //!    values in registers: 33.5 → 31.3.
 //! 3. **q, u q and v q are normalized once per span**, and the word and the step of a run are computed out of line:
@@ -31,60 +30,88 @@
 //!    Cortex-M4.
 
 use super::depth::{DepthTest, RUN, count_passing_prefix, untested_tail};
-use super::perspective::per_pixel;
+use super::perspective::is_straight;
 use super::span::{Primitive, Span};
 use crate::color::PixelFormat;
 use crate::math::{CoarseDivisor, SMALL_CORE};
 use crate::texture::Texture;
 use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Varyings};
 
-/// Number of pixels from one division to the next.
+/// Number of pixels from one division to the next, unless another one is chosen.
 pub(crate) const STEP: usize = RUN;
 
-/// Draws a span of a repeating texture. The first two varyings are u and v in 16.16. The perspective of the triangle
-/// must not be [`Planes64`](PerspectiveClass::Planes64).
+/// Draws a span of a repeating texture. The first two varyings are u and v in 16.16. The stepper is that of the span.
 #[inline(never)]
 pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings, U>(
     texture: &T,
     span: Span<'_, P, V, U, D::Depth>,
     test: D,
+    stepper: &mut UvStepper,
 ) {
-    let Span { color, depth, z, position, primitive } = span;
+    let Span { color, depth, z, primitive, .. } = span;
     let length = color.len().min(depth.len());
     let Some(mut color) = color.get_mut(..length) else { return };
     let Some(mut depth) = depth.get_mut(..length) else { return };
-    let mut stepper = UvStepper::new(primitive, position, length as i32 - 1);
     let mut cursor = TexelCursor { z, dz_dx: primitive.dz_dx, vu: 0, step: 0 };
-    stepper.next_run();
-    while color.len() > STEP {
-        let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<STEP>() else { return };
-        color = rest;
-        let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<STEP>() else { return };
-        depth = rest;
-        if SMALL_CORE && T::IS_OPAQUE {
-            cursor.run16_two_pass::<P, T, D>(texture, test, &mut stepper, colors, depths);
-        } else {
-            (cursor.vu, cursor.step) = stepper.next_run();
-            // Reads the step from memory. The compiler would otherwise compute its multiple before the loop, and keep
-            // it on the stack.
-            cursor.dz_dx = stepper.dz_dx;
-            cursor.run16::<P, T, D>(texture, test, colors, depths);
+    // The first run may begin between two columns that are divided.
+    let mut short = stepper.first_run();
+    loop {
+        if short > 0 {
+            let pixels = short.min(color.len());
+            let Some((colors, rest)) = core::mem::take(&mut color).split_at_mut_checked(pixels) else { return };
+            color = rest;
+            let Some((depths, rest)) = core::mem::take(&mut depth).split_at_mut_checked(pixels) else { return };
+            depth = rest;
+            short_run::<P, T, D>(texture, test, stepper, cursor.z, colors, depths);
+            cursor.z = cursor.z.wrapping_add_signed(stepper.dz_dx.wrapping_mul(pixels as i32));
+        }
+        while stepper.log_step == RUN.trailing_zeros() && color.len() >= RUN {
+            let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<RUN>() else { return };
+            color = rest;
+            let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
+            depth = rest;
+            if SMALL_CORE && T::IS_OPAQUE {
+                cursor.run16_two_pass::<P, T, D>(texture, test, stepper, colors, depths);
+            } else {
+                (cursor.vu, cursor.step) = stepper.next_run();
+                // Reads the step from memory. The compiler would otherwise compute its multiple before the loop, and
+                // keep it on the stack.
+                cursor.dz_dx = stepper.dz_dx;
+                cursor.run16::<P, T, D>(texture, test, colors, depths);
+            }
+        }
+        // The last run may end between two such columns. Runs of another length than 16 all come here.
+        short = 1 << stepper.log_step;
+        if color.is_empty() {
+            return;
         }
     }
-    let way = color.len().saturating_sub(1);
-    (cursor.vu, cursor.step) = stepper.last(way);
-    if SMALL_CORE && T::IS_OPAQUE {
-        cursor.short_two_pass::<P, T, D>(texture, test, color, depth);
+}
+
+/// Draws a run of fewer than 16 pixels, or of another length. Out of line, because a span has two of them.
+#[inline(never)]
+fn short_run<P: PixelFormat, T: Texture, D: DepthTest>(
+    texture: &T,
+    test: D,
+    stepper: &mut UvStepper,
+    z: u32,
+    colors: &mut [P::Raw],
+    depths: &mut [D::Depth],
+) {
+    let (vu, step) = stepper.next_run();
+    let cursor = TexelCursor { z, dz_dx: stepper.dz_dx, vu, step };
+    if SMALL_CORE && T::IS_OPAQUE && colors.len() <= RUN {
+        cursor.short_two_pass::<P, T, D>(texture, test, colors, depths);
     } else if SMALL_CORE {
-        cursor.partial::<P, T, D>(texture, test, 0, color, depth);
+        cursor.partial::<P, T, D>(texture, test, 0, colors, depths);
     } else {
-        cursor.tail::<P, T, D>(texture, test, color, depth);
+        cursor.tail::<P, T, D>(texture, test, colors, depths);
     }
 }
 
 /// Colours a run.
 #[inline(never)]
-fn color_run16<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; STEP], mut vu: u32, step: u32) {
+fn color_run16<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; RUN], mut vu: u32, step: u32) {
     // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
     macro_rules! color {
         ($($color:ident)*) => {
@@ -129,6 +156,7 @@ const fn step([du, dv]: [i32; 2]) -> u32 {
 }
 
 /// State of the loops over a textured span: all that changes from pixel to pixel.
+#[derive(Clone, Copy)]
 struct TexelCursor {
     z: u32,
     dz_dx: i32,
@@ -145,18 +173,18 @@ impl TexelCursor {
         texture: &T,
         test: D,
         stepper: &mut UvStepper,
-        colors: &mut [P::Raw; STEP],
-        depths: &mut [D::Depth; STEP],
+        colors: &mut [P::Raw; RUN],
+        depths: &mut [D::Depth; RUN],
     ) {
         let passed = count_passing_prefix(test, depths, self.z, self.dz_dx);
         let (vu, step) = stepper.next_run();
-        if passed == STEP {
+        if passed == RUN {
             color_run16::<P, T>(texture, colors, vu, step);
         } else {
             // A copy, so that the cursor itself stays in registers.
             Self { vu, step, ..*self }.partial::<P, T, D>(texture, test, passed, colors, depths);
         }
-        self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(STEP as i32));
+        self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(RUN as i32));
     }
 
     /// Draws a run pixel by pixel.
@@ -165,8 +193,8 @@ impl TexelCursor {
         &mut self,
         texture: &T,
         test: D,
-        colors: &mut [P::Raw; STEP],
-        depths: &mut [D::Depth; STEP],
+        colors: &mut [P::Raw; RUN],
+        depths: &mut [D::Depth; RUN],
     ) {
         // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
         macro_rules! draw {
@@ -266,7 +294,8 @@ impl TexelCursor {
 ///
 /// q, d q of u and d q of v are shifted up, so that the larger q of both ends has its top bit set. Without perspective,
 /// q is 0.
-struct UvStepper {
+#[derive(Debug)]
+pub(crate) struct UvStepper {
     /// q, d q of u and d q of v at the stepper's position, and their changes over the next run.
     at: [i32; 3],
     step: [i32; 3],
@@ -274,26 +303,93 @@ struct UvStepper {
     uv: (i32, i32),
     u: Scale,
     v: Scale,
-    /// q, d q of u and d q of v at the last pixel.
-    end: [i32; 3],
+    /// Number of pixels to the left of the first pixel, up to the column that is divided.
+    back: u32,
+    /// Binary logarithm of the number of pixels between two columns that are divided.
+    log_step: u32,
+    /// Number of pixels of the span to the left of the first one.
+    before: usize,
     /// Change of depth per pixel. The stepper keeps it in memory for the loop, and does not use it itself.
     dz_dx: i32,
 }
 
 impl UvStepper {
-    /// Creates a stepper that is one run to the left of the first pixel. The last pixel is `way` pixels to the right of
-    /// the first one.
+    /// A stepper that is nowhere.
+    pub(crate) const EMPTY: Self = Self {
+        at: [0; 3],
+        step: [0; 3],
+        uv: (0, 0),
+        u: Scale::EMPTY,
+        v: Scale::EMPTY,
+        back: 0,
+        log_step: 0,
+        before: 0,
+        dz_dx: 0,
+    };
+
+    /// Puts the stepper before the pixels of a span that [`texture_span`] can draw, and returns how many they are. The
+    /// stepper then knows how many pixels the span has [before](Self::before) them. Those that can be drawn lie between
+    /// columns over which coordinates are straight enough
+    /// ([`straight_log_step`](super::perspective::straight_log_step)). As q is linear, they lie side by side.
+    ///
+    /// Columns are 1 << `log_step` pixels apart. This is 1 << `halvings` times less than the shader's step.
     #[inline(never)]
-    fn new<V: Varyings, U>(primitive: &Primitive<V, U>, position: (i32, i32), way: i32) -> Self {
-        let varyings = primitive.at(position);
-        let (at, step) = (varyings.as_ref(), primitive.d_dx.as_ref());
+    pub(crate) fn begin<V: Varyings, U>(
+        &mut self,
+        primitive: &Primitive<V, U>,
+        position: (i32, i32),
+        length: usize,
+        log_step: u32,
+        halvings: u32,
+    ) -> usize {
+        self.begin_on::<SMALL_CORE, V, U>(primitive, position, length, log_step, halvings)
+    }
+
+    /// Does as [`begin`](Self::begin), for a small core or another one.
+    #[inline(always)]
+    fn begin_on<const SMALL: bool, V: Varyings, U>(
+        &mut self,
+        primitive: &Primitive<V, U>,
+        (x, y): (i32, i32),
+        length: usize,
+        log_step: u32,
+        halvings: u32,
+    ) -> usize {
+        let perspective = &primitive.perspective;
+        let (class, least) = (perspective.class(), perspective.least_straight());
+        if class == PerspectiveClass::Planes64 || least == u32::MAX {
+            return 0;
+        }
         let value = |values: &[i32], k: usize| values.get(k).copied().unwrap_or(0);
         let last = |values: &[i32]| values.last().copied().unwrap_or(0);
-        let (mut q, mut dq) = (last(at), last(step));
-        let end = q.wrapping_add(dq.wrapping_mul(way));
-        let mut most = (q as u32).max(end as u32) | 1;
+        let change = primitive.d_dx.as_ref();
+        let (dq, du, dv) = (last(change), value(change, 0), value(change, 1));
+        // Columns that are divided, on both sides of the span. q is in 0..2³¹ within the span, and changes by less than
+        // 2²⁸ up to them.
+        let past = x.wrapping_add(length as i32);
+        let (mut first, mut end) = (x >> log_step << log_step, (((past - 1) >> log_step) + 1) << log_step);
+        let mut at = primitive.at((first, y));
+        let step = 1 << log_step;
+        let is_bent = |q: i32| !is_straight(q as u32, least >> halvings);
+        let mut to = last(at.as_ref()).wrapping_add(dq.wrapping_mul(end.wrapping_sub(first)));
+        while is_bent(last(at.as_ref())) && first < end {
+            first += step;
+            at.advance(&primitive.d_dx, step);
+        }
+        while is_bent(to) && first < end {
+            end -= step;
+            to = to.wrapping_sub(dq << log_step);
+        }
+        if first >= end {
+            return 0;
+        }
+        let planes = perspective.planes();
+        let at = at.as_ref();
+        let q = last(at);
+        let (from, to) = (q as u32, to as u32);
+        let mut most = from.max(to) | 1;
         let mut shift = 0;
-        if SMALL_CORE {
+        if SMALL {
             // Takes a few rounds, and fewer instructions than `leading_zeros` does with its table.
             while most >> 31 == 0 {
                 (most, shift) = (most << 1, shift + 1);
@@ -301,37 +397,43 @@ impl UvStepper {
         } else {
             shift = most.leading_zeros();
         }
-        if primitive.perspective.class() == PerspectiveClass::Affine {
+        let (mut q, mut dq) = (q, dq);
+        if class == PerspectiveClass::Affine {
             (q, dq, shift) = (0, 0, 0);
         }
-        let shift = shift & 31;
-        let at = [q, value(at, 0), value(at, 1)];
-        let step = [dq, value(step, 0), value(step, 1)];
-        let planes = primitive.perspective.planes();
-        let along = |k: usize| {
-            let (at, step) = (value(&at, k) << shift, value(&step, k) << shift);
-            (at.wrapping_sub(step << 4), step << 4, at.wrapping_add(step.wrapping_mul(way)))
-        };
-        let (q, u, v) = (along(0), along(1), along(2));
-        Self {
-            at: [q.0, u.0, v.0],
-            step: [q.1, u.1, v.1],
+        let up = |value: i32| value << (shift & 31);
+        *self = Self {
+            at: [up(q), up(value(at, 0)), up(value(at, 1))],
+            step: [up(dq) << log_step, up(du) << log_step, up(dv) << log_step],
             uv: (0, 0),
-            u: Scale::new(planes.first()),
-            v: Scale::new(planes.get(1)),
-            end: [q.2, u.2, v.2],
+            u: Scale::new::<SMALL>(planes.first()),
+            v: Scale::new::<SMALL>(planes.get(1)),
+            back: (x.wrapping_sub(first)).max(0) as u32,
+            log_step,
+            before: (first.wrapping_sub(x)).max(0) as usize,
             dz_dx: primitive.dz_dx,
-        }
+        };
+        self.uv = self.divided::<SMALL>();
+        end.min(past).wrapping_sub(first.max(x)) as usize
     }
 
-    /// Moves on by one run, and returns the word and the step with which that run is drawn. Out of line: it has more
-    /// values than the loop around it has registers for.
-    #[inline(never)]
-    fn next_run(&mut self) -> (u32, u32) {
-        let [q, u, v] = self.at;
-        let [dq, du, dv] = self.step;
-        let (q, mut u, mut v) = (q.wrapping_add(dq), u.wrapping_add(du), v.wrapping_add(dv));
-        self.at = [q, u, v];
+    /// Returns the number of pixels of the span before those that the stepper is for.
+    #[inline(always)]
+    pub(crate) fn before(&self) -> usize {
+        self.before
+    }
+
+    /// Returns the number of pixels of the first run if it begins between two columns that are divided, otherwise 0.
+    #[inline(always)]
+    fn first_run(&self) -> usize {
+        let step = 1 << self.log_step;
+        (step - self.back as usize) & (step - 1)
+    }
+
+    /// Computes u and v at the stepper's position.
+    #[inline(always)]
+    fn divided<const SMALL: bool>(&self) -> (i32, i32) {
+        let [q, mut u, mut v] = self.at;
         let (u, v) = 'quotients: {
             let mut q = q as u32;
             if q >> 31 == 0 {
@@ -342,30 +444,39 @@ impl UvStepper {
                     (q, u, v) = (q << 1, u << 1, v << 1);
                 }
             }
-            let q = CoarseDivisor::of_normalized(q);
-            (q.divide_normalized(u), q.divide_normalized(v))
+            let q = CoarseDivisor::of_normalized::<SMALL>(q);
+            (q.divide_normalized::<SMALL>(u), q.divide_normalized::<SMALL>(v))
         };
-        let (from, to) = (self.uv, (self.u.scaled(u), self.v.scaled(v)));
-        self.uv = to;
-        let (du, dv) = (to.0.wrapping_sub(from.0), to.1.wrapping_sub(from.1));
-        (packed(from), step([du.wrapping_add(8) >> 4, dv.wrapping_add(8) >> 4]))
+        (self.u.scaled::<SMALL>(u), self.v.scaled::<SMALL>(v))
     }
 
-    /// Moves on to the last pixel, `way` pixels ahead, and returns the word and the step with which the pixels up to it
-    /// are drawn.
+    /// Moves on by one run, and returns the word and the step with which that run is drawn. Out of line: it has more
+    /// values than the loop around it has registers for.
     #[inline(never)]
-    fn last(&mut self, way: usize) -> (u32, u32) {
-        let from = self.uv;
-        let ([q, u, v], [end_q, end_u, end_v]) = (self.at, self.end);
-        self.step = [end_q.wrapping_sub(q), end_u.wrapping_sub(u), end_v.wrapping_sub(v)];
-        self.next_run();
-        let (du, dv) = (self.uv.0.wrapping_sub(from.0), self.uv.1.wrapping_sub(from.1));
-        let step = step([per_pixel(du, way), per_pixel(dv, way)]);
-        (packed(self.uv).wrapping_sub(step.wrapping_mul(way as u32)), step)
+    fn next_run(&mut self) -> (u32, u32) {
+        self.next_run_on::<SMALL_CORE>()
+    }
+
+    /// Does as [`next_run`](Self::next_run), for a small core or another one.
+    #[inline(always)]
+    fn next_run_on<const SMALL: bool>(&mut self) -> (u32, u32) {
+        let [q, u, v] = self.at;
+        let [dq, du, dv] = self.step;
+        self.at = [q.wrapping_add(dq), u.wrapping_add(du), v.wrapping_add(dv)];
+        let (from, to) = (self.uv, self.divided::<SMALL>());
+        self.uv = to;
+        let half = 1 << self.log_step >> 1;
+        let per_pixel = |from: i32, to: i32| to.wrapping_sub(from).wrapping_add(half) >> self.log_step;
+        let step = step([per_pixel(from.0, to.0), per_pixel(from.1, to.1)]);
+        // Only the first run may begin between two columns.
+        let word = packed(from).wrapping_add(step.wrapping_mul(self.back));
+        self.back = 0;
+        (word, step)
     }
 }
 
 /// Scale that takes a coordinate from its interpolated form h back to 16.16.
+#[derive(Debug)]
 struct Scale {
     /// Half of the last bit that stays after the shift, which rounds. On cores with long products it is multiplied by
     /// 4.
@@ -377,10 +488,12 @@ struct Scale {
 }
 
 impl Scale {
+    const EMPTY: Self = Self { half: 0, by: 0, base: 0 };
+
     #[inline(always)]
-    fn new(plane: Option<&PerspectivePlane>) -> Self {
+    fn new<const SMALL: bool>(plane: Option<&PerspectivePlane>) -> Self {
         let (base, shift) = plane.map_or((0, 0), |plane| (plane.base, plane.shift & 31));
-        if SMALL_CORE {
+        if SMALL {
             Self { half: (1 << shift) >> 1, by: shift as i32, base }
         } else {
             Self { half: 2 << shift & !3, by: 1 << 30 >> shift, base }
@@ -390,10 +503,10 @@ impl Scale {
     /// Scales `h` back and adds the base, rounded to nearest.
     ///
     /// # Format
-    /// |`h`| is at most a little more than 2²⁸; shifts are at most 28.
+    /// |`h`| is below 2²⁹, because d q is below 3/16 q, and without perspective below 2²⁶ + 2²⁸; shifts are at most 26.
     #[inline(always)]
-    fn scaled(&self, h: i32) -> i32 {
-        if SMALL_CORE {
+    fn scaled<const SMALL: bool>(&self, h: i32) -> i32 {
+        if SMALL {
             self.base.wrapping_add(h.wrapping_add(self.half) >> (self.by & 31))
         } else {
             // A long product shifts, in two instructions with the sum.
@@ -416,9 +529,9 @@ mod tests {
 
     /// Creates a stepper without perspective. It is at `u` and `v`, and moves on by `du` and `dv`.
     fn stepper([u, v]: [i32; 2], [du, dv]: [i32; 2]) -> UvStepper {
-        let scale = || Scale::new(None);
-        let at = [0, u, v];
-        UvStepper { at, step: [0, du, dv], uv: (u, v), u: scale(), v: scale(), end: [0; 3], dz_dx: 0 }
+        let scale = || Scale::new::<SMALL_CORE>(None);
+        let (at, step) = ([0, u, v], [0, du, dv]);
+        UvStepper { at, step, uv: (u, v), u: scale(), v: scale(), back: 0, log_step: 4, before: 0, dz_dx: 0 }
     }
 
     /// Compares all loops with the plain one, over an opaque tile.
@@ -434,7 +547,7 @@ mod tests {
             let (vu, step) = stepper(uv, duv).next_run();
             let cursor = || TexelCursor { z, dz_dx, vu, step };
             let pixel = |k: usize| tile.fetch::<Rgb565>(vu.wrapping_add(step.wrapping_mul(k as u32)));
-            let case = naive::Case { length: STEP, z, dz_dx, background: 0x1234_u16 };
+            let case = naive::Case { length: RUN, z, dz_dx, background: 0x1234_u16 };
             naive::compare(
                 test,
                 case,
@@ -452,7 +565,7 @@ mod tests {
                     }),
                 ],
             );
-            let case = naive::Case { length: rng.below(STEP as u64 + 1) as usize, ..case };
+            let case = naive::Case { length: rng.below(RUN as u64 + 1) as usize, ..case };
             naive::compare(
                 test,
                 case,
@@ -476,49 +589,103 @@ mod tests {
         compare(DepthOff, |_| ());
     }
 
+    /// Makes a primitive of two coordinates, as extreme as a stepper takes them: the greatest differences, the greatest
+    /// change of q over a run, and bases from all over the numbers. Returns the pixels of a span, too.
+    fn extreme(rng: &mut Rng, log_step: u32) -> (Primitive<Perspective<2, 3>>, i32, usize) {
+        let mut random = || rng.next_u32();
+        let (x, length) = ((random() % 300) as i32, 1 + (random() % 200) as usize);
+        let affine = random() % 8 == 0;
+        let mut primitive = Primitive::constant(Perspective::<2, 3>::ZERO, 0, Side::Front, ());
+        let ends = [x, x + length as i32 - 1];
+        // q within a factor of 2⁹ over the span, or nearly constant.
+        let spread = if affine { 0 } else { random() % 10 };
+        let q = [0, 1].map(|_| (1 << 30 | random() >> 2) >> random().checked_rem(spread + 1).unwrap_or(0));
+        let q = if affine { [q[0] | 1 << 30; 2] } else { q };
+        let way = (ends[1] - ends[0]).max(1);
+        let dq = ((i64::from(q[1]) - i64::from(q[0])) / i64::from(way)) as i32;
+        // d q is at most a thirty-second of q at both ends of the span, and changes as much as that allows.
+        let least = ((q[0].min(q[1]) / 2) >> (log_step + 3)) as i32;
+        let mut along = || {
+            let mut end = |q: u32| ((i64::from(random() as i32) * i64::from(q)) >> 36) as i32;
+            let [from, to] = q.map(&mut end);
+            if length == 1 {
+                (from, end(least as u32 * 32))
+            } else {
+                (from, ((i64::from(to) - i64::from(from)) / i64::from(way)) as i32)
+            }
+        };
+        let (u, v) = (along(), along());
+        primitive.d_dx.as_mut().copy_from_slice(&[u.1, v.1, dq]);
+        let origin = |at: i32, change: i32| at.wrapping_sub(change.wrapping_mul(x));
+        let (u, v) = (origin(u.0, u.1), origin(v.0, v.1));
+        primitive.at_origin.as_mut().copy_from_slice(&[u, v, origin(q[0] as i32, dq)]);
+        if let Some((class, _, planes)) = primitive.perspective.parts_mut() {
+            *class = if affine { PerspectiveClass::Affine } else { PerspectiveClass::Planes32 };
+            for plane in planes {
+                (plane.base, plane.shift) = (random() as i32, 1 + random() % 26);
+            }
+        }
+        let most = primitive.d_dx.as_ref().iter().map(|change| change.unsigned_abs()).max().unwrap_or(0);
+        let fits = most >> (29 - log_step) == 0;
+        primitive.perspective.set_least_straight(if fits { most << (log_step + 3) } else { u32::MAX });
+        (primitive, x, length)
+    }
+
+    /// Returns the number of divided steps that a span is a part of.
+    fn runs(x: i32, length: usize, log_step: u32) -> i32 {
+        ((x + length as i32 - 1) >> log_step) - (x >> log_step) + 1
+    }
+
+    /// Both kinds of core step and divide alike, bit by bit, at any value that a stepper takes.
+    #[test]
+    fn small_cores_and_others_have_the_same_words() {
+        let mut rng = Rng::new(14);
+        let mut begun = 0;
+        for case in 0..200_000 {
+            let log_step = 1 + case % 5;
+            let (primitive, x, length) = extreme(&mut rng, log_step);
+            let (mut small, mut other) = (UvStepper::EMPTY, UvStepper::EMPTY);
+            let length_small = small.begin_on::<true, _, _>(&primitive, (x, 0), length, log_step, 0);
+            let length = other.begin_on::<false, _, _>(&primitive, (x, 0), length, log_step, 0);
+            assert_eq!((length_small, small.before), (length, other.before), "{case}");
+            if length > 0 {
+                begun += 1;
+                for _ in 0..runs(x + small.before as i32, length, log_step) {
+                    assert_eq!(small.next_run_on::<true>(), other.next_run_on::<false>(), "{case}: {primitive:?}");
+                }
+            }
+        }
+        assert!(begun > 50_000, "{begun}");
+    }
+
     #[test]
     fn steppers_are_where_divisors_are() {
         let mut rng = Rng::new(1);
-        let mut random = || rng.next_u32();
-        for case in 0..5000 {
-            let way = (random() % 200) as i32;
-            let q = [random(), random()].map(|q| ((q >> 1 >> (random() % 9)) | 1 << 22) as i32);
-            // |d q| goes up to q / 8 at both ends.
-            let corner = Perspective::<2, 3>::ZERO;
-            let mut primitive = Primitive::constant(corner, 0, Side::Front, ());
-            let ends = [0, 1].map(|_| q.map(|q| ((i64::from(random() as i32) * i64::from(q)) >> 34) as i32));
-            let per_pixel = |a: i32, b: i32| (b - a) / way.max(1);
-            primitive.at_origin.as_mut().copy_from_slice(&[ends[0][0], ends[1][0], q[0]]);
-            let changes = [per_pixel(ends[0][0], ends[0][1]), per_pixel(ends[1][0], ends[1][1]), per_pixel(q[0], q[1])];
-            primitive.d_dx.as_mut().copy_from_slice(&changes);
-            let affine = case % 8 == 0;
-            if let Some((class, _, planes)) = primitive.perspective.parts_mut() {
-                *class = if affine { PerspectiveClass::Affine } else { PerspectiveClass::Planes32 };
-                for plane in planes {
-                    (plane.base, plane.shift) = (random() as i32 >> 4, random() % 29);
-                }
+        let mut begun = 0;
+        for case in 0..20_000 {
+            let log_step = 1 + case % 5;
+            let (primitive, x, length) = extreme(&mut rng, log_step);
+            let mut stepper = UvStepper::EMPTY;
+            let length = stepper.begin(&primitive, (x, 0), length, log_step, 0);
+            let x = x + stepper.before as i32;
+            if length == 0 {
+                continue;
             }
-            let mut exact = Corrected::new(&primitive, (0, 0));
-            let mut stepper = UvStepper::new(&primitive, (0, 0), way);
-            stepper.next_run();
-            let check = |stepper: &UvStepper, exact: &Corrected<'_, Perspective<2, 3>>| {
+            begun += 1;
+            let first = x >> log_step << log_step;
+            let mut exact = Corrected::new(&primitive, (first, 0));
+            for _ in 0..runs(x, length, log_step) {
                 let (found, expected) = ([stepper.uv.0, stepper.uv.1], exact.varyings().corrected());
                 for ((found, expected), plane) in found.iter().zip(expected).zip(primitive.perspective.planes()) {
-                    let quotient = i64::from(expected - plane.base).abs();
-                    let bound = if affine { 0 } else { (quotient >> 18) + (200 >> plane.shift) + 1 };
-                    let off = (i64::from(*found) - i64::from(expected)).abs();
+                    let quotient = i64::from(expected.wrapping_sub(plane.base)).abs();
+                    let bound = (quotient >> 18) + (200 >> plane.shift) + 1;
+                    let off = i64::from(found.wrapping_sub(expected)).abs();
                     assert!(off <= bound, "{case}: {off} units, not {bound}");
                 }
-            };
-            check(&stepper, &exact);
-            for _ in 0..way / STEP as i32 {
                 stepper.next_run();
-                exact.advance(STEP as i32);
-                check(&stepper, &exact);
+                exact.advance(1 << log_step);
             }
-            stepper.last((way % STEP as i32) as usize);
-            exact.advance(way % STEP as i32);
-            check(&stepper, &exact);
         }
+        assert!(begun > 5_000, "{begun}");
     }
 }

@@ -119,8 +119,8 @@ impl Filter for Nearest {
 /// Mixes the four texels whose centres surround the coordinates, with weights by their distances. Weights are 1/256 for
 /// 8 bits per channel, and 1/32 for RGB565, whose three channels are mixed in one word.
 ///
-/// Alpha is mixed like a channel. A texel's part in the colour is its weight times its alpha, so that the hidden colours
-/// of transparent texels do not show, at any alpha: the result is not premultiplied.
+/// Alpha is mixed like a channel. A texel's part in the colour is its weight times its alpha, so that the hidden
+/// colours of transparent texels do not show, at any alpha: the result is not premultiplied.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bilinear;
 
@@ -373,7 +373,7 @@ mod tests {
             let mut texel = |k: u32| {
                 let [r, g, b, a] = random().to_le_bytes();
                 // One alpha for all, transparent neighbours, faint ones, or anything.
-                [r, g, b, [alpha, if k % 2 == 0 { alpha } else { 0 }, a % 8, a][(case % 4) as usize]]
+                [r, g, b, [alpha, if k.is_multiple_of(2) { alpha } else { 0 }, a % 8, a][(case % 4) as usize]]
             };
             let texture = Four([0, 1, 2, 3].map(&mut texel));
             let uv = [random() as i32 >> 14, random() as i32 >> 14];

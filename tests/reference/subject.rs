@@ -85,7 +85,7 @@ impl Shader<Rgb565> for Numbered {
     }
 }
 
-/// Where coordinates are reported: pixel, u and t in 1/2^20.
+/// Where coordinates are reported: pixel, u and t in 1/2^16.
 type Report<'a> = RefCell<&'a mut dyn FnMut((i32, i32), [i32; 2])>;
 
 /// Reports perspective-correct coordinates, one reciprocal every `STEP` pixels.
@@ -99,7 +99,7 @@ impl<const STEP: usize> VertexShader for Coordinates<'_, STEP> {
 
     fn vertex(&self, corner: &VertexRef<'_>) -> Perspective<2, 3> {
         let k = corner.index();
-        Perspective::new([self.triangle.u[k] << 20, self.triangle.t[k] << 20], [])
+        Perspective::new([self.triangle.u[k] << 16, self.triangle.t[k] << 16], [])
     }
 }
 
@@ -182,7 +182,7 @@ impl Subject {
         let vertices = vertices.map(|v| v.map(|c| Scalar::from_bits((c * scale).round() as i32)));
         let mut values = vec![None; (width * height) as usize];
         let mut report = |(x, y): (i32, i32), uv: [i32; 2]| {
-            values[y as usize * width as usize + x as usize] = Some(uv.map(|c| f64::from(c) / 1_048_576.0));
+            values[y as usize * width as usize + x as usize] = Some(uv.map(|c| f64::from(c) / 65_536.0));
         };
         let shader = Coordinates::<STEP> { triangle, report: RefCell::new(&mut report) };
         self.draw((width, height), &vertices, DepthState::OFF, &shader);
