@@ -6,7 +6,7 @@
 //! again.
 
 use super::normal::long;
-use crate::math::{Affine, Vec3, unit_vector};
+use crate::math::{Affine, Vec3, unit_vector_of_any_length};
 use crate::mesh::Bounds;
 
 /// The inverse transpose of a model's matrix, in any scale: 2.14, with the widest entry in 1/2..=1.
@@ -112,8 +112,8 @@ impl NormalMatrix {
     /// Returns the unit normal in the lights' space, 2.14, for one in the mesh's own space.
     ///
     /// # Format
-    /// Sums of products are below 3 · 2²⁹. They are shifted to 15 bits, so that a normal that the model shortens keeps
-    /// its direction.
+    /// Sums of products are below 3 · 2²⁹. All their bits count, so that a normal that the model shortens keeps its
+    /// direction.
     #[inline(never)]
     pub(crate) fn times(&self, normal: [i16; 3]) -> [i16; 3] {
         let n = long(normal);
@@ -121,8 +121,7 @@ impl NormalMatrix {
             let [a, b, c] = long(row);
             a.wrapping_mul(n[0]).wrapping_add(b.wrapping_mul(n[1])).wrapping_add(c.wrapping_mul(n[2]))
         });
-        let width = 32 - (sum[0].unsigned_abs() | sum[1].unsigned_abs() | sum[2].unsigned_abs()).leading_zeros();
-        let unit = unit_vector(sum.map(|c| if width > 15 { c >> (width - 15) } else { c << (15 - width) }));
+        let unit = unit_vector_of_any_length(sum);
         unit.map(|c| c as i16)
     }
 }

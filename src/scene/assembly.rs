@@ -89,14 +89,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     pub(super) fn hierarchy(&mut self, nodes: &[BoundsNode], mvp: &Projective) {
         let mut next = 0;
         while next < nodes.len() {
-            let tested = nodes.iter().skip(next);
+            let mut at = next;
             let mut visible = self.scene.visible_nodes(self.state, nodes, mvp, &mut next);
-            for node in tested.take(32) {
-                if visible & 1 != 0 {
+            while visible != 0 {
+                if let (Some(node), 1) = (nodes.get(at), visible & 1) {
                     let first = usize::from(node.first_triangle);
                     self.triangles(first..first + usize::from(node.triangles));
                 }
-                visible >>= 1;
+                (at, visible) = (at + 1, visible >> 1);
             }
         }
     }
@@ -183,31 +183,18 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     #[inline(never)]
     fn shade_corners(&mut self, triangle: &mut ScreenTriangle) -> ScanEvent {
         // Stage 2, vertices: once per vertex if the results are kept.
-        let mut visible = true;
-        let (mut common, mut all) = (!self.state.range.clamped().0, 0);
-        for (v, index) in triangle.v.iter_mut().zip(&triangle.corners) {
-            let packed = self.packed_vertex(*index);
-            *v = packed.screen();
-            visible &= packed.is_on_screen();
-            common &= packed.outcode();
-            all |= packed.outcode();
+        let mut packed = [PackedVertex::NONE; 3];
+        for (packed, index) in packed.iter_mut().zip(&triangle.corners) {
+            *packed = self.packed_vertex(*index);
         }
-        if visible {
-            if triangle.passes_culling(self.culling, &self.clip, self.scene.stats) {
-                ScanEvent::Visible
-            } else {
-                ScanEvent::Done
-            }
-        } else if common != 0 {
-            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
-            ScanEvent::Done
-        } else if self.may_reach(&triangle.corners) {
-            self.scene.stats.clipped = self.scene.stats.clipped.wrapping_add(1);
-            ScanEvent::NeedsClip(Outcode(all))
-        } else {
-            self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
-            ScanEvent::Done
+        let planes = Outcode(!self.state.range.clamped().0);
+        let event = triangle.assess(&packed, planes, self.culling, &self.clip, self.scene.stats);
+        if event == ScanEvent::Done || event == ScanEvent::Visible || self.may_reach(&triangle.corners) {
+            return event;
         }
+        self.scene.stats.clipped = self.scene.stats.clipped.wrapping_sub(1);
+        self.scene.stats.outside = self.scene.stats.outside.wrapping_add(1);
+        ScanEvent::Done
     }
 
     /// Returns whether a triangle that has to be clipped may cover pixels of this strip or band.
@@ -222,7 +209,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
     fn shade_face(&mut self, triangle: &ScreenTriangle) {
         let word = self.face(triangle);
         if self.scene.is_recording() {
-            self.record(triangle.row, triangle.corners, word);
+            self.scene.record(triangle.row, triangle.corners, word);
         } else {
             let [i, j, k] = triangle.corners;
             self.draw(triangle, &mut [self.varyings(i), self.varyings(j), self.varyings(k)], word);
@@ -325,7 +312,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
                             *index = self.store_corner(triangle.corners, corner);
                         }
                     }
-                    self.record(triangle.row, indices, self.face(triangle));
+                    self.scene.record(triangle.row, indices, self.face(triangle));
                 } else {
                     self.draw_corners(triangle, fan);
                 }
@@ -424,13 +411,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Assembly<'_, '_, F, S> {
             return self.scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.vertex(usize::from(index)))
-    }
-
-    /// Stage 6, recording: puts a triangle into the list of the strip that it begins in.
-    fn record(&mut self, row: i32, corners: [u16; 3], face: u32) {
-        let row = row - self.scene.band.start;
-        let strip = self.scene.strips.of(row as u32);
-        self.scene.records.push_triangle(corners, face, strip);
     }
 
     #[inline]

@@ -8,7 +8,7 @@
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::{Painter, RasterHooks};
 use super::scan::may_reach;
-use super::scene::{Draw, Phase, Primitives, Scene};
+use super::scene::{Draw, Phase, Primitives, Scene, samples};
 use super::state::State;
 use super::stroke::{Stroke, block};
 use crate::math::{Pixels, Projective};
@@ -66,8 +66,10 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         shader: &S,
         stroke: &K,
     ) {
-        let primitives = Primitives::Lines { lines, reach: stroke.reach() };
-        let draw = Draw::new::<S, K>(&state, Some(Transform::set_depth_scale), lines.vertices(), mvp, primitives);
+        let vertices = lines.vertices();
+        let samples = samples(vertices, lines.count(), |n| lines.line(n).map(|[i, j]| [i, j, j]));
+        let primitives = Primitives::Lines { reach: stroke.reach(), samples };
+        let draw = Draw::new::<S, K>(&state, Some(Transform::set_depth_scale), vertices, mvp, primitives);
         if self.begin_lines(&draw) {
             LineDraw::new(self, &draw, shader).lines(lines, stroke);
         }
@@ -106,8 +108,10 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         size: Pixels,
     ) {
         let size = size.to_bits().max(0) as u32;
-        let primitives = Primitives::Points { reach: (size.min(1 << 24) >> 9) as i32 + 1 };
-        let draw = Draw::new::<S, ()>(&state, Some(Transform::set_depth_scale), points.vertices(), mvp, primitives);
+        let vertices = points.vertices();
+        let samples = samples(vertices, vertices.vertex_count(), |n| Some([n as u16; 3]));
+        let primitives = Primitives::Points { reach: (size.min(1 << 24) >> 9) as i32 + 1, samples };
+        let draw = Draw::new::<S, ()>(&state, Some(Transform::set_depth_scale), vertices, mvp, primitives);
         if self.begin_lines(&draw) {
             LineDraw::new(self, &draw, shader).points(size);
         }

@@ -69,6 +69,35 @@ impl ScreenTriangle {
     pub(super) const NONE: Self =
         Self { number: 0, corners: [0; 3], v: [ScreenVertex::new(0, 0, 0); 3], area: 0, row: 0 };
 
+    /// Returns what has to be done with the triangle, from the results of the vertex stage: [`ScanEvent::Done`] if it
+    /// cannot be visible. A triangle that lies outside of one of `planes` is not.
+    #[inline(never)]
+    pub(super) fn assess(
+        &mut self,
+        packed: &[PackedVertex; 3],
+        planes: Outcode,
+        culling: Culling,
+        clip: &PixelRect,
+        stats: &mut Stats,
+    ) -> ScanEvent {
+        let (mut visible, mut common, mut all) = (true, planes.0, 0);
+        for (v, packed) in self.v.iter_mut().zip(packed) {
+            *v = packed.screen();
+            visible &= packed.is_on_screen();
+            common &= packed.outcode();
+            all |= packed.outcode();
+        }
+        if visible {
+            return if self.passes_culling(culling, clip, stats) { ScanEvent::Visible } else { ScanEvent::Done };
+        }
+        if common != 0 {
+            stats.outside = stats.outside.wrapping_add(1);
+            return ScanEvent::Done;
+        }
+        stats.clipped = stats.clipped.wrapping_add(1);
+        ScanEvent::NeedsClip(Outcode(all))
+    }
+
     /// Stage 5, culling: returns whether the triangle at `v` shows the right side and may cover a pixel of `clip`.
     /// Computes its area and its first row.
     #[inline(never)]

@@ -3,7 +3,7 @@
 
 use super::state::State;
 use crate::math::Projective;
-use crate::mesh::{Bounds, BoundsNode, Lines, Mesh, MeshData, Positions};
+use crate::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions};
 use crate::raster::PixelRect;
 use crate::target::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
 use crate::vertex::{DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, Varyings, VertexShader, Viewport};
@@ -186,6 +186,13 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         }
     }
 
+    /// Stage 6, recording: puts a triangle into the list of the strip that it begins in.
+    #[inline(never)]
+    pub(super) fn record(&mut self, row: i32, corners: [u16; 3], face: u32) {
+        let strip = self.strips.of((row - self.band.start) as u32);
+        self.records.push_triangle(corners, face, strip);
+    }
+
     pub(super) fn is_recording(&self) -> bool {
         F::RECORDS && self.phase == Phase::Record
     }
@@ -224,16 +231,18 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 }
 
 /// Kinds of primitives, with the numbers that tell draws of one mesh apart.
-#[derive(Debug)]
-pub(super) enum Primitives<'d> {
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Primitives {
     Triangles,
     Lines {
-        lines: &'d Lines<'d>,
         /// Largest distance from a line, in pixels, that its stroke may cover.
         reach: i32,
+        /// See [`samples`].
+        samples: u32,
     },
     Points {
         reach: i32,
+        samples: u32,
     },
 }
 
@@ -244,7 +253,7 @@ pub(super) struct Draw<'d> {
     /// The mesh, or the vertices of lines or points as a mesh without triangles.
     pub(super) mesh: &'d Mesh<'d>,
     pub(super) mvp: &'d Projective,
-    primitives: Primitives<'d>,
+    primitives: Primitives,
     /// Number of words per vertex in the records.
     stride: usize,
     /// Hash of the shader's and the stroke's types, see [`types`].
@@ -267,7 +276,7 @@ impl<'d> Draw<'d> {
         depth_scale: Option<fn(&mut Transform, DepthScale)>,
         mesh: &'d Mesh<'d>,
         mvp: &'d Projective,
-        primitives: Primitives<'d>,
+        primitives: Primitives,
     ) -> Self {
         check::<S>();
         let (stride, types) = (S::WORDS + VERTEX_WORDS, types::<S, K>());
@@ -293,7 +302,7 @@ impl<'d> Draw<'d> {
     fn reach(&self) -> i32 {
         match self.primitives {
             Primitives::Triangles => 0,
-            Primitives::Lines { reach, .. } | Primitives::Points { reach } => reach,
+            Primitives::Lines { reach, .. } | Primitives::Points { reach, .. } => reach,
         }
     }
 
@@ -371,15 +380,15 @@ fn name_hash<T>(hash: u32) -> u32 {
 fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
     let Draw { state, mesh, mvp, primitives, .. } = draw;
     let ([ax, ay, az], [bx, by, bz]) = (mesh.bounds().center.to_bits(), mesh.bounds().half.to_bits());
-    let (kind, count) = match primitives {
-        Primitives::Triangles => (0, mesh.triangle_count()),
-        Primitives::Lines { lines, reach } => (1 | reach << 2, lines.count()),
-        Primitives::Points { reach } => (2 | reach << 2, mesh.vertex_count()),
+    let (kind, samples) = match *primitives {
+        Primitives::Triangles => (0, samples(mesh, mesh.triangle_count(), |n| mesh.any_triangle(n))),
+        Primitives::Lines { reach, samples } => (1 | reach << 2, samples),
+        Primitives::Points { reach, samples } => (2 | reach << 2, samples),
     };
     let rest = [
         viewport.x() as u32 ^ (viewport.y() as u32) << 16,
         u32::from(viewport.width()) | u32::from(viewport.height()) << 16,
-        mesh.vertex_count() as u32 ^ (count as u32).rotate_left(16),
+        mesh.vertex_count() as u32 ^ samples,
         kind as u32,
         ax as u32,
         ay as u32,
@@ -398,14 +407,16 @@ fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
     ];
     let entries = mvp.rows().as_flattened().iter();
     let hash = entries.fold(EMPTY_HASH, |hash, entry| step(step(hash, *entry as u32), (*entry >> 32) as u32));
-    let mut hash = rest.iter().fold(hash, |hash, word| step(hash, *word));
+    rest.iter().fold(hash, |hash, word| step(hash, *word))
+}
+
+/// Returns a hash of the number of primitives, and of the first, the middle and the last one: their vertices, and the
+/// position of one of these.
+#[inline]
+pub(super) fn samples(mesh: &Mesh<'_>, count: usize, primitive: impl Fn(usize) -> Option<[u16; 3]>) -> u32 {
+    let mut hash = count as u32;
     for number in [0, count >> 1, count.wrapping_sub(1)] {
-        let corners = match primitives {
-            Primitives::Triangles => mesh.any_triangle(number),
-            Primitives::Lines { lines, .. } => lines.line(number).map(|[i, j]| [i, j, j]),
-            Primitives::Points { .. } => Some([number as u16; 3]),
-        };
-        let [i, j, k] = corners.unwrap_or_default();
+        let [i, j, k] = primitive(number).unwrap_or_default();
         let [x, y, z, _] = mesh.data().positions.numbers(i.into());
         let corner = step(step(step(hash, x as u32), y as u32), z as u32);
         hash = step(step(corner, u32::from(i) | u32::from(j) << 16), k.into());

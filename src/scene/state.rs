@@ -77,6 +77,7 @@ impl State {
     }
 
     /// Returns the faces that are left out.
+    #[inline(never)]
     pub(super) fn culling(&self) -> Culling {
         let counter_clockwise = self.front == Winding::CounterClockwise;
         Culling {

@@ -5,8 +5,8 @@
 //! ```text
 //! ∂u/∂x = (q ∂h/∂x - h ∂q/∂x) / q²         the numerator is constant along a row, and linear down a column
 //! ```
-//! and likewise for ∂u/∂y and for v. So three numbers for each coordinate tell the size of a texel at every pixel of the
-//! triangle's plane, and a level depends on neither the triangle's corners nor how it was clipped.
+//! and likewise for ∂u/∂y and for v. So three numbers for each coordinate tell the size of a texel at every pixel of
+//! the triangle's plane, and a level depends on neither the triangle's corners nor how it was clipped.
 
 use crate::math::leading_zeros;
 use crate::span::TriangleSetup;
@@ -101,7 +101,8 @@ pub(super) mod sealed {
 /// Size of texels on a triangle, see the module's documentation.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TexelScale {
-    /// Numerators of ∂/∂x and ∂/∂y at the pixel `from`, which is on the screen, and the change of the former per row; u first, then v.
+    /// Numerators of ∂/∂x and ∂/∂y at the pixel `from`, which is on the screen, and the change of the former per row;
+    /// u first, then v.
     numerators: [[i32; 3]; 2],
     from: (i32, i32),
     dq_dx: i32,
@@ -114,8 +115,8 @@ pub struct TexelScale {
 }
 
 impl TexelScale {
-    /// Computes the scale from the planes of h of u, h of v and q: values at the screen's corner, changes per column and
-    /// per row. `from` is the pixel of a vertex, where the planes are true.
+    /// Computes the scale from the planes of h of u, h of v and q: values at the screen's corner, changes per column
+    /// and per row. `from` is the pixel of a vertex, where the planes are true.
     ///
     /// # Format
     /// Values are below 2³¹ and their gradients below 2³⁰: numerators are below 2⁶². They are moved onto the screen in

@@ -460,6 +460,7 @@ impl<'a> Records<'a> {
     }
 
     /// Ends recording a draw.
+    #[inline(never)]
     pub(crate) fn end_draw(&mut self) {
         self.set(self.layout.header + 2, u32::from(self.layout.triangles));
         self.set(self.layout.header + 3, self.layout.front as u32);
@@ -626,6 +627,7 @@ impl<'a> Records<'a> {
     }
 
     /// Returns one more than the number of the last triangle of the draw that was found.
+    #[inline(never)]
     pub(crate) fn last_triangle(&self) -> u32 {
         self.get(self.layout.header + 2)
     }

@@ -341,7 +341,9 @@ pub struct PerspectivePlane {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PerspectivePlanes<const P: usize> {
     class: PerspectiveClass,
-    least_straight: u32,
+    /// Complement of `least_straight`: so all of [`NONE`](PerspectiveSetup::NONE) is zero, and no program links the
+    /// copying of a constant for it.
+    crooked: u32,
     inverse_w64: Plane64,
     planes: [PerspectivePlane; P],
 }
@@ -349,7 +351,7 @@ pub struct PerspectivePlanes<const P: usize> {
 impl<const P: usize> PerspectiveSetup for PerspectivePlanes<P> {
     const NONE: Self = Self {
         class: PerspectiveClass::Affine,
-        least_straight: u32::MAX,
+        crooked: 0,
         inverse_w64: Plane64::ZERO,
         planes: [PerspectivePlane { base: 0, shift: 0, wide: Plane64::ZERO }; P],
     };
@@ -361,12 +363,12 @@ impl<const P: usize> PerspectiveSetup for PerspectivePlanes<P> {
 
     #[inline]
     fn least_straight(&self) -> u32 {
-        self.least_straight
+        !self.crooked
     }
 
     #[inline]
     fn set_least_straight(&mut self, q: u32) {
-        self.least_straight = q;
+        self.crooked = !q;
     }
 
     #[inline]
