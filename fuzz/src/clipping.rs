@@ -20,6 +20,9 @@ const SIDE: usize = 6;
 /// Distance from an edge, in px, up to which either decision is right: corners are rounded to 1/256 px, and those of a
 /// cut triangle once more.
 const MARGIN: f64 = 1.0 / 50.0;
+/// 1 / w from which on a pixel may be missing: there, w is below one half of the last bit of a coordinate. The transform
+/// cuts where it is 1/8 of that bit.
+const LARGEST_INVERSE_W: f64 = 2.0 * 65_536.0;
 
 /// Counts how often each pixel is drawn.
 struct Count<'c>(&'c [Cell<u8>; SIDE * SIDE]);
@@ -123,7 +126,7 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
                 Cull::Back => sample.front,
                 Cull::Front => !sample.front,
             };
-            if sample.margin < MARGIN {
+            if sample.margin < MARGIN || sample.inv_w > LARGEST_INVERSE_W {
                 maybe[at] += if range == DepthRange::Clip { 1 } else { 3 };
             } else if sample.covered && drawn {
                 sure[at] += 1;
