@@ -113,7 +113,7 @@ fn drawing_at_a_depth_tests_each_pixel_against_the_meshes() {
         // Depths that are there, so that equality matters.
         let z = if rng.one_in(2) { depths[rng.below(PIXELS as u64) as usize] } else { rng.next_u64() as u16 };
         let (state, kind, colors_seed) = (random_state(&mut rng), rng.below(3), rng.next_u64());
-        let model_state = [DepthState::OFF, DepthState::LESS, state][kind as usize];
+        let model_state = [DepthState::OFF, DepthState::LESS_EQUAL, state][kind as usize];
         let before = colors.clone();
         let mut model = Model { colors, depths, z, state: model_state };
         areas(&mut model, &mut Rng::new(colors_seed));

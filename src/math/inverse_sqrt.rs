@@ -56,8 +56,8 @@ fn divide_by_root([x, y, z]: [i32; 3], q: u32) -> [i32; 3] {
     [component(x), component(y), component(z)]
 }
 
-/// Returns [`unit_vector`] for components of any size: shifts the vector until its length is in 2¹⁴..=2¹⁵. It has no loop, so
-/// that there is none to run for ever where a square wraps.
+/// Returns [`unit_vector`] for components of any size: shifts the vector until its length is in 2¹⁴..=2¹⁵. It has no
+/// loop, so that there is none to run for ever where a square wraps.
 #[inline(never)]
 pub fn unit_vector_of_any_length(v: [i32; 3]) -> [i32; 3] {
     let moved = |[x, y, z]: [i32; 3], down: u32| [x >> down, y >> down, z >> down];

@@ -161,7 +161,7 @@ impl TexelScale {
         }
         fit(&mut numerators, 46, 12);
         for ((numerators, size), shift) in numerators.iter_mut().zip(sizes).zip(shifts) {
-            numerators.iter_mut().for_each(|n| *n = (*n * i64::from(size)) >> (shift - least));
+            numerators.iter_mut().for_each(|n| *n = n.wrapping_mul(i64::from(size)) >> (shift - least));
         }
         fit(&mut numerators, 30, 12);
         Self {

@@ -101,6 +101,9 @@ pub(super) fn straight_log_step<V: Varyings, T>(
     log_step: u32,
 ) -> u32 {
     let (perspective, least) = (&primitive.perspective, primitive.perspective.least_straight());
+    if least == u32::MAX {
+        return 0;
+    }
     let (q, dq) = if perspective.class() == PerspectiveClass::Planes64 {
         let plane = perspective.inverse_w64();
         ((plane.at((x, y)) >> 32) as u32, (plane.dx >> 32) as i32)
