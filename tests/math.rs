@@ -266,16 +266,17 @@ fn products_are_the_exact_ones_rounded_to_nearest() {
         let [a, b] = [(); 2].map(|()| Affine::from_rows(vector(), vector(), vector(), vector()));
         let p = vector();
         let (ra, rb) = (a.to_rows(), b.to_rows());
-        let sum = |i: usize, v: [i32; 3]| (0..3).map(|k| i128::from(ra[i][k]) * i128::from(v[k])).sum::<i128>();
-        for i in 0..3 {
-            for j in 0..4 {
-                let moved = if j == 3 { i128::from(ra[i][3]) << 16 } else { 0 };
-                let exact = nearest(sum(i, [0, 1, 2].map(|k| rb[k][j])) + moved);
-                assert_eq!((a * b).to_rows()[i][j], exact, "seed {}: {a:?} {b:?}", rng.seed());
+        let sum = |row: &[i32; 4], v: [i32; 3]| (0..3).map(|k| i128::from(row[k]) * i128::from(v[k])).sum::<i128>();
+        let columns: [[i32; 3]; 4] = core::array::from_fn(|j| rb.map(|row| row[j]));
+        let (product, point, direction) = ((a * b).to_rows(), a.transform_point(p), a.transform_vector(p));
+        for (i, row) in ra.iter().enumerate() {
+            let moved = i128::from(row[3]) << 16;
+            for (j, column) in columns.into_iter().enumerate() {
+                let exact = nearest(sum(row, column) + if j == 3 { moved } else { 0 });
+                assert_eq!(product[i][j], exact, "seed {}: {a:?} {b:?}", rng.seed());
             }
-            let moved = i128::from(ra[i][3]) << 16;
-            assert_eq!(a.transform_point(p).to_bits()[i], nearest(sum(i, p.to_bits()) + moved), "{a:?} {p:?}");
-            assert_eq!(a.transform_vector(p).to_bits()[i], nearest(sum(i, p.to_bits())), "{a:?} {p:?}");
+            assert_eq!(point.to_bits()[i], nearest(sum(row, p.to_bits()) + moved), "{a:?} {p:?}");
+            assert_eq!(direction.to_bits()[i], nearest(sum(row, p.to_bits())), "{a:?} {p:?}");
         }
     }
 }

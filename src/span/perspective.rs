@@ -10,9 +10,9 @@
 //! pixel depends on the triangle's plane and on the pixel alone: a wall that leaves the screen and a viewport that cuts
 //! it move no texel, and a clip plane moves texels by what the rounding of its corners to 1/256 px does. The first and
 //! the last of these columns may lie outside of the triangle. That goes well where q = 1 / w and d q change little over
-//! `STEP` columns ([`straight_log_step`]). Where they change more, half of `STEP` is tried, then a quarter, down to each
-//! pixel. The change of q is also what makes the straight line differ from the curve, so nothing is off by more than
-//! 1/34 of its change over `STEP` columns.
+//! `STEP` columns ([`straight_log_step`]). Where they change more, half of `STEP` is tried, then a quarter, down to
+//! each pixel. The change of q is also what makes the straight line differ from the curve, so nothing is off by more
+//! than 1/34 of its change over `STEP` columns.
 
 use super::span::Primitive;
 use crate::math::Divisor;
