@@ -26,11 +26,11 @@ impl Demo for Demonstration {
         let (screen, turn) = (shot.screen, shot.turn());
         // How often the pot is lit is part of its shader's type.
         match shot.mode {
-            0 => Box::new(Night::new(screen, turn, PhongNear::new(glaze(turn)))),
-            1 => Box::new(Night::new(screen, turn, Gouraud::new(glaze(turn)))),
-            2 => Box::new(Night::new(screen, turn, Flat::new(glaze(turn)))),
-            3 => Box::new(Night::new(screen, turn, Phong::new(sunlit_glaze(turn)))),
-            _ => Box::new(Night::new(screen, turn, copper(turn))),
+            0 => Box::new(Night::new(screen, turn, || PhongNear::new(glaze(turn)))),
+            1 => Box::new(Night::new(screen, turn, || Gouraud::new(glaze(turn)))),
+            2 => Box::new(Night::new(screen, turn, || Flat::new(glaze(turn)))),
+            3 => Box::new(Night::new(screen, turn, || Phong::new(sunlit_glaze(turn)))),
+            _ => Box::new(Night::new(screen, turn, || copper(turn))),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Scenes of light: materials under several lights, a landscape in fog, glass and sparks.
 
-use super::kept::{Kept, kept_list};
+use super::kept::{Kept, kept, kept_list};
 use super::{Draw, UNLIT, draw_apart, landscape, pot, tiles};
 use zstrip::color::{PixelFormat, Rgba8888};
 use zstrip::embedded_graphics_core::geometry::Size;
@@ -47,25 +47,27 @@ static BY_NIGHT: Affine = look(Vec3::from_milli(0, 1750, 4300), Vec3::from_milli
 
 /// A glazed pot on a tiled table, under the moon and two lamps.
 pub struct Night<S> {
+    // These are dropped in this order: the one that was made last is first.
+    glaze: Kept<S>,
+    wood: Kept<PhongNear<1, 2>>,
     table: Projective,
-    wood: PhongNear<1, 2>,
     pot: Projective,
-    glaze: S,
 }
 
 impl<S> Night<S> {
     /// Makes the scene with a shader for the pot: of [`glaze`], of [`sunlit_glaze`], or [`copper`].
-    pub fn new(screen: Size, turn: Angle16, glaze: S) -> Self {
+    pub fn new(screen: Size, turn: Angle16, glaze: impl FnOnce() -> S) -> Self {
         let camera = close_camera(screen);
-        Self { table: camera * table_model(&BY_NIGHT), wood: wood(turn), pot: camera * pot_model(turn), glaze }
+        let wood = kept(|| wood(turn));
+        Self { glaze: kept(glaze), wood, table: camera * table_model(&BY_NIGHT), pot: camera * pot_model(turn) }
     }
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Draw<F> for Night<S> {
     fn draw(&self, scene: &mut Scene<'_, F>) {
         draw_backdrop(scene, &NIGHT);
-        draw_apart(scene, State::DEFAULT, &tiles::MESH, &self.table, &self.wood);
-        draw_apart(scene, BOTH_SIDES, pot::mesh(), &self.pot, &self.glaze);
+        draw_apart(scene, State::DEFAULT, &tiles::MESH, &self.table, &*self.wood);
+        draw_apart(scene, BOTH_SIDES, pot::mesh(), &self.pot, &*self.glaze);
     }
 }
 
@@ -300,15 +302,15 @@ static BY_DAY: Affine = look(Vec3::from_milli(0, 1500, 4700), Vec3::from_milli(0
 
 /// A glass pot on a lit table, between coloured panes, and a fountain of sparks.
 pub struct Glass {
-    // The lists are dropped in this order: the one that was made last is first.
+    // These are dropped in this order: the one that was made last is first.
+    /// Highlights that no transparency dims.
+    gloss: Kept<Blend<PhongNear<1, 1>, Add>>,
+    body: Kept<Blend<Gouraud<LitMaterial<1, 1>>, Opacity>>,
+    cloth: Kept<PhongNear<1, 1>>,
     sparks: Kept<[(Projective, Blend<Ember, AddAlpha>)]>,
     panes: Kept<[(Projective, Blend<Flat, Multiply>)]>,
     table: Projective,
-    cloth: PhongNear<1, 1>,
     pot: Projective,
-    body: Blend<Gouraud<LitMaterial<1, 1>>, Opacity>,
-    /// Highlights that no transparency dims.
-    gloss: Blend<PhongNear<1, 1>, Add>,
     /// Panes, and the pot as number 4, from back to front.
     order: [u16; 5],
 }
@@ -333,11 +335,11 @@ impl Glass {
         Self {
             sparks,
             panes,
+            cloth: kept(cloth),
+            body: kept(|| body(turn)),
+            gloss: kept(|| gloss(turn)),
             table: camera * table_model(&BY_DAY),
-            cloth: cloth(),
             pot,
-            body: body(turn),
-            gloss: gloss(turn),
             order,
         }
     }
@@ -347,7 +349,7 @@ impl<F: Framebuffer> Draw<F> for Glass {
     fn draw(&self, scene: &mut Scene<'_, F>) {
         // 1. What is opaque.
         draw_backdrop(scene, &STUDIO);
-        draw_apart(scene, State::DEFAULT, &tiles::MESH, &self.table, &self.cloth);
+        draw_apart(scene, State::DEFAULT, &tiles::MESH, &self.table, &*self.cloth);
         // 2. What is transparent, from back to front.
         for k in self.order {
             if let Some((mvp, color)) = self.panes.get(usize::from(k)) {
@@ -356,9 +358,9 @@ impl<F: Framebuffer> Draw<F> for Glass {
             }
             // The inner side of the pot, then its outer side.
             for cull in [Cull::Front, Cull::Back] {
-                draw_apart(scene, State { cull, ..GLASS }, pot::mesh(), &self.pot, &self.body);
+                draw_apart(scene, State { cull, ..GLASS }, pot::mesh(), &self.pot, &*self.body);
             }
-            draw_apart(scene, State { cull: Cull::Back, ..GLASS }, pot::mesh(), &self.pot, &self.gloss);
+            draw_apart(scene, State { cull: Cull::Back, ..GLASS }, pot::mesh(), &self.pot, &*self.gloss);
         }
         // 3. What is added.
         for (mvp, ember) in &*self.sparks {

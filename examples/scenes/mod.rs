@@ -110,7 +110,7 @@ const MANY: &[SceneInfo] = &[
     SceneInfo { name: "labels", make: |screen, turn| kept_drawing(|| labels::Labels::new(screen, turn)) },
     SceneInfo {
         name: "phong",
-        make: |screen, turn| kept_drawing(|| light::Night::new(screen, turn, PhongNear::new(light::glaze(turn)))),
+        make: |screen, turn| kept_drawing(|| light::Night::new(screen, turn, || PhongNear::new(light::glaze(turn)))),
     },
     SceneInfo {
         name: "fog",

@@ -6,7 +6,7 @@
 use super::lit_material::{LitColors, LitDirection, LitMaterial, LitPoint, LitViewer, short};
 use super::local_space::ToLocal;
 use super::material::Material;
-use super::uneven::{NormalMatrix, moved};
+use super::uneven::NormalMatrix;
 use crate::color::channels;
 use crate::math::{Affine, Scalar, Vec3, unit_vector};
 use crate::mesh::Bounds;
@@ -123,8 +123,7 @@ impl<const D: usize, const P: usize> Lighting<D, P> {
         let normals = NormalMatrix::new(model);
         let space = match normals {
             None => ToLocal::new(model, bounds),
-            // Normals and positions are brought to the lights.
-            Some(_) => ToLocal::new(&Affine::IDENTITY, &moved(bounds, model)),
+            Some(_) => ToLocal::of_moved(model, bounds),
         };
         let colors = |light: Rgb888| LitColors {
             diffuse: product(material.matte.diffuse, channels(light)),

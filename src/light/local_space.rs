@@ -1,5 +1,6 @@
 //! A mesh's own space, scaled so that its box fits 16 bits: where light falls on it.
 
+use super::uneven::moved;
 use crate::math::{Affine, Scalar, Vec3};
 use crate::mesh::Bounds;
 
@@ -66,6 +67,13 @@ impl ToLocal {
             extra,
             translation: [tx, ty, tz],
         }
+    }
+
+    /// Makes the transform for a mesh whose normals and positions `model` brings to the lights. Out of line, so that the
+    /// box is not on the stack under what any model calls.
+    #[inline(never)]
+    pub(super) fn of_moved(model: &Affine, bounds: &Bounds) -> Self {
+        Self::new(&Affine::IDENTITY, &moved(bounds, model))
     }
 
     /// Returns the space that the transform leads to.

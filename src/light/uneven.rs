@@ -15,42 +15,49 @@ pub(crate) struct NormalMatrix {
     rows: [[i16; 3]; 3],
 }
 
-/// Returns a word that has as many bits as the widest of the entries.
-const fn widest(rows: &[[i64; 3]; 3]) -> u64 {
-    let mut all = 1;
-    let mut k = 0;
+/// Shifts all entries so that the widest has `bits` bits; rounded down.
+const fn scale(rows: &mut [[i64; 3]; 3], bits: u32) {
+    let (mut all, mut k) = (1, 0);
     while k < 9 {
         all |= rows[k / 3][k % 3].unsigned_abs();
         k += 1;
     }
-    all
+    let width = 64 - all.leading_zeros();
+    while k > 0 {
+        k -= 1;
+        let entry = &mut rows[k / 3][k % 3];
+        *entry = if width > bits { *entry >> (width - bits) } else { *entry << (bits - width) };
+    }
 }
 
-/// Shifts all entries so that the widest has `bits` bits; rounded down.
-const fn scaled(rows: &[[i64; 3]; 3], bits: u32) -> [[i64; 3]; 3] {
-    let width = 64 - widest(rows).leading_zeros();
-    let mut result = [[0; 3]; 3];
-    let mut k = 0;
+/// Shifts the entries of a model's matrix so that the widest has 29 bits, rounded down. Returns the unit of entries, if
+/// it is more than 1, too.
+const fn scaled(rows: &mut [[i32; 3]; 3]) -> i64 {
+    let (mut all, mut k) = (1, 0);
     while k < 9 {
-        let entry = rows[k / 3][k % 3];
-        result[k / 3][k % 3] = if width > bits { entry >> (width - bits) } else { entry << (bits - width) };
+        all |= rows[k / 3][k % 3].unsigned_abs();
         k += 1;
     }
-    result
+    let width = 32 - all.leading_zeros();
+    while k > 0 {
+        k -= 1;
+        let entry = &mut rows[k / 3][k % 3];
+        *entry = if width > 29 { *entry >> (width - 29) } else { *entry << (29 - width) };
+    }
+    if width < 29 { 1 << (29 - width) } else { 1 }
+}
+
+/// Returns the product of two columns: below 3 · 2⁵⁸.
+#[inline(never)]
+const fn product([x, y, z]: &[[i32; 3]; 3], i: usize, j: usize) -> i64 {
+    x[i] as i64 * x[j] as i64 + y[i] as i64 * y[j] as i64 + z[i] as i64 * z[j] as i64
 }
 
 /// Returns whether the columns of a matrix are at right angles and of one length: within 1/256 of the length, and twice
 /// the rounding of the entries, whose unit is `unit`.
-const fn is_even(rows: &[[i64; 3]; 3], unit: i64) -> bool {
-    // Products of columns: below 3 · 2⁵⁸.
-    let mut products = [[0_i64; 3]; 3];
-    let mut k = 0;
-    while k < 27 {
-        let (i, j, row) = (k / 9, k / 3 % 3, &rows[k % 3]);
-        products[i][j] += row[i] * row[j];
-        k += 1;
-    }
-    let [a, b, c] = [products[0][0], products[1][1], products[2][2]];
+#[inline(never)]
+const fn is_even(rows: &[[i32; 3]; 3], unit: i64) -> bool {
+    let [a, b, c] = [product(rows, 0, 0), product(rows, 1, 1), product(rows, 2, 2)];
     let longest = if a > b && a > c {
         a
     } else if b > c {
@@ -62,9 +69,9 @@ const fn is_even(rows: &[[i64; 3]; 3], unit: i64) -> bool {
     longest - a <= slack
         && longest - b <= slack
         && longest - c <= slack
-        && products[0][1].abs() <= slack
-        && products[0][2].abs() <= slack
-        && products[1][2].abs() <= slack
+        && product(rows, 0, 1).abs() <= slack
+        && product(rows, 0, 2).abs() <= slack
+        && product(rows, 1, 2).abs() <= slack
 }
 
 impl NormalMatrix {
@@ -75,38 +82,38 @@ impl NormalMatrix {
     /// # Format
     /// Entries of the model are scaled to 29 bits, and cofactors are below 2⁵⁹. The inverse transpose is the matrix of
     /// cofactors, divided by the determinant, whose sign is all that counts.
+    #[inline(never)]
     pub(crate) const fn new(model: &Affine) -> Option<Self> {
         let [x, y, z] = model.to_rows();
-        let rows = [
-            [x[0] as i64, x[1] as i64, x[2] as i64],
-            [y[0] as i64, y[1] as i64, y[2] as i64],
-            [z[0] as i64, z[1] as i64, z[2] as i64],
-        ];
-        let zeros = widest(&rows).leading_zeros();
-        let rows = scaled(&rows, 29);
-        if is_even(&rows, if zeros > 35 { 1 << (zeros - 35) } else { 1 }) {
-            return None;
-        }
+        let mut rows = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
+        let unit = scaled(&mut rows);
+        if is_even(&rows, unit) { None } else { Some(Self::inverse_transpose(&rows)) }
+    }
+
+    /// Makes the matrix from a model's matrix. Out of line, because its frame is large, and most models are even.
+    #[inline(never)]
+    const fn inverse_transpose(rows: &[[i32; 3]; 3]) -> Self {
         let mut cofactors = [[0; 3]; 3];
         let mut k = 0;
         while k < 9 {
             let (i, j) = (k / 3, k % 3);
             let (a, b) = (&rows[(i + 1) % 3], &rows[(i + 2) % 3]);
             let (p, q) = ((j + 1) % 3, (j + 2) % 3);
-            cofactors[i][j] = a[p] * b[q] - a[q] * b[p];
+            cofactors[i][j] = a[p] as i64 * b[q] as i64 - a[q] as i64 * b[p] as i64;
             k += 1;
         }
-        let large = scaled(&cofactors, 30);
-        let mirrored = rows[0][0] * large[0][0] + rows[0][1] * large[0][1] + rows[0][2] * large[0][2] < 0;
-        let small = scaled(&cofactors, 14);
+        scale(&mut cofactors, 30);
+        let ([x, ..], [first, ..]) = (rows, &cofactors);
+        let mirrored = x[0] as i64 * first[0] + x[1] as i64 * first[1] + x[2] as i64 * first[2] < 0;
+        scale(&mut cofactors, 14);
         let mut entries = [[0; 3]; 3];
         let mut k = 0;
         while k < 9 {
-            let entry = small[k / 3][k % 3] as i16;
+            let entry = cofactors[k / 3][k % 3] as i16;
             entries[k / 3][k % 3] = if mirrored { -entry } else { entry };
             k += 1;
         }
-        Some(Self { rows: entries })
+        Self { rows: entries }
     }
 
     /// Returns the unit normal in the lights' space, 2.14, for one in the mesh's own space.
@@ -136,6 +143,7 @@ pub(crate) fn turned(matrix: &Option<NormalMatrix>, normal: [i16; 3]) -> [i16; 3
 }
 
 /// Returns the box that holds what `model` makes of the box `bounds`.
+#[inline(never)]
 pub(super) fn moved(bounds: &Bounds, model: &Affine) -> Bounds {
     let [x, y, z] = model.to_rows().map(|row| Vec3::from_bits([row[0], row[1], row[2]].map(i32::saturating_abs)));
     let along = Affine::from_rows(x, y, z, Vec3::ZERO);

@@ -130,21 +130,24 @@ impl TexelScale {
         is_flat: bool,
         levels: usize,
     ) -> Self {
-        let here = |k: usize| {
-            let way = dx[k].wrapping_mul(from.0).wrapping_add(dy[k].wrapping_mul(from.1));
-            i64::from(at[k].wrapping_add(way))
+        let ([u, v, q], [u_x, v_x, q_x], [u_y, v_y, q_y]) = (*at, *dx, *dy);
+        let here = |at: i32, x: i32, y: i32| {
+            i64::from(at.wrapping_add(x.wrapping_mul(from.0)).wrapping_add(y.wrapping_mul(from.1)))
         };
-        let (q, q_x, q_y) = (here(2), i64::from(dx[2]), i64::from(dy[2]));
+        let q = here(q, q_x, q_y);
+        let (wide_x, wide_y) = (i64::from(q_x), i64::from(q_y));
         let least = shifts[0].min(shifts[1]);
         // A vertex may be far away from the screen.
         let near = (from.0.clamp(0, 2047), from.1.clamp(0, 2047));
-        let mut numerators = [0, 1].map(|k| {
-            let (h, h_x, h_y) = (here(k), i64::from(dx[k]), i64::from(dy[k]));
+        let numerators = |h: i64, x: i32, y: i32| {
+            let (x, y) = (i64::from(x), i64::from(y));
             if is_flat {
-                return [h_x << 30, h_y << 30, 0];
+                return [x << 30, y << 30, 0];
             }
-            [(h_x * q).wrapping_sub(h * q_x), (h_y * q).wrapping_sub(h * q_y), (h_x * q_y).wrapping_sub(h_y * q_x)]
-        });
+            let change = (x * wide_y).wrapping_sub(y * wide_x);
+            [(x * q).wrapping_sub(h * wide_x), (y * q).wrapping_sub(h * wide_y), change]
+        };
+        let mut numerators = [numerators(here(u, u_x, u_y), u_x, u_y), numerators(here(v, v_x, v_y), v_x, v_y)];
         let mut exponent = if is_flat { -30 } else { 31 } - least as i32 - 16;
         // Shifts all numerators so that each fits that many bits, and the change over 2^`way` pixels.
         let mut fit = |numerators: &mut [[i64; 3]; 2], most: u32, way: u32| {
@@ -167,7 +170,7 @@ impl TexelScale {
         Self {
             numerators: numerators.map(|n| n.map(|n| n as i32)),
             from: near,
-            dq_dx: dx[2],
+            dq_dx: q_x,
             unit: exponent * 256,
             is_flat,
             last: levels.saturating_sub(1).min(255) as u8,
