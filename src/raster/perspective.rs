@@ -43,16 +43,18 @@ pub fn homogenize<V: Varyings>(
 /// Bits that differences leave free where varyings are divided outside of the triangle.
 const STEPPED_SPARE: u32 = 2;
 
-/// Returns whether a triangle is so narrow that planes may change by more from column to column than a number holds.
-/// All other triangles are at least 2 px wide at their widest.
+/// Returns whether a triangle is so narrow that varyings are divided at each of its pixels. Columns that are divided
+/// would lie far outside of it, where planes of a small triangle are not exact enough. All other triangles are at least
+/// 8 px wide at their widest.
 ///
 /// # Format
 /// A value that differs by less than D from the one at vertex 0 changes by at most D 256 (|y₁| + |y₂|) / area from
-/// column to column, with y relative to vertex 0. This is at most D / 2 here. Sums of |y| are below 2²⁶.
+/// column to column, with y relative to vertex 0. This is at most D / 8 in all other triangles, so no plane changes by
+/// more from column to column than a number holds. Sums of |y| are below 2²⁶.
 #[inline(never)]
 fn is_narrow([a, b, c]: &[ScreenVertex; 3]) -> bool {
     let heights = u64::from((b.y - a.y).unsigned_abs() + (c.y - a.y).unsigned_abs());
-    signed_area(a, b, c).unsigned_abs() < heights << 9
+    signed_area(a, b, c).unsigned_abs() < heights << 11
 }
 
 /// Finds where varyings may be taken as linear between columns that are 1 << `log_step` pixels apart, from the changes

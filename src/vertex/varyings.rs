@@ -137,7 +137,7 @@ fn advance_one(values: &mut [i32], changes: &[i32], pixels: i32, k: usize) {
 /// A [`Shader::STEP`](crate::span::Shader::STEP) of more than 1 divides at the columns of the screen that are multiples
 /// of it, and takes values as linear in between. Where q = 1 / w, or a value times q, changes by more than an eighth of
 /// q from one of these columns to the next, half of the step is taken, and so on. So a value is never off by more than
-/// 1/34 of its change over the step: by half a pixel at a step of 16. Triangles that are narrower than some 4 pixels,
+/// 1/34 of its change over the step: by half a pixel at a step of 16. Triangles that are narrower than some 16 pixels,
 /// and values that differ by 2²⁶ or more over the triangle (1,024 repeats of a texture), are divided at each pixel.
 ///
 /// A value depends on the triangle's plane and on the pixel. What cuts the triangle (the screen, a viewport, strips, a
