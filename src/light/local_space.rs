@@ -69,8 +69,8 @@ impl ToLocal {
         }
     }
 
-    /// Makes the transform for a mesh whose normals and positions `model` brings to the lights. Out of line, so that the
-    /// box is not on the stack under what any model calls.
+    /// Makes the transform for a mesh whose normals and positions `model` brings to the lights. Out of line, so that
+    /// the box is not on the stack under what any model calls.
     #[inline(never)]
     pub(super) fn of_moved(model: &Affine, bounds: &Bounds) -> Self {
         Self::new(&Affine::IDENTITY, &moved(bounds, model))
