@@ -90,6 +90,14 @@ pub(super) const fn is_straight(q: u32, least: u32) -> bool {
     least <= q && q < 3 << 30
 }
 
+/// Returns the binary logarithm of the distance of the columns at which varyings of a triangle are divided, where a
+/// shader asks for `step`; 0 if the triangle's varyings are divided at each pixel. Its spans then need not look for
+/// straight parts.
+#[inline(always)]
+pub(super) fn longest_log_step<V: Varyings>(perspective: &V::PerspectiveSetup, step: usize) -> u32 {
+    if perspective.least_straight() == u32::MAX { 0 } else { step.trailing_zeros() }
+}
+
 /// Returns the binary logarithm of the greatest step, up to 1 << `log_step`, for which varyings may be taken as linear
 /// between the two multiples of it around a pixel; 0 if the pixel has to be divided by itself. `linear` are the values
 /// at the pixel that are linear on the screen.
@@ -101,9 +109,6 @@ pub(super) fn straight_log_step<V: Varyings, T>(
     log_step: u32,
 ) -> u32 {
     let (perspective, least) = (&primitive.perspective, primitive.perspective.least_straight());
-    if least == u32::MAX {
-        return 0;
-    }
     let (q, dq) = if perspective.class() == PerspectiveClass::Planes64 {
         let plane = perspective.inverse_w64();
         ((plane.at((x, y)) >> 32) as u32, (plane.dx >> 32) as i32)

@@ -1,7 +1,7 @@
 //! The seam of the fragment stage, and the loops that call a shader for the pixels of a span.
 
 use super::depth::{DepthDyn, DepthState, DepthTest};
-use super::perspective::{correct_at, straight_log_step};
+use super::perspective::{correct_at, longest_log_step, straight_log_step};
 use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
 use crate::vertex::{MAX_IN_REGISTERS, Varyings, VertexShader};
@@ -269,8 +269,9 @@ fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
         column: None,
         test,
     };
+    let log_step = longest_log_step::<S::Varyings>(&stretch.span.primitive.perspective, S::STEP);
     while !stretch.span.color.is_empty() {
-        let pixels = stretch.aim(S::STEP.trailing_zeros());
+        let pixels = stretch.aim(log_step);
         stretch.draw(shader, pixels);
     }
 }
@@ -300,7 +301,10 @@ impl<P: PixelFormat, V: Varyings, T, D: DepthTest> Stretch<'_, '_, P, V, T, D> {
         let Primitive { perspective, d_dx, .. } = span.primitive;
         let (x, y) = span.position;
         *varyings = *linear;
-        let log_step = straight_log_step(span.primitive, linear, span.position, log_step);
+        let log_step = match log_step {
+            0 => 0,
+            _ => straight_log_step(span.primitive, linear, span.position, log_step),
+        };
         if log_step == 0 {
             correct_at::<V>(perspective, span.position, varyings);
             linear.advance(d_dx, 1);

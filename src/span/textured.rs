@@ -30,7 +30,7 @@
 //!    Cortex-M4.
 
 use super::depth::{DepthTest, RUN, count_passing_prefix, untested_tail};
-use super::perspective::is_straight;
+use super::perspective::{is_straight, longest_log_step};
 use super::span::{Primitive, Span};
 use crate::color::PixelFormat;
 use crate::math::{CoarseDivisor, SMALL_CORE};
@@ -327,12 +327,23 @@ impl UvStepper {
         dz_dx: 0,
     };
 
+    /// Returns the binary logarithm of the step to begin the spans of a primitive with, where a shader asks for `step`;
+    /// 0 if a stepper can draw none of them: it has no planes of 64 bits, and divides at columns that are apart.
+    #[inline(always)]
+    pub(crate) fn log_step<V: Varyings, U>(primitive: &Primitive<V, U>, step: usize) -> u32 {
+        match primitive.perspective.class() {
+            PerspectiveClass::Planes64 => 0,
+            _ => longest_log_step::<V>(&primitive.perspective, step),
+        }
+    }
+
     /// Puts the stepper before the pixels of a span that [`texture_span`] can draw, and returns how many they are. The
     /// stepper then knows how many pixels the span has [before](Self::before) them. Those that can be drawn lie between
     /// columns over which coordinates are straight enough
     /// ([`straight_log_step`](super::perspective::straight_log_step)). As q is linear, they lie side by side.
     ///
-    /// Columns are 1 << `log_step` pixels apart. This is 1 << `halvings` times less than the shader's step.
+    /// Columns are 1 << `log_step` pixels apart. This is 1 << `halvings` times less than [`log_step`](Self::log_step)
+    /// says, which must not be 0.
     #[inline(never)]
     pub(crate) fn begin<V: Varyings, U>(
         &mut self,
@@ -357,9 +368,6 @@ impl UvStepper {
     ) -> usize {
         let perspective = &primitive.perspective;
         let (class, least) = (perspective.class(), perspective.least_straight());
-        if class == PerspectiveClass::Planes64 || least == u32::MAX {
-            return 0;
-        }
         let value = |values: &[i32], k: usize| values.get(k).copied().unwrap_or(0);
         let last = |values: &[i32]| values.last().copied().unwrap_or(0);
         let change = primitive.d_dx.as_ref();
