@@ -8,7 +8,7 @@
 use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::{Painter, RasterHooks};
 use super::scan::may_reach;
-use super::scene::{Draw, Phase, Primitives, Scene, samples};
+use super::scene::{Draw, Phase, Primitives, Scene};
 use super::state::State;
 use super::stroke::{Stroke, block};
 use crate::math::{Pixels, Projective};
@@ -67,7 +67,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         stroke: &K,
     ) {
         let vertices = lines.vertices();
-        let samples = samples(vertices, lines.count(), |n| lines.line(n).map(|[i, j]| [i, j, j]));
+        let samples = self.samples(vertices, lines.count(), |n| lines.line(n).map(|[i, j]| [i, j, j]));
         let primitives = Primitives::Lines { reach: stroke.reach(), samples };
         let draw = Draw::new::<S, K>(&state, Some(Transform::set_depth_scale), vertices, mvp, primitives);
         if self.begin_lines(&draw) {
@@ -109,7 +109,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     ) {
         let size = size.to_bits().max(0) as u32;
         let vertices = points.vertices();
-        let samples = samples(vertices, vertices.vertex_count(), |n| Some([n as u16; 3]));
+        let samples = self.samples(vertices, vertices.vertex_count(), |n| Some([n as u16; 3]));
         let primitives = Primitives::Points { reach: (size.min(1 << 24) >> 9) as i32 + 1, samples };
         let draw = Draw::new::<S, ()>(&state, Some(Transform::set_depth_scale), vertices, mvp, primitives);
         if self.begin_lines(&draw) {

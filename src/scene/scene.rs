@@ -186,6 +186,12 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         }
     }
 
+    /// Returns [`samples`] of lines or points, for the fingerprint of their draw; 0 if draws need none, because nothing
+    /// is recorded.
+    pub(super) fn samples(&self, mesh: &Mesh<'_>, count: usize, primitive: impl Fn(usize) -> Option<[u16; 3]>) -> u32 {
+        if F::RECORDS && self.phase != Phase::Direct { samples(mesh, count, primitive) } else { 0 }
+    }
+
     /// Stage 6, recording: puts a triangle into the list of the strip that it begins in.
     #[inline(never)]
     pub(super) fn record(&mut self, row: i32, corners: [u16; 3], face: u32) {
@@ -237,7 +243,7 @@ pub(super) enum Primitives {
     Lines {
         /// Largest distance from a line, in pixels, that its stroke may cover.
         reach: i32,
-        /// See [`samples`].
+        /// See [`Scene::samples`].
         samples: u32,
     },
     Points {
@@ -413,7 +419,7 @@ fn fingerprint(draw: &Draw<'_>, viewport: &Viewport) -> u32 {
 /// Returns a hash of the number of primitives, and of the first, the middle and the last one: their vertices, and the
 /// position of one of these.
 #[inline]
-pub(super) fn samples(mesh: &Mesh<'_>, count: usize, primitive: impl Fn(usize) -> Option<[u16; 3]>) -> u32 {
+fn samples(mesh: &Mesh<'_>, count: usize, primitive: impl Fn(usize) -> Option<[u16; 3]>) -> u32 {
     let mut hash = count as u32;
     for number in [0, count >> 1, count.wrapping_sub(1)] {
         let [i, j, k] = primitive(number).unwrap_or_default();
