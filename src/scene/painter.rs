@@ -157,11 +157,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             let steps = bias(&self.state.bias, v, depth);
             depth.base = depth.base.wrapping_add((steps as u32) << 16);
         }
-        let Primitive { at_origin, d_dx, d_dy, flat, side, perspective, .. } = &*primitive;
         let position = (v[0].x >> 8, v[0].y >> 8);
-        let area = area.unsigned_abs();
-        let (flat, side) = (*flat, *side);
-        let triangle = TriangleSetup { corners, area, flat, side, at_origin, d_dx, d_dy, position, perspective };
+        let triangle = TriangleSetup::new(primitive, corners, area.unsigned_abs(), position);
         primitive.setup = self.shader.setup(&triangle);
     }
 

@@ -195,20 +195,9 @@ fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     // The planes of a line change along its longer axis only. The shader is told the change from pixel to pixel of the
     // line.
     let primitive = |at_origin: S::Varyings, d_dx: S::Varyings, d_dy: S::Varyings| {
-        let (area, side, at, corners) = (0, Side::Front, &at_origin, [from, to, to]);
-        let (d_dx_of_line, perspective) = (&change, &<S::Varyings as Varyings>::PerspectiveSetup::NONE);
-        let setup = shader.setup(&TriangleSetup {
-            corners,
-            area,
-            flat,
-            side,
-            at_origin: at,
-            d_dx: d_dx_of_line,
-            d_dy: &S::Varyings::ZERO,
-            position: (a.x >> 8, a.y >> 8),
-            perspective,
-        });
-        Primitive { dz_dx: dz, d_dx, d_dy, ..Primitive::constant(at_origin, flat, side, setup) }
+        let line = Primitive { d_dx: change, ..Primitive::constant(at_origin, flat, Side::Front, ()) };
+        let setup = shader.setup(&TriangleSetup::new(&line, [from, to, to], 0, (a.x >> 8, a.y >> 8)));
+        Primitive { dz_dx: dz, d_dx, d_dy, ..Primitive::constant(at_origin, flat, Side::Front, setup) }
     };
     // Both depths below include the bias and the half that rounds.
     let bias = painter.bias([a.z.min(b.z), a.z.max(b.z)], dz);
@@ -594,20 +583,10 @@ pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
     if rect.is_empty() {
         return;
     }
-    let (side, d_dx, corners) = (Side::Front, &S::Varyings::ZERO, [varyings; 3]);
+    let point = Primitive::constant(*varyings, flat, Side::Front, ());
     let position = (rect.x.start, rect.y.start);
-    let setup = painter.shader.setup(&TriangleSetup {
-        corners,
-        area: 0,
-        flat,
-        side,
-        at_origin: varyings,
-        d_dx,
-        d_dy: d_dx,
-        position,
-        perspective: &<S::Varyings as Varyings>::PerspectiveSetup::NONE,
-    });
-    let primitive = &Primitive::constant(*varyings, flat, side, setup);
+    let setup = painter.shader.setup(&TriangleSetup::new(&point, [varyings; 3], 0, position));
+    let primitive = &Primitive::constant(*varyings, flat, Side::Front, setup);
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
     let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
     let (test, mut nothing) = (painter.test(), [(); usize::MAX]);

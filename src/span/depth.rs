@@ -96,69 +96,44 @@ pub trait DepthTest: DepthStorage<<Self as DepthTest>::Depth> {
     fn write(self, z: u16, stored: &mut Self::Depth);
 }
 
-/// The test of [`DepthState::LESS`].
-#[derive(Clone, Copy, Debug)]
-pub struct DepthLess;
+macro_rules! storing_test {
+    ($name:ident, $comparison:tt, $state:ident) => {
+        #[doc = concat!("The test of [`DepthState::", stringify!($state), "`].")]
+        #[derive(Clone, Copy, Debug)]
+        pub struct $name;
 
-impl DepthTest for DepthLess {
-    const ENABLED: bool = true;
+        impl DepthTest for $name {
+            const ENABLED: bool = true;
 
-    type Depth = u16;
+            type Depth = u16;
 
-    #[inline(always)]
-    fn passes(self, z: u16, stored: u16) -> bool {
-        z < stored
-    }
+            #[inline(always)]
+            fn passes(self, z: u16, stored: u16) -> bool {
+                z $comparison stored
+            }
 
-    #[inline(always)]
-    fn write(self, z: u16, stored: &mut u16) {
-        *stored = z;
-    }
+            #[inline(always)]
+            fn write(self, z: u16, stored: &mut u16) {
+                *stored = z;
+            }
+        }
+
+        impl DepthStorage<u16> for $name {
+            #[inline(always)]
+            fn slots<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
+                depths
+            }
+
+            #[inline(always)]
+            fn as_dyn(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
+                Some((DepthDyn::new(DepthState::$state), stored))
+            }
+        }
+    };
 }
 
-impl DepthStorage<u16> for DepthLess {
-    #[inline(always)]
-    fn slots<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
-        depths
-    }
-
-    #[inline(always)]
-    fn as_dyn(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
-        Some((DepthDyn::new(DepthState::LESS), stored))
-    }
-}
-
-/// The test of [`DepthState::LESS_EQUAL`].
-#[derive(Clone, Copy, Debug)]
-pub struct DepthLessEqual;
-
-impl DepthTest for DepthLessEqual {
-    const ENABLED: bool = true;
-
-    type Depth = u16;
-
-    #[inline(always)]
-    fn passes(self, z: u16, stored: u16) -> bool {
-        z <= stored
-    }
-
-    #[inline(always)]
-    fn write(self, z: u16, stored: &mut u16) {
-        *stored = z;
-    }
-}
-
-impl DepthStorage<u16> for DepthLessEqual {
-    #[inline(always)]
-    fn slots<'d>(depths: &'d mut [u16], _: &'d mut [()]) -> &'d mut [u16] {
-        depths
-    }
-
-    #[inline(always)]
-    fn as_dyn(self, stored: &mut [u16]) -> Option<(DepthDyn, &mut [u16])> {
-        Some((DepthDyn::new(DepthState::LESS_EQUAL), stored))
-    }
-}
+storing_test!(DepthLess, <, LESS);
+storing_test!(DepthLessEqual, <=, LESS_EQUAL);
 
 /// The test of [`DepthState::OFF`].
 #[derive(Clone, Copy, Debug)]

@@ -60,17 +60,8 @@ mod tests {
             let at_origin = ends.map(|[a, _]| a);
             let (side, dz_dx, z) = (Side::Front, rng.below(4096) as i32 - 2048, 20_000 << 16);
             let corners = [&at_origin; 3];
-            let triangle = TriangleSetup {
-                corners,
-                area: 1,
-                flat: 0,
-                side,
-                at_origin: &at_origin,
-                d_dx: &d_dx,
-                d_dy: &d_dx,
-                position: (0, 0),
-                perspective: &(),
-            };
+            let plane = Primitive { d_dx, ..Primitive::constant(at_origin, 0, side, ()) };
+            let triangle = TriangleSetup::new(&plane, corners, 1, (0, 0));
             let setup = ColorSetup::new::<Gray8>(&triangle);
             let primitive = &Primitive { dz_dx, d_dx, ..Primitive::constant(at_origin, 0, side, setup) };
             let case = naive::Case { length, z, dz_dx, background: 77_u8 };

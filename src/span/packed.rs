@@ -529,17 +529,8 @@ mod tests {
             first[k].wrapping_sub(d_dx[k].wrapping_mul(x)).wrapping_sub(d_dy[k].wrapping_mul(y))
         });
         let (corners, side) = ([&at_origin; 3], Side::Front);
-        let triangle = TriangleSetup {
-            corners,
-            area: 1,
-            flat: 0,
-            side,
-            at_origin: &at_origin,
-            d_dx: &d_dx,
-            d_dy: &d_dx,
-            position: (0, 0),
-            perspective: &(),
-        };
+        let plane = Primitive { d_dx, ..Primitive::constant(at_origin, 0, side, ()) };
+        let triangle = TriangleSetup::new(&plane, corners, 1, (0, 0));
         let setup = ColorSetup::new::<P>(&triangle);
         Primitive { dz_dx, d_dx, d_dy, ..Primitive::constant(at_origin, 0, side, setup) }
     }

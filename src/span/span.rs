@@ -47,6 +47,20 @@ pub struct TriangleSetup<'a, V: Varyings> {
     pub(crate) perspective: &'a V::PerspectiveSetup,
 }
 
+impl<'a, V: Varyings> TriangleSetup<'a, V> {
+    /// Describes a primitive to a shader, which makes the primitive's setup of it.
+    #[inline(always)]
+    pub(crate) const fn new<T>(
+        primitive: &'a Primitive<V, T>,
+        corners: [&'a V; 3],
+        area: u64,
+        position: (i32, i32),
+    ) -> Self {
+        let Primitive { flat, side, at_origin, d_dx, d_dy, perspective, .. } = primitive;
+        Self { corners, area, flat: *flat, side: *side, at_origin, d_dx, d_dy, position, perspective }
+    }
+}
+
 /// Data that all spans of a triangle, a line or a point share: plane equations, and data of the shader.
 #[derive(Clone, Copy, Debug)]
 pub struct Primitive<V: Varyings, T = ()> {
