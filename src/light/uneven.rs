@@ -15,37 +15,28 @@ pub(crate) struct NormalMatrix {
     rows: [[i16; 3]; 3],
 }
 
-/// Shifts all entries so that the widest has `bits` bits; rounded down.
-const fn scale(rows: &mut [[i64; 3]; 3], bits: u32) {
-    let (mut all, mut k) = (1, 0);
-    while k < 9 {
-        all |= rows[k / 3][k % 3].unsigned_abs();
-        k += 1;
-    }
-    let width = 64 - all.leading_zeros();
-    while k > 0 {
-        k -= 1;
-        let entry = &mut rows[k / 3][k % 3];
-        *entry = if width > bits { *entry >> (width - bits) } else { *entry << (bits - width) };
-    }
+macro_rules! scaling {
+    ($name:ident, $entry:ty) => {
+        /// Shifts all entries so that the widest has `bits` bits, rounded down. Returns the number of bits it had.
+        const fn $name(rows: &mut [[$entry; 3]; 3], bits: u32) -> u32 {
+            let (mut all, mut k) = (1, 0);
+            while k < 9 {
+                all |= rows[k / 3][k % 3].unsigned_abs();
+                k += 1;
+            }
+            let width = <$entry>::BITS - all.leading_zeros();
+            while k > 0 {
+                k -= 1;
+                let entry = &mut rows[k / 3][k % 3];
+                *entry = if width > bits { *entry >> (width - bits) } else { *entry << (bits - width) };
+            }
+            width
+        }
+    };
 }
 
-/// Shifts the entries of a model's matrix so that the widest has 29 bits, rounded down. Returns the unit of entries, if
-/// it is more than 1, too.
-const fn scaled(rows: &mut [[i32; 3]; 3]) -> i64 {
-    let (mut all, mut k) = (1, 0);
-    while k < 9 {
-        all |= rows[k / 3][k % 3].unsigned_abs();
-        k += 1;
-    }
-    let width = 32 - all.leading_zeros();
-    while k > 0 {
-        k -= 1;
-        let entry = &mut rows[k / 3][k % 3];
-        *entry = if width > 29 { *entry >> (width - 29) } else { *entry << (29 - width) };
-    }
-    if width < 29 { 1 << (29 - width) } else { 1 }
-}
+scaling!(scale, i32);
+scaling!(scale_wide, i64);
 
 /// Returns the product of two columns: below 3 · 2⁵⁸.
 #[inline(never)]
@@ -86,7 +77,9 @@ impl NormalMatrix {
     pub(crate) const fn new(model: &Affine) -> Option<Self> {
         let [x, y, z] = model.to_rows();
         let mut rows = [[x[0], x[1], x[2]], [y[0], y[1], y[2]], [z[0], z[1], z[2]]];
-        let unit = scaled(&mut rows);
+        let width = scale(&mut rows, 29);
+        // What was the last bit.
+        let unit = 1 << 29_u32.saturating_sub(width);
         if is_even(&rows, unit) { None } else { Some(Self::inverse_transpose(&rows)) }
     }
 
@@ -102,10 +95,10 @@ impl NormalMatrix {
             cofactors[i][j] = a[p] as i64 * b[q] as i64 - a[q] as i64 * b[p] as i64;
             k += 1;
         }
-        scale(&mut cofactors, 30);
+        scale_wide(&mut cofactors, 30);
         let ([x, ..], [first, ..]) = (rows, &cofactors);
         let mirrored = x[0] as i64 * first[0] + x[1] as i64 * first[1] + x[2] as i64 * first[2] < 0;
-        scale(&mut cofactors, 14);
+        scale_wide(&mut cofactors, 14);
         let mut entries = [[0; 3]; 3];
         let mut k = 0;
         while k < 9 {
@@ -128,8 +121,7 @@ impl NormalMatrix {
             let [a, b, c] = long(row);
             a.wrapping_mul(n[0]).wrapping_add(b.wrapping_mul(n[1])).wrapping_add(c.wrapping_mul(n[2]))
         });
-        let unit = unit_vector_of_any_length(sum);
-        unit.map(|c| c as i16)
+        unit_vector_of_any_length(sum).map(|c| c as i16)
     }
 }
 
