@@ -474,31 +474,27 @@ fn exact_texels(kind: Kind, from: [f64; 3], to: [f64; 3], columns: &[i32]) -> Ve
     columns.iter().map(at).collect()
 }
 
-#[test]
-fn texels_along_a_line_are_those_of_space() {
-    let (from, to) = ([-0.5, 0.0, -1.0], [2.0, 0.0, -4.0]);
-    let (columns, exact) = ([16, 24, 32, 40, 48], [8, 26, 53, 95, 175]);
+/// Checks the texels of a line, of 256, at some columns: exactly with a shader that divides at each pixel, and within
+/// one of a texture on a thin line, which is divided at each pixel too. Wide lines, which are divided as triangles are,
+/// are the same in all strips.
+fn check_texels(from: [f64; 3], to: [f64; 3], columns: &[i32], exact: &[i32]) {
     for style in [Style::Thin, Style::Thick(3 * 256)] {
-        assert_eq!(exact_texels(Kind::Line(style), from, to, &columns), exact, "{style:?}");
+        assert_eq!(exact_texels(Kind::Line(style), from, to, columns), exact, "{style:?}");
     }
-    // Thin lines are divided at each pixel, with textures too. Thick ones are divided as triangles are.
-    let shown = texels(from, to, &columns.map(|x| x as usize), &Thin);
-    assert!(shown.iter().zip(exact).all(|(found, exact)| i32::from(*found).abs_diff(exact) <= 1), "{shown:?}");
+    let shown = texels(from, to, &columns.iter().map(|x| *x as usize).collect::<Vec<_>>(), &Thin);
+    assert!(shown.iter().zip(exact).all(|(found, exact)| i32::from(*found).abs_diff(*exact) <= 1), "{shown:?}");
     texels(from, to, &[], &Thick::px(3));
     texels(from, to, &[], &Smooth::px(3));
 }
 
 #[test]
+fn texels_along_a_line_are_those_of_space() {
+    check_texels([-0.5, 0.0, -1.0], [2.0, 0.0, -4.0], &[16, 24, 32, 40, 48], &[8, 26, 53, 95, 175]);
+}
+
+#[test]
 fn texels_along_a_line_from_behind_the_eye_are_those_of_space() {
-    let (from, to) = ([-0.5, 0.0, 1.0], [1.0, 0.0, -4.0]);
-    let (columns, exact) = ([16, 24, 32, 40], [66, 72, 86, 158]);
-    for style in [Style::Thin, Style::Thick(3 * 256)] {
-        assert_eq!(exact_texels(Kind::Line(style), from, to, &columns), exact, "{style:?}");
-    }
-    let shown = texels(from, to, &columns.map(|x| x as usize), &Thin);
-    assert!(shown.iter().zip(exact).all(|(found, exact)| i32::from(*found).abs_diff(exact) <= 1), "{shown:?}");
-    texels(from, to, &[], &Thick::px(3));
-    texels(from, to, &[], &Smooth::px(3));
+    check_texels([-0.5, 0.0, 1.0], [1.0, 0.0, -4.0], &[16, 24, 32, 40], &[66, 72, 86, 158]);
 }
 
 /// A tile with texels of 1 to 16.
