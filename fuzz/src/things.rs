@@ -315,6 +315,30 @@ impl<P: PixelFormat> Shader<P> for Moving<'_> {
 /// Number of shaders in [`with_shader`].
 pub const SHADERS: usize = 24;
 
+/// Evaluates `$body` with one of the shaders, by number; the last one stands for all greater numbers. The shaders are of
+/// different types, so the body is compiled for each.
+#[macro_export]
+macro_rules! one_of {
+    (@$left:ident, |$shader:ident| $body:expr; $last:expr $(,)?) => {{
+        let _ = $left;
+        let $shader = $last;
+        $body
+    }};
+    (@$left:ident, |$shader:ident| $body:expr; $first:expr, $($rest:expr),+ $(,)?) => {
+        if $left == 0 {
+            let $shader = $first;
+            $body
+        } else {
+            let $left = $left - 1;
+            $crate::one_of!(@$left, |$shader| $body; $($rest),+)
+        }
+    };
+    ($number:expr, |$shader:ident| $body:expr; $($shaders:expr),+ $(,)?) => {{
+        let left = $number;
+        $crate::one_of!(@left, |$shader| $body; $($shaders),+)
+    }};
+}
+
 /// Evaluates `$body` with `$shader` being a reference to the shader of this number.
 #[macro_export]
 macro_rules! with_shader {
@@ -324,106 +348,33 @@ macro_rules! with_shader {
         use zstrip::texture::{Bilinear, Clamp, Mirror};
         let kit: &things::Kit = $kit;
         let (tile, image, indexed, leaf) = (things::tile(), things::image(), things::indexed(), things::leaf());
-        match $number {
-            0 => {
-                let $shader = &Flat::unlit(kit.color);
-                $body
-            }
-            1 => {
-                let $shader = &Flat::vertex_colors();
-                $body
-            }
-            2 => {
-                let $shader = &Flat::new(kit.sunlit);
-                $body
-            }
-            3 => {
-                let $shader = &Gouraud::vertex_colors();
-                $body
-            }
-            4 => {
-                let $shader = &Gouraud::new(kit.near);
-                $body
-            }
-            5 => {
-                let $shader = &Textured::new(&tile);
-                $body
-            }
-            6 => {
-                let $shader = &Textured::new(&image).wrap(Clamp).filter(Bilinear);
-                $body
-            }
-            7 => {
-                let $shader = &Textured::new(&indexed).wrap(Mirror);
-                $body
-            }
-            8 => {
-                let levels = things::levels();
-                let $shader = &Textured::mipmapped(&levels).expect("levels");
-                $body
-            }
-            9 => {
-                let $shader = &Textured::new(&tile).lit(kit.sunlit);
-                $body
-            }
-            10 => {
-                let $shader = &Phong::new(kit.lit);
-                $body
-            }
-            11 => {
-                let $shader = &PhongNear::new(kit.near);
-                $body
-            }
-            12 => {
-                let $shader =
-                    &Matcap::<zstrip::embedded_graphics_core::pixelcolor::Rgb565, 4>::new(&things::SPHERE, &kit.model);
-                $body
-            }
-            13 => {
-                let $shader = &DepthOnly;
-                $body
-            }
-            14 => {
-                let $shader = &Fogged::new(Gouraud::new(kit.sunlit), &kit.fog, kit.color);
-                $body
-            }
-            15 => {
-                let $shader = &Fogged::new(Textured::new(&tile), &kit.fog, kit.color);
-                $body
-            }
-            16 => {
-                let $shader = &Blend::new(Flat::unlit(kit.color), Opacity(kit.byte));
-                $body
-            }
-            17 => {
-                let $shader = &Blend::new(Textured::new(&leaf).filter(Bilinear), Alpha);
-                $body
-            }
-            18 => {
-                let $shader = &Blend::new(Gouraud::vertex_colors(), Add);
-                $body
-            }
-            19 => {
-                let $shader = &Blend::new(Textured::new(&leaf), AddAlpha);
-                $body
-            }
-            20 => {
-                let $shader = &Blend::new(Gouraud::vertex_colors(), Multiply);
-                $body
-            }
-            21 => {
-                let $shader = &AlphaTest::new(Textured::new(&leaf).wrap(Clamp), kit.byte);
-                $body
-            }
-            22 => {
-                let $shader = &ScreenDoor::new(Gouraud::new(kit.sunlit), kit.byte);
-                $body
-            }
-            _ => {
-                let $shader = &things::Moving(kit);
-                $body
-            }
-        }
+        let levels = things::levels();
+        $crate::one_of!($number, |$shader| $body;
+            &Flat::unlit(kit.color),
+            &Flat::vertex_colors(),
+            &Flat::new(kit.sunlit),
+            &Gouraud::vertex_colors(),
+            &Gouraud::new(kit.near),
+            &Textured::new(&tile),
+            &Textured::new(&image).wrap(Clamp).filter(Bilinear),
+            &Textured::new(&indexed).wrap(Mirror),
+            &Textured::mipmapped(&levels).expect("levels"),
+            &Textured::new(&tile).lit(kit.sunlit),
+            &Phong::new(kit.lit),
+            &PhongNear::new(kit.near),
+            &Matcap::<zstrip::embedded_graphics_core::pixelcolor::Rgb565, 4>::new(&things::SPHERE, &kit.model),
+            &DepthOnly,
+            &Fogged::new(Gouraud::new(kit.sunlit), &kit.fog, kit.color),
+            &Fogged::new(Textured::new(&tile), &kit.fog, kit.color),
+            &Blend::new(Flat::unlit(kit.color), Opacity(kit.byte)),
+            &Blend::new(Textured::new(&leaf).filter(Bilinear), Alpha),
+            &Blend::new(Gouraud::vertex_colors(), Add),
+            &Blend::new(Textured::new(&leaf), AddAlpha),
+            &Blend::new(Gouraud::vertex_colors(), Multiply),
+            &AlphaTest::new(Textured::new(&leaf).wrap(Clamp), kit.byte),
+            &ScreenDoor::new(Gouraud::new(kit.sunlit), kit.byte),
+            &things::Moving(kit),
+        )
     }};
 }
 
@@ -437,40 +388,16 @@ macro_rules! with_format_shader {
         use zstrip::texture::{Bilinear, Clamp};
         let kit: &things::Kit = $kit;
         let (tile, image, leaf) = (things::tile(), things::image(), things::leaf());
-        match $number % 8 {
-            0 => {
-                let $shader = &Flat::new(kit.sunlit);
-                $body
-            }
-            1 => {
-                let $shader = &Gouraud::vertex_colors();
-                $body
-            }
-            2 => {
-                let $shader = &Textured::new(&tile);
-                $body
-            }
-            3 => {
-                let $shader = &Textured::new(&image).wrap(Clamp).filter(Bilinear);
-                $body
-            }
-            4 => {
-                let $shader = &Fogged::new(Gouraud::new(kit.sunlit), &kit.fog, kit.color);
-                $body
-            }
-            5 => {
-                let $shader = &Blend::new(Gouraud::vertex_colors(), Opacity(kit.byte));
-                $body
-            }
-            6 => {
-                let $shader = &Blend::new(Textured::new(&leaf), Alpha);
-                $body
-            }
-            _ => {
-                let $shader = &AlphaTest::new(Textured::new(&tile).lit(kit.sunlit), kit.byte);
-                $body
-            }
-        }
+        $crate::one_of!($number % 8, |$shader| $body;
+            &Flat::new(kit.sunlit),
+            &Gouraud::vertex_colors(),
+            &Textured::new(&tile),
+            &Textured::new(&image).wrap(Clamp).filter(Bilinear),
+            &Fogged::new(Gouraud::new(kit.sunlit), &kit.fog, kit.color),
+            &Blend::new(Gouraud::vertex_colors(), Opacity(kit.byte)),
+            &Blend::new(Textured::new(&leaf), Alpha),
+            &AlphaTest::new(Textured::new(&tile).lit(kit.sunlit), kit.byte),
+        )
     }};
 }
 
@@ -482,31 +409,13 @@ macro_rules! with_line_shader {
         use zstrip::shader::*;
         let kit: &things::Kit = $kit;
         let tile = things::tile();
-        match $number % 6 {
-            0 => {
-                let $shader = &Flat::unlit(kit.color);
-                $body
-            }
-            1 => {
-                let $shader = &Gouraud::vertex_colors();
-                $body
-            }
-            2 => {
-                let $shader = &Textured::new(&tile);
-                $body
-            }
-            3 => {
-                let $shader = &Blend::new(Gouraud::vertex_colors(), Opacity(kit.byte));
-                $body
-            }
-            4 => {
-                let $shader = &DepthOnly;
-                $body
-            }
-            _ => {
-                let $shader = &ScreenDoor::new(Gouraud::vertex_colors(), kit.byte);
-                $body
-            }
-        }
+        $crate::one_of!($number % 6, |$shader| $body;
+            &Flat::unlit(kit.color),
+            &Gouraud::vertex_colors(),
+            &Textured::new(&tile),
+            &Blend::new(Gouraud::vertex_colors(), Opacity(kit.byte)),
+            &DepthOnly,
+            &ScreenDoor::new(Gouraud::vertex_colors(), kit.byte),
+        )
     }};
 }
