@@ -105,10 +105,11 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
     for triangle in vertices.chunks_exact(3) {
         let corner = |k: usize| {
             let [x, y, z, w] = triangle[k].map(|c| f64::from(c) / 65_536.0);
-            // A z that no plane cuts where none should: far is a long way off, or near and far are both.
+            // A z that no plane cuts where none should: far is a long way off, or near and far are both. z / w is
+            // below 2³², as z is below 2¹⁵ and 1 / w below `LARGEST_INVERSE_W`.
             let z = match range {
                 DepthRange::Clip => z,
-                DepthRange::ClampFar => z * 1e-7,
+                DepthRange::ClampFar => z / (1_u64 << 40) as f64,
                 DepthRange::Clamp => w / 2.0,
             };
             Vertex { position: [x, y, z, w], attributes: [] }

@@ -2,7 +2,7 @@
 //! Afterwards, the same renderer draws the next frame as a new one does.
 
 use crate::Hash;
-use crate::scenes::{Plan, assert_alike, strips};
+use crate::scenes::{Plan, assert_alike, strip_rows, strips};
 use crate::source::Source;
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
@@ -18,8 +18,7 @@ pub fn run(input: &[u8]) -> u64 {
     let plan = Plan::new(&mut source);
     let mut other = Plan::new(&mut source);
     other.screen = plan.screen;
-    let (width, height) = (usize::from(plan.screen.0), usize::from(plan.screen.1));
-    let rows = 1 + usize::from(rows) % height;
+    let (width, rows) = (usize::from(plan.screen.0), strip_rows(rows, plan.screen.1));
 
     let expected = fresh(&plan, width * rows, words);
     let (mut color, mut depth, mut records) = (vec![0; width * rows], vec![9; width * rows], vec![!0; words]);

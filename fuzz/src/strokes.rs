@@ -2,7 +2,7 @@
 //! some of these. Lines in every stroke and with every shader, and polygons, are the same in any strips.
 
 use crate::reference::diamonds;
-use crate::scenes::{assert_alike, canvas};
+use crate::scenes::{assert_alike, canvas, strip_rows};
 use crate::source::Source;
 use crate::things::{self, Kit, Pool};
 use crate::{Hash, with_line_shader};
@@ -162,9 +162,8 @@ impl Drawing {
 fn alike(source: &mut Source<'_>) -> u64 {
     let (rows, words) = (source.u8(), usize::from(source.u16()) % 300);
     let drawing = Drawing::new(source);
-    let height = usize::from(drawing.screen.1);
-    let rows = 1 + usize::from(rows) % height;
-    let expected = drawing.picture(height, 1000);
+    let rows = strip_rows(rows, drawing.screen.1);
+    let expected = drawing.picture(drawing.screen.1.into(), 1000);
     for (rows, words) in [(rows, words), (rows, 0)] {
         assert_alike(&drawing.picture(rows, words), &expected, drawing.screen, &(rows, words));
     }

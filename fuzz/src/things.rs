@@ -190,8 +190,21 @@ pub struct Kit {
     pub sunlit: Sunlit,
     pub lit: LitMaterial<1, 0>,
     pub near: LitMaterial<1, 1>,
-    pub fog: FogTable,
+    pub fog: &'static FogTable,
     pub distances: [i32; 4],
+}
+
+static FOGS: [FogTable; 3] = [
+    fog(FogCurve::Linear { start: Scalar::ONE, end: Scalar::from_bits(9 << 16) }),
+    fog(FogCurve::Exponential { density: Scalar::from_bits(1 << 14) }),
+    fog(FogCurve::ExponentialSquared { density: Scalar::from_bits(1 << 14) }),
+];
+
+const fn fog(curve: FogCurve) -> FogTable {
+    match FogTable::perspective(Scalar::ONE, Scalar::from_bits(10 << 16), curve) {
+        Ok(table) => table,
+        Err(_) => panic!("near is before far"),
+    }
 }
 
 const BOUNDS: Bounds = Bounds { center: Vec3::ZERO, half: Vec3::from_ints(2, 2, 2) };
@@ -207,11 +220,6 @@ impl Kit {
         let lamp = PointLight::new(source.modest_vector(), ambient, source.scalar());
         let viewer = if byte & 4 == 0 { Viewer::Toward(source.modest_vector()) } else { Viewer::At(source.vector()) };
         let lighting = Lighting { ambient, directional: [sun], points: [lamp], viewer };
-        let curve = match byte % 3 {
-            0 => FogCurve::Linear { start: Scalar::ONE, end: Scalar::ONE * 9 },
-            1 => FogCurve::Exponential { density: Scalar::ONE / 4 },
-            _ => FogCurve::ExponentialSquared { density: Scalar::ONE / 4 },
-        };
         Self {
             color,
             byte,
@@ -219,7 +227,7 @@ impl Kit {
             sunlit: Sun::new(direction, other, ambient).on(&matte, &model),
             lit: Lighting::directional(ambient, [sun]).on(glossy, &model, &BOUNDS),
             near: lighting.on(glossy, &model, &BOUNDS),
-            fog: FogTable::perspective(Scalar::ONE, Scalar::ONE * 10, curve).expect("near before far"),
+            fog: &FOGS[usize::from(byte % 3)],
             distances: core::array::from_fn(|_| source.int()),
         }
     }
@@ -364,8 +372,8 @@ macro_rules! with_shader {
             &PhongNear::new(kit.near),
             &Matcap::<zstrip::embedded_graphics_core::pixelcolor::Rgb565, 4>::new(&things::SPHERE, &kit.model),
             &DepthOnly,
-            &Fogged::new(Gouraud::new(kit.sunlit), &kit.fog, kit.color),
-            &Fogged::new(Textured::new(&tile), &kit.fog, kit.color),
+            &Fogged::new(Gouraud::new(kit.sunlit), kit.fog, kit.color),
+            &Fogged::new(Textured::new(&tile), kit.fog, kit.color),
             &Blend::new(Flat::unlit(kit.color), Opacity(kit.byte)),
             &Blend::new(Textured::new(&leaf).filter(Bilinear), Alpha),
             &Blend::new(Gouraud::vertex_colors(), Add),
@@ -393,7 +401,7 @@ macro_rules! with_format_shader {
             &Gouraud::vertex_colors(),
             &Textured::new(&tile),
             &Textured::new(&image).wrap(Clamp).filter(Bilinear),
-            &Fogged::new(Gouraud::new(kit.sunlit), &kit.fog, kit.color),
+            &Fogged::new(Gouraud::new(kit.sunlit), kit.fog, kit.color),
             &Blend::new(Gouraud::vertex_colors(), Opacity(kit.byte)),
             &Blend::new(Textured::new(&leaf), Alpha),
             &AlphaTest::new(Textured::new(&tile).lit(kit.sunlit), kit.byte),
