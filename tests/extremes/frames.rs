@@ -86,6 +86,22 @@ fn material<const D: usize, const P: usize>(rng: &mut Rng) -> LitMaterial<D, P> 
     lighting.on(if rng.one_in(2) { material.vertex_colors() } else { material }, &rng.affine(), &bounds)
 }
 
+/// How much is compiled for a format. Code for lines, points and polygons is the same for all formats but for the loops
+/// over pixels, which a few shaders reach.
+trait Kind: PixelFormat {
+    /// Set if every shader is drawn in every way. Elsewhere, every shader draws meshes, and some draw the rest.
+    const ALL: bool = false;
+}
+
+impl Kind for Rgb565 {
+    const ALL: bool = true;
+}
+impl Kind for Dithered<Rgb565Be> {}
+impl Kind for Dithered<Rgb332> {}
+impl Kind for Gray8 {}
+impl Kind for Rgb888 {}
+impl Kind for Rgba8888 {}
+
 /// A use of a shader: whatever takes one, takes it.
 trait With<F: Framebuffer> {
     fn with<S: Shader<F::Format>>(&mut self, shader: &S, varyings: fn(&mut Rng) -> S::Varyings);
@@ -135,28 +151,50 @@ fn shader<F: Framebuffer>(rng: &mut Rng, to: &mut impl With<F>) {
     }
 }
 
-/// A mesh, lines or points under any matrix and state.
-struct DrawIt<'d, 's, 'a, F> {
+/// Calls `to` with a shader of each kind: without varyings, with them, textured, and blending.
+fn few_shaders<F: Framebuffer>(rng: &mut Rng, to: &mut impl With<F>) {
+    match rng.below(4) {
+        0 => to.with(&Flat::vertex_colors(), |_| []),
+        1 => to.with(&Gouraud::vertex_colors(), |rng| rng.triple()),
+        2 => to.with(&Textured::new(&TILE).filter(Bilinear), |rng| Perspective::new([rng.bits(), rng.bits()], [])),
+        _ => to.with(&Blend::new(Gouraud::vertex_colors(), Opacity(rng.bits() as u8)), |rng| rng.triple()),
+    }
+}
+
+/// Lines or points under any matrix and state.
+struct DrawLines<'d, 's, 'a, F> {
     scene: &'s mut Scene<'a, F>,
-    mesh: &'d Mesh<'d>,
     lines: &'d Lines<'d>,
     points: &'d Points<'d>,
     rng: Rng,
 }
 
-impl<F: Framebuffer> With<F> for DrawIt<'_, '_, '_, F> {
+impl<F: Framebuffer> With<F> for DrawLines<'_, '_, '_, F> {
     fn with<S: Shader<F::Format>>(&mut self, shader: &S, _: fn(&mut Rng) -> S::Varyings) {
-        let Self { scene, mesh, lines, points, rng } = self;
+        let Self { scene, lines, points, rng } = self;
         let (mvp, size, state) = (rng.projective(), rng.pixels(), state(rng));
-        match rng.below(8) {
-            0 => scene.draw(mesh, &mvp, shader),
-            1 | 2 => scene.draw_with(state, mesh, &mvp, shader),
-            3 => scene.draw_points_with(state, points, &mvp, shader, size),
-            4 => scene.draw_lines_with(state, lines, &mvp, shader, &Thin),
-            5 => scene.draw_lines_with(state, lines, &mvp, shader, &Dashed(rng.bits() as u32)),
-            6 => scene.draw_lines_with(state, lines, &mvp, shader, &Thick::new(size)),
+        match rng.below(6) {
+            0 => scene.draw_points_with(state, points, &mvp, shader, size),
+            1 | 2 => scene.draw_lines_with(state, lines, &mvp, shader, &Thin),
+            3 => scene.draw_lines_with(state, lines, &mvp, shader, &Dashed(rng.bits() as u32)),
+            4 => scene.draw_lines_with(state, lines, &mvp, shader, &Thick::new(size)),
             _ => scene.draw_lines_with(state, lines, &mvp, shader, &Smooth::new(size)),
         }
+    }
+}
+
+/// A mesh under any matrix and state.
+struct DrawMesh<'d, 's, 'a, F> {
+    scene: &'s mut Scene<'a, F>,
+    mesh: &'d Mesh<'d>,
+    rng: Rng,
+}
+
+impl<F: Framebuffer> With<F> for DrawMesh<'_, '_, '_, F> {
+    fn with<S: Shader<F::Format>>(&mut self, shader: &S, _: fn(&mut Rng) -> S::Varyings) {
+        let Self { scene, mesh, rng } = self;
+        let (mvp, state) = (rng.projective(), state(rng));
+        if rng.one_in(3) { scene.draw(mesh, &mvp, shader) } else { scene.draw_with(state, mesh, &mvp, shader) }
     }
 }
 
@@ -181,7 +219,7 @@ impl<F: Framebuffer> With<F> for Polygon<'_, '_, '_, F> {
 }
 
 /// Draws a list of shapes, the same for each call with one generator.
-fn shapes<F: Framebuffer>(scene: &mut Scene<'_, F>, mut rng: Rng) {
+fn shapes<F: Framebuffer<Format: Kind>>(scene: &mut Scene<'_, F>, mut rng: Rng) {
     let colour = Rgb888::new(rng.bits() as u8, 77, 200);
     let z = rng.bits() as u16;
     let mut canvas = match rng.below(3) {
@@ -212,7 +250,11 @@ fn shapes<F: Framebuffer>(scene: &mut Scene<'_, F>, mut rng: Rng) {
     canvas.outline(&points[..rng.below(5) as usize], colour, &Thin);
     let mut polygon = Polygon { canvas, rng: &mut rng };
     let mut choice = Rng::new(polygon.rng.next_u64());
-    shader(&mut choice, &mut polygon);
+    if F::Format::ALL {
+        shader(&mut choice, &mut polygon);
+    } else {
+        few_shaders(&mut choice, &mut polygon);
+    }
 }
 
 /// Draws through embedded-graphics targets.
@@ -254,7 +296,7 @@ fn questions<F: Framebuffer>(scene: &mut Scene<'_, F>, rng: &mut Rng) {
 }
 
 /// Draws two things, the same for each call with one seed.
-fn draw_all<F: Framebuffer>(
+fn draw_all<F: Framebuffer<Format: Kind>>(
     scene: &mut Scene<'_, F>,
     seed: u64,
     mesh: &Mesh<'_>,
@@ -270,12 +312,16 @@ fn draw_all<F: Framebuffer>(
             0 => questions(scene, &mut rng),
             1 => overlays(scene, own),
             2 | 3 => shapes(scene, own),
-            _ => shader(&mut rng, &mut DrawIt { scene, mesh, lines, points, rng: own }),
+            4 | 5 => shader(&mut rng, &mut DrawMesh { scene, mesh, rng: own }),
+            _ => {
+                let mut lines = DrawLines { scene, lines, points, rng: own };
+                if F::Format::ALL { shader(&mut rng, &mut lines) } else { few_shaders(&mut rng, &mut lines) }
+            }
         }
     }
 }
 
-fn frames<P: PixelFormat>(seed: u64, rounds: u32)
+fn frames<P: Kind>(seed: u64, rounds: u32)
 where
     P::Color: From<Rgb888>,
 {

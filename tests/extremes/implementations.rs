@@ -58,7 +58,35 @@ fn draw_with<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, sha
     scene.draw_points_with(BOTH_SIDES, &points, &Projective::IDENTITY, shader, Pixels::from_num(3));
 }
 
-/// Draws frames with a shader, with and without records.
+/// Draws a mesh and smooth lines with a shader.
+fn draw_some_with<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>, shader: &S) {
+    let vertices = Vertices { uvs: Some(&UVS), ..Vertices::new(Positions::Homogeneous(&CORNERS)) };
+    let lines = Lines::new(vertices, LineTopology::Loop, None).expect("five vertices");
+    for range in [DepthRange::Clip, DepthRange::Clamp] {
+        scene.draw_with(State { range, ..BOTH_SIDES }, &MESH, &Projective::IDENTITY, shader);
+    }
+    scene.draw_lines_with(BOTH_SIDES, &lines, &Projective::IDENTITY, shader, &Smooth::px(2));
+}
+
+/// Draws frames of a mesh and of smooth lines with a shader. The other primitives are the same for all shaders and
+/// formats but for the loops over pixels.
+fn meshes_with<P: PixelFormat, S: Shader<P>>(table: &mut Table, name: &'static str, shader: &S) {
+    for records in [0, 30, 1000] {
+        for rows in [1, 16] {
+            table.case(name, (records, rows), || {
+                let mut color = vec![P::pack([0; 3]); 24 * rows];
+                let (mut depth, mut records) = (vec![0; 24 * rows], vec![0; records]);
+                let renderer = Renderer::<P>::new(Size::new(24, 16)).expect("a screen");
+                let renderer = renderer.with_depth(&mut depth).expect("a strip");
+                let mut renderer = renderer.with_records(&mut records);
+                let mut frame = renderer.begin(Rgb888::BLACK);
+                while let Ok(Some(_)) = frame.next_strip(&mut color, |scene| draw_some_with(scene, shader)) {}
+            });
+        }
+    }
+}
+
+/// Draws frames of all kinds of primitives with a shader, with and without records.
 fn frames_with<P: PixelFormat, S: Shader<P>>(table: &mut Table, name: &'static str, shader: &S) {
     for records in [0, 30, 1000] {
         for rows in [1, 16] {
@@ -129,13 +157,13 @@ fn textures_of_no_texels_and_of_too_many_are_sampled() {
             table.case("Texture::fetch", uv, || texture.fetch::<Rgb565>(uv[0] as u32));
         }
         frames_with::<Rgb565, _>(&mut table, "Textured", &Textured::new(&texture));
-        frames_with::<Rgb565, _>(&mut table, "Textured, bilinear", &Textured::new(&texture).filter(Bilinear));
-        frames_with::<Rgb565, _>(&mut table, "Textured, mirrored", &Textured::new(&texture).wrap(Mirror));
-        frames_with::<Rgb565, _>(&mut table, "Textured, beyond", &Textured::new(&image).wrap(Beyond).filter(Bilinear));
+        meshes_with::<Rgb565, _>(&mut table, "Textured, bilinear", &Textured::new(&texture).filter(Bilinear));
+        meshes_with::<Rgb565, _>(&mut table, "Textured, mirrored", &Textured::new(&texture).wrap(Mirror));
+        meshes_with::<Rgb565, _>(&mut table, "Textured, beyond", &Textured::new(&image).wrap(Beyond).filter(Bilinear));
         let half = |size: u32| (size / 2).max(1);
         let levels = [NoTexels(Size::new(width, height)), NoTexels(Size::new(half(width), half(height)))];
         let levels = Textured::mipmapped(&levels).expect("half the size");
-        frames_with::<Rgb565, _>(&mut table, "Textured, mipmapped", &levels);
+        meshes_with::<Rgb565, _>(&mut table, "Textured, mipmapped", &levels);
         let alpha = [0x77; 64];
         table.case("WithAlpha::new", (), || WithAlpha::new(NoTexels(Size::new(width, height)), &alpha).is_ok());
     }
@@ -405,18 +433,19 @@ impl<P: PixelFormat> BlendMode<P> for Inverted {
     }
 }
 
+static TEXELS: [[u16; 8]; 4] = [[0x1234; 8]; 4];
+static SMALL: Tile<'static, 8, 4> = Tile::new(&TEXELS);
+
 fn mangled_in<P: PixelFormat>(table: &mut Table, seed: u32) {
-    static TEXELS: [[u16; 8]; 4] = [[0x1234; 8]; 4];
-    static TILE: Tile<'static, 8, 4> = Tile::new(&TEXELS);
-    frames_with::<P, _>(table, "Flat, mangled", &Mangled(Flat::new(Painted), seed));
-    frames_with::<P, _>(table, "Gouraud, mangled", &Mangled(Gouraud::new(Painted), seed));
-    frames_with::<P, _>(table, "Textured, mangled", &Mangled(Textured::new(&TILE), seed));
-    frames_with::<P, _>(table, "Textured, clamped, mangled", &Mangled(Textured::new(&TILE).wrap(Clamp), seed));
-    frames_with::<P, _>(table, "Textured, lit, mangled", &Mangled(Textured::new(&TILE).lit(Painted), seed));
+    meshes_with::<P, _>(table, "Flat, mangled", &Mangled(Flat::new(Painted), seed));
+    meshes_with::<P, _>(table, "Gouraud, mangled", &Mangled(Gouraud::new(Painted), seed));
+    meshes_with::<P, _>(table, "Textured, mangled", &Mangled(Textured::new(&SMALL), seed));
+    meshes_with::<P, _>(table, "Textured, clamped, mangled", &Mangled(Textured::new(&SMALL).wrap(Clamp), seed));
+    meshes_with::<P, _>(table, "Textured, lit, mangled", &Mangled(Textured::new(&SMALL).lit(Painted), seed));
     let blend = Blend::new(Gouraud::new(Painted), Inverted);
-    frames_with::<P, _>(table, "Blend, mangled", &Mangled(blend, seed));
-    frames_with::<P, _>(table, "DepthOnly, mangled", &Mangled(DepthOnly, seed));
-    frames_with::<P, _>(table, "a shader of 5 varyings, mangled", &Mangled(Colored::<5>, seed));
+    meshes_with::<P, _>(table, "Blend, mangled", &Mangled(blend, seed));
+    meshes_with::<P, _>(table, "DepthOnly, mangled", &Mangled(DepthOnly, seed));
+    meshes_with::<P, _>(table, "a shader of 5 varyings, mangled", &Mangled(Colored::<5>, seed));
 }
 
 #[test]
@@ -424,6 +453,8 @@ fn spans_that_a_shader_changed_are_drawn() {
     let mut table = Table::start();
     for seed in 0..3 {
         mangled_in::<Rgb565>(&mut table, seed);
+        let mangled = Mangled(Textured::new(&SMALL).lit(Painted), seed);
+        frames_with::<Rgb565, _>(&mut table, "every primitive, mangled", &mangled);
         mangled_in::<Gray8>(&mut table, seed);
         mangled_in::<Rgb888>(&mut table, seed);
         mangled_in::<Dithered<Rgb565>>(&mut table, seed);
@@ -510,8 +541,8 @@ fn formats_that_contradict_themselves_are_drawn_in() {
     mangled_in::<Odd>(&mut table, 3);
     mangled_in::<Dithered<Odd>>(&mut table, 4);
     frames_with::<Odd, _>(&mut table, "an odd format", &Gouraud::new(Painted));
-    frames_with::<Dithered<Odd>, _>(&mut table, "an odd format", &Gouraud::new(Painted));
-    frames_with::<Odd, _>(&mut table, "an odd format", &Flat::new(Painted));
+    meshes_with::<Dithered<Odd>, _>(&mut table, "an odd format", &Gouraud::new(Painted));
+    meshes_with::<Odd, _>(&mut table, "an odd format", &Flat::new(Painted));
     table.finish();
 }
 

@@ -76,11 +76,18 @@ impl Table {
 
     /// Calls a function with some values.
     pub fn case<T>(&mut self, name: &'static str, values: impl Debug, function: impl FnOnce() -> T) -> Option<T> {
+        let (mut function, mut result) = (Some(function), None);
+        self.run(name, &values, &mut || result = function.take().map(|function| black_box(function())));
+        result
+    }
+
+    /// Runs a case. It is compiled once, and not for each case.
+    fn run(&mut self, name: &'static str, values: &dyn Debug, function: &mut dyn FnMut()) {
         self.cases += 1;
         let thread = thread::current().id();
         RUNNING.lock().expect("no panic holds the lock").push((thread, name, Instant::now()));
         IN_CASE.with(|running| *running.borrow_mut() = true);
-        let result = panic::catch_unwind(AssertUnwindSafe(|| black_box(function())));
+        let result = panic::catch_unwind(AssertUnwindSafe(function));
         IN_CASE.with(|running| *running.borrow_mut() = false);
         RUNNING.lock().expect("no panic holds the lock").retain(|(other, ..)| *other != thread);
         if result.is_err() {
@@ -89,7 +96,6 @@ impl Table {
                 self.failures.push((name, format!("{values:?}: {message}")));
             }
         }
-        result.ok()
     }
 
     /// Fails if a case failed.
