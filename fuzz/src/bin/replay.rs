@@ -3,6 +3,9 @@
 //! Prints a line per target: the number of files, of random inputs, and a hash over all results, to be compared between
 //! machines. Names each file, or the seed, that a target fails on, and then exits with 1.
 
+// Instrumented code calls functions of libFuzzer.
+#[cfg(feature = "libfuzzer")]
+use libfuzzer_sys as _;
 use std::panic::catch_unwind;
 use std::path::Path;
 use std::process::ExitCode;
