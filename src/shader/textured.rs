@@ -192,14 +192,15 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
     /// Draws a span of nearest, repeated texels of one level.
     #[inline(always)]
     fn texels<P: PixelFormat, D: DepthTest>(&self, texture: &T, span: SpanOf<'_, P, Self, D>, test: D) {
-        let (mut span, mut stepper) = (span, UvStepper::EMPTY);
+        let mut span = span;
         // Half the step may do at one end of the span, if coordinates are not straight enough there.
         let mut log_step = UvStepper::log_step(span.primitive, N);
         let longest = log_step;
         while log_step > 0 {
             let length = span.color.len().min(span.depth.len());
             let halvings = longest - log_step;
-            let straight = stepper.begin(span.primitive, span.position, length, log_step, halvings);
+            let mut stepper = UvStepper::begin(span.primitive, span.position, length, log_step, halvings);
+            let straight = stepper.length();
             if straight == length {
                 return texture_span(texture, span, test, &mut stepper);
             }

@@ -271,17 +271,8 @@ fn count_passing_prefix_inlined<D: DepthTest>(test: D, depths: &mut [D::Depth; R
     RUN
 }
 
-/// Does as [`count_passing_prefix`] for at most a run, but returns the number of depths that are left, beginning with
-/// the first one that does not pass.
-#[inline(always)]
-pub(crate) fn untested_tail<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
-    match <&mut [D::Depth; RUN]>::try_from(&mut *depths) {
-        Ok(run) => RUN - count_passing_prefix(test, run, z, dz_dx),
-        Err(_) => untested_short_tail(test, depths, z, dz_dx),
-    }
-}
-
-/// Does as [`untested_tail`] for fewer depths than a run has.
+/// Does as [`count_passing_prefix`] for fewer depths than a run has, but returns the number of depths that are left,
+/// beginning with the first one that does not pass.
 #[inline(always)]
 pub(super) fn untested_short_tail<D: DepthTest>(test: D, depths: &mut [D::Depth], z: u32, dz_dx: i32) -> usize {
     if D::ENABLED { untested_short_tail_outlined(test, depths, z, dz_dx) } else { 0 }
@@ -342,7 +333,10 @@ mod tests {
                 |depth| depth,
                 |_| Some(7),
                 &mut [("a tested prefix", &mut |color, depth| {
-                    let passed = depth.len() - untested_tail(DepthLess, depth, z, dz_dx);
+                    let passed = match <&mut [u16; RUN]>::try_from(&mut *depth) {
+                        Ok(run) => count_passing_prefix(DepthLess, run, z, dz_dx),
+                        Err(_) => depth.len() - untested_short_tail(DepthLess, depth, z, dz_dx),
+                    };
                     let (prefix, color) = color.split_at_mut(passed);
                     prefix.fill(7);
                     let z = z.wrapping_add_signed(dz_dx.wrapping_mul(passed as i32));

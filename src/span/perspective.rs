@@ -87,8 +87,11 @@ fn correct(values: &mut [i32], planes: &[PerspectivePlane], quotient: impl Fn(i3
 /// least q of straight parts. q is in -2²⁸..2³¹ + 2²⁸, modulo 2³².
 #[inline(always)]
 pub(super) const fn is_straight(q: u32, least: u32) -> bool {
-    least <= q && q < 3 << 30
+    least <= q && q < MOST_STRAIGHT
 }
+
+/// The end of the range of q at which a part may be straight. Numbers from there on are below 0.
+pub(super) const MOST_STRAIGHT: u32 = 3 << 30;
 
 /// Returns the binary logarithm of the distance of the columns at which varyings of a triangle are divided, where a
 /// shader asks for `step`; 0 if the triangle's varyings are divided at each pixel. Its spans then need not look for

@@ -28,9 +28,11 @@
 //!    27.3.
 //! 5. **Dividing takes two instructions, and scaling too**, where the core has long products: 19.7 → 18.9 on a
 //!    Cortex-M4.
+//! 6. **One comparison tells that a span is straight**, its stepper is written once, runs of 16 pixels come one after
+//!    another, and the colours of shorter ones are unrolled: 31.1 → 28.9 and 22.3 → 21.4.
 
-use super::depth::{DepthTest, RUN, count_passing_prefix, untested_tail};
-use super::perspective::{is_straight, longest_log_step};
+use super::depth::{DepthTest, RUN, count_passing_prefix, untested_short_tail};
+use super::perspective::{MOST_STRAIGHT, is_straight, longest_log_step};
 use super::span::{Primitive, Span};
 use crate::color::PixelFormat;
 use crate::math::{CoarseDivisor, SMALL_CORE};
@@ -48,13 +50,15 @@ pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
     test: D,
     stepper: &mut UvStepper,
 ) {
-    let Span { color, depth, z, primitive, .. } = span;
+    let Span { color, depth, z, .. } = span;
     let length = color.len().min(depth.len());
     let Some(mut color) = color.get_mut(..length) else { return };
     let Some(mut depth) = depth.get_mut(..length) else { return };
-    let mut cursor = TexelCursor { z, dz_dx: primitive.dz_dx, vu: 0, step: 0 };
-    // The first run may begin between two columns that are divided.
-    let mut short = stepper.first_run();
+    stepper.z = z;
+    // Moves on to the first column. The first run may begin between two of them.
+    stepper.next_run();
+    let step = 1 << (stepper.log_step & 31);
+    let mut short = (step - stepper.back as usize) & (step - 1);
     loop {
         if short > 0 {
             let pixels = short.min(color.len());
@@ -62,30 +66,64 @@ pub(crate) fn texture_span<P: PixelFormat, T: Texture, D: DepthTest, V: Varyings
             color = rest;
             let Some((depths, rest)) = core::mem::take(&mut depth).split_at_mut_checked(pixels) else { return };
             depth = rest;
-            short_run::<P, T, D>(texture, test, stepper, cursor.z, colors, depths);
-            cursor.z = cursor.z.wrapping_add_signed(stepper.dz_dx.wrapping_mul(pixels as i32));
+            short_run::<P, T, D>(texture, test, stepper, colors, depths);
         }
-        while stepper.log_step == RUN.trailing_zeros() && color.len() >= RUN {
-            let Some((colors, rest)) = core::mem::take(&mut color).split_first_chunk_mut::<RUN>() else { return };
+        // The last run may end between two columns. Runs of another length than 16 are all drawn above.
+        short = step;
+        if step == RUN {
+            let whole = color.len() / RUN * RUN;
+            let Some((colors, rest)) = core::mem::take(&mut color).split_at_mut_checked(whole) else { return };
             color = rest;
-            let Some((depths, rest)) = core::mem::take(&mut depth).split_first_chunk_mut::<RUN>() else { return };
+            let Some((depths, rest)) = core::mem::take(&mut depth).split_at_mut_checked(whole) else { return };
             depth = rest;
-            if SMALL_CORE && T::IS_OPAQUE {
-                cursor.run16_two_pass::<P, T, D>(texture, test, stepper, colors, depths);
-            } else {
-                (cursor.vu, cursor.step) = stepper.next_run();
-                // Reads the step from memory. The compiler would otherwise compute its multiple before the loop, and
-                // keep it on the stack.
-                cursor.dz_dx = stepper.dz_dx;
-                cursor.run16::<P, T, D>(texture, test, colors, depths);
+            for (colors, depths) in colors.chunks_exact_mut(RUN).zip(depths.chunks_exact_mut(RUN)) {
+                let (Ok(colors), Ok(depths)) = (colors.try_into(), depths.try_into()) else { return };
+                if SMALL_CORE && T::IS_OPAQUE {
+                    whole_run_in_two_passes::<P, T, D>(texture, test, stepper, colors, depths);
+                } else {
+                    whole_run_in_one_pass::<P, T, D>(texture, test, stepper, colors, depths);
+                }
             }
         }
-        // The last run may end between two such columns. Runs of another length than 16 all come here.
-        short = 1 << stepper.log_step;
         if color.is_empty() {
             return;
         }
     }
+}
+
+/// Draws a run of 16 pixels of an opaque texture, first depths and then colours. Each loop has all of its values in
+/// registers.
+#[inline(always)]
+fn whole_run_in_two_passes<P: PixelFormat, T: Texture, D: DepthTest>(
+    texture: &T,
+    test: D,
+    stepper: &mut UvStepper,
+    colors: &mut [P::Raw; RUN],
+    depths: &mut [D::Depth; RUN],
+) {
+    let passed = count_passing_prefix(test, depths, stepper.z, stepper.dz_dx);
+    let (vu, step) = stepper.next_run();
+    if passed == RUN {
+        color_run16::<P, T>(texture, colors, vu, step);
+        stepper.z = stepper.z.wrapping_add_signed(stepper.dz_dx.wrapping_mul(RUN as i32));
+    } else {
+        partial::<P, T, D>(texture, test, stepper, (vu, step), passed, colors, depths);
+    }
+}
+
+/// Draws a run of 16 pixels, pixel by pixel. Out of line: the word and the step of the run take all registers.
+#[inline(never)]
+fn whole_run_in_one_pass<P: PixelFormat, T: Texture, D: DepthTest>(
+    texture: &T,
+    test: D,
+    stepper: &mut UvStepper,
+    colors: &mut [P::Raw; RUN],
+    depths: &mut [D::Depth; RUN],
+) {
+    let (vu, step) = stepper.next_run_on::<SMALL_CORE, true>();
+    let mut cursor = TexelCursor { z: stepper.z, dz_dx: stepper.dz_dx, vu, step };
+    cursor.run16::<P, T, D>(texture, test, colors, depths);
+    stepper.z = cursor.z;
 }
 
 /// Draws a run of fewer than 16 pixels, or of another length. Out of line, because a span has two of them.
@@ -94,53 +132,114 @@ fn short_run<P: PixelFormat, T: Texture, D: DepthTest>(
     texture: &T,
     test: D,
     stepper: &mut UvStepper,
-    z: u32,
     colors: &mut [P::Raw],
     depths: &mut [D::Depth],
 ) {
-    let (vu, step) = stepper.next_run();
-    let cursor = TexelCursor { z, dz_dx: stepper.dz_dx, vu, step };
-    if SMALL_CORE && T::IS_OPAQUE && colors.len() <= RUN {
-        cursor.short_two_pass::<P, T, D>(texture, test, colors, depths);
+    let pixels = colors.len();
+    let Some(depths) = depths.get_mut(..pixels) else { return };
+    let (mut vu, step) = stepper.next_run();
+    // Only the first run may begin between two columns.
+    vu = vu.wrapping_add(step.wrapping_mul(core::mem::take(&mut stepper.back)));
+    if SMALL_CORE && T::IS_OPAQUE {
+        short_run_in_two_passes::<P, T, D>(texture, test, stepper, (vu, step), colors, depths);
     } else if SMALL_CORE {
-        cursor.partial::<P, T, D>(texture, test, 0, colors, depths);
+        partial::<P, T, D>(texture, test, stepper, (vu, step), 0, colors, depths);
     } else {
+        let mut cursor = TexelCursor { z: stepper.z, dz_dx: stepper.dz_dx, vu, step };
         cursor.tail::<P, T, D>(texture, test, colors, depths);
+        stepper.z = cursor.z;
     }
 }
 
-/// Colours a run.
+/// Draws a run of an opaque texture, first depths and then colours, if it is shorter than 16 pixels.
+#[inline(always)]
+fn short_run_in_two_passes<P: PixelFormat, T: Texture, D: DepthTest>(
+    texture: &T,
+    test: D,
+    stepper: &mut UvStepper,
+    (vu, step): (u32, u32),
+    colors: &mut [P::Raw],
+    depths: &mut [D::Depth],
+) {
+    let (pixels, mut passed) = (colors.len(), 0);
+    if pixels < RUN {
+        passed = pixels.saturating_sub(untested_short_tail(test, depths, stepper.z, stepper.dz_dx));
+        if passed == pixels {
+            color_short::<P, T>(texture, colors, vu, step);
+            stepper.z = stepper.z.wrapping_add_signed(stepper.dz_dx.wrapping_mul(pixels as i32));
+            return;
+        }
+    }
+    partial::<P, T, D>(texture, test, stepper, (vu, step), passed, colors, depths);
+}
+
+/// Draws a run; its first `passed` depths have passed already, and are stored.
+#[inline(never)]
+fn partial<P: PixelFormat, T: Texture, D: DepthTest>(
+    texture: &T,
+    test: D,
+    stepper: &mut UvStepper,
+    (vu, step): (u32, u32),
+    passed: usize,
+    colors: &mut [P::Raw],
+    depths: &mut [D::Depth],
+) {
+    let Some((first, colors)) = colors.split_at_mut_checked(passed) else { return };
+    let Some(depths) = depths.get_mut(passed..) else { return };
+    color_short::<P, T>(texture, first, vu, step);
+    let vu = vu.wrapping_add(step.wrapping_mul(passed as u32));
+    let z = stepper.z.wrapping_add_signed(stepper.dz_dx.wrapping_mul(passed as i32));
+    let mut cursor = TexelCursor { z, dz_dx: stepper.dz_dx, vu, step };
+    cursor.tail::<P, T, D>(texture, test, colors, depths);
+    stepper.z = cursor.z;
+}
+
+/// Colours pixels, and steps the word to the pixel after them. Unrolled by hand: at `opt-level = "s"` a loop would stay
+/// a loop.
+macro_rules! color {
+    ($texture:ident, $vu:ident, $step:ident, $($color:ident)*) => {
+        $(
+            // Steps first: the fetch may then overwrite the old word, which need not be copied.
+            let here = $vu;
+            $vu = $vu.wrapping_add($step);
+            if let Some(pixel) = $texture.fetch::<P>(here) {
+                *$color = pixel;
+            }
+        )*
+    };
+}
+
+/// Colours a run of 16 pixels.
 #[inline(never)]
 fn color_run16<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw; RUN], mut vu: u32, step: u32) {
-    // Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
-    macro_rules! color {
-        ($($color:ident)*) => {
-            let [$($color),*] = colors;
-            $(
-                // Steps first: the fetch may then overwrite the old word, which need not be copied.
-                let here = vu;
-                vu = vu.wrapping_add(step);
-                if let Some(pixel) = texture.fetch::<P>(here) {
-                    *$color = pixel;
-                }
-            )*
-        };
-    }
-    color!(a b c d e f g h i j k l m n o p);
+    let [a, b, c, d, e, f, g, h, i, j, k, l, m, n, o, p] = colors;
+    color!(texture, vu, step, a b c d e f g h i j k l m n o p);
     let _ = vu;
 }
 
-/// Colours fewer pixels than a run has, and returns the word of the pixel after them.
+/// Colours fewer pixels than a run has.
 #[inline(never)]
-fn color_short<P: PixelFormat, T: Texture>(texture: &T, colors: &mut [P::Raw], mut vu: u32, step: u32) -> u32 {
-    for color in colors {
-        let here = vu;
-        vu = vu.wrapping_add(step);
-        if let Some(pixel) = texture.fetch::<P>(here) {
-            *color = pixel;
-        }
+fn color_short<P: PixelFormat, T: Texture>(texture: &T, mut colors: &mut [P::Raw], mut vu: u32, step: u32) {
+    macro_rules! color_first {
+        ($($color:ident)*) => {
+            let Some(([$($color),*], rest)) = core::mem::take(&mut colors).split_first_chunk_mut() else { return };
+            colors = rest;
+            color!(texture, vu, step, $($color)*);
+        };
     }
-    vu
+    if colors.len() >= 8 {
+        color_first!(a b c d e f g h);
+    }
+    if colors.len() >= 4 {
+        color_first!(a b c d);
+    }
+    if colors.len() >= 2 {
+        color_first!(a b);
+    }
+    if !colors.is_empty() {
+        color_first!(a);
+    }
+    let _ = (colors, vu);
 }
 
 /// Packs u and v into one word. v is as if nothing had been carried from u.
@@ -165,28 +264,6 @@ struct TexelCursor {
 }
 
 impl TexelCursor {
-    /// Draws the next run of an opaque texture, first depths and then colours. Each loop has all of its values in
-    /// registers.
-    #[inline(always)]
-    fn run16_two_pass<P: PixelFormat, T: Texture, D: DepthTest>(
-        &mut self,
-        texture: &T,
-        test: D,
-        stepper: &mut UvStepper,
-        colors: &mut [P::Raw; RUN],
-        depths: &mut [D::Depth; RUN],
-    ) {
-        let passed = count_passing_prefix(test, depths, self.z, self.dz_dx);
-        let (vu, step) = stepper.next_run();
-        if passed == RUN {
-            color_run16::<P, T>(texture, colors, vu, step);
-        } else {
-            // A copy, so that the cursor itself stays in registers.
-            Self { vu, step, ..*self }.partial::<P, T, D>(texture, test, passed, colors, depths);
-        }
-        self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(RUN as i32));
-    }
-
     /// Draws a run pixel by pixel.
     #[inline(always)]
     fn run16<P: PixelFormat, T: Texture, D: DepthTest>(
@@ -210,7 +287,7 @@ impl TexelCursor {
     /// Draws pixels one by one, in pairs on larger cores.
     #[inline(always)]
     fn tail<P: PixelFormat, T: Texture, D: DepthTest>(
-        mut self,
+        &mut self,
         texture: &T,
         test: D,
         mut colors: &mut [P::Raw],
@@ -227,41 +304,6 @@ impl TexelCursor {
         for (color, stored) in colors.iter_mut().zip(depths) {
             self.draw::<P, T, D>(texture, test, color, stored);
         }
-    }
-
-    /// Draws at most a run of pixels in two passes.
-    #[inline(always)]
-    fn short_two_pass<P: PixelFormat, T: Texture, D: DepthTest>(
-        self,
-        texture: &T,
-        test: D,
-        colors: &mut [P::Raw],
-        depths: &mut [D::Depth],
-    ) {
-        let left = untested_tail(test, depths, self.z, self.dz_dx);
-        if left == 0 {
-            color_short::<P, T>(texture, colors, self.vu, self.step);
-        } else {
-            let passed = colors.len().saturating_sub(left);
-            self.partial::<P, T, D>(texture, test, passed, colors, depths);
-        }
-    }
-
-    /// Draws pixels; the first `passed` depths have passed already, and are stored.
-    #[inline(never)]
-    fn partial<P: PixelFormat, T: Texture, D: DepthTest>(
-        mut self,
-        texture: &T,
-        test: D,
-        passed: usize,
-        colors: &mut [P::Raw],
-        depths: &mut [D::Depth],
-    ) {
-        let Some((first, colors)) = colors.split_at_mut_checked(passed) else { return };
-        let Some(depths) = depths.get_mut(passed..) else { return };
-        self.vu = color_short::<P, T>(texture, first, self.vu, self.step);
-        self.z = self.z.wrapping_add_signed(self.dz_dx.wrapping_mul(passed as i32));
-        self.tail::<P, T, D>(texture, test, colors, depths);
     }
 
     /// Draws a pixel and steps to the next one.
@@ -294,22 +336,28 @@ impl TexelCursor {
 ///
 /// q, d q of u and d q of v are shifted up, so that the larger q of both ends has its top bit set. Without perspective,
 /// q is 0.
+///
+/// The order of the fields decides which of them the compiler loads too early, and then keeps on the stack.
 #[derive(Debug)]
+#[repr(C)]
 pub(crate) struct UvStepper {
+    u: Scale,
+    /// u and v at the stepper's position.
+    uv: (i32, i32),
+    v: Scale,
     /// q, d q of u and d q of v at the stepper's position, and their changes over the next run.
     at: [i32; 3],
     step: [i32; 3],
-    /// u and v at the stepper's position.
-    uv: (i32, i32),
-    u: Scale,
-    v: Scale,
     /// Number of pixels to the left of the first pixel, up to the column that is divided.
     back: u32,
     /// Binary logarithm of the number of pixels between two columns that are divided.
     log_step: u32,
-    /// Number of pixels of the span to the left of the first one.
+    /// Number of pixels of the span to the left of the first one, and number of those that are drawn.
     before: usize,
-    /// Change of depth per pixel. The stepper keeps it in memory for the loop, and does not use it itself.
+    length: usize,
+    /// Depth at the next pixel, and its change per pixel. The stepper keeps them in memory for the loops, and does not
+    /// use them itself.
+    z: u32,
     dz_dx: i32,
 }
 
@@ -324,6 +372,8 @@ impl UvStepper {
         back: 0,
         log_step: 0,
         before: 0,
+        length: 0,
+        z: 0,
         dz_dx: 0,
     };
 
@@ -337,65 +387,68 @@ impl UvStepper {
         }
     }
 
-    /// Puts the stepper before the pixels of a span that [`texture_span`] can draw, and returns how many they are. The
-    /// stepper then knows how many pixels the span has [before](Self::before) them. Those that can be drawn lie between
-    /// columns over which coordinates are straight enough
+    /// Returns a stepper for the pixels of a span that [`texture_span`] can draw, one step before their first column.
+    /// The stepper knows [how many](Self::length) they are, and how many pixels the span has [before](Self::before)
+    /// them.
+    /// Those that can be drawn lie between columns over which coordinates are straight enough
     /// ([`straight_log_step`](super::perspective::straight_log_step)). As q is linear, they lie side by side.
     ///
     /// Columns are 1 << `log_step` pixels apart. This is 1 << `halvings` times less than [`log_step`](Self::log_step)
     /// says, which must not be 0.
     #[inline(never)]
     pub(crate) fn begin<V: Varyings, U>(
-        &mut self,
         primitive: &Primitive<V, U>,
         position: (i32, i32),
         length: usize,
         log_step: u32,
         halvings: u32,
-    ) -> usize {
-        self.begin_on::<SMALL_CORE, V, U>(primitive, position, length, log_step, halvings)
+    ) -> Self {
+        Self::begin_on::<SMALL_CORE, V, U>(primitive, position, length, log_step, halvings)
     }
 
     /// Does as [`begin`](Self::begin), for a small core or another one.
     #[inline(always)]
     fn begin_on<const SMALL: bool, V: Varyings, U>(
-        &mut self,
         primitive: &Primitive<V, U>,
         (x, y): (i32, i32),
-        length: usize,
+        mut length: usize,
         log_step: u32,
         halvings: u32,
-    ) -> usize {
+    ) -> Self {
         let perspective = &primitive.perspective;
-        let (class, least) = (perspective.class(), perspective.least_straight());
+        let least = perspective.least_straight() >> halvings;
         let value = |values: &[i32], k: usize| values.get(k).copied().unwrap_or(0);
         let last = |values: &[i32]| values.last().copied().unwrap_or(0);
         let change = primitive.d_dx.as_ref();
-        let (dq, du, dv) = (last(change), value(change, 0), value(change, 1));
+        let (mut dq, du, dv) = (last(change), value(change, 0), value(change, 1));
         // Columns that are divided, on both sides of the span. q is in 0..2³¹ within the span, and changes by less than
         // 2²⁸ up to them.
-        let past = x.wrapping_add(length as i32);
-        let (mut first, mut end) = (x >> log_step << log_step, (((past - 1) >> log_step) + 1) << log_step);
+        let mut back = x & ((1 << log_step) - 1);
+        let first = x.wrapping_sub(back);
+        let steps = ((back.wrapping_add(length as i32) - 1) >> log_step) + 1;
         let mut at = primitive.at((first, y));
-        let step = 1 << log_step;
-        let is_bent = |q: i32| !is_straight(q as u32, least >> halvings);
-        let mut to = last(at.as_ref()).wrapping_add(dq.wrapping_mul(end.wrapping_sub(first)));
-        while is_bent(last(at.as_ref())) && first < end {
-            first += step;
-            at.advance(&primitive.d_dx, step);
-        }
-        while is_bent(to) && first < end {
-            end -= step;
-            to = to.wrapping_sub(dq << log_step);
-        }
-        if first >= end {
-            return 0;
+        let mut ends = [last(at.as_ref()), last(at.as_ref()).wrapping_add(dq.wrapping_mul(steps << log_step))];
+        let mut before = 0;
+        // `is_straight` at both ends, in one comparison: `least` is below 2³¹.
+        let above = |q: i32| (q as u32).wrapping_sub(least);
+        if above(ends[0]).max(above(ends[1])) >= MOST_STRAIGHT.wrapping_sub(least) {
+            // Leaves out steps at the ends, as far as they are bent.
+            let (skipped, left) = straight_steps(ends, steps, dq << log_step, least);
+            if left <= 0 {
+                return Self::EMPTY;
+            }
+            let (skipped, end) = (skipped << log_step, (skipped + left) << log_step);
+            let past = end.min(back.wrapping_add(length as i32));
+            let begin = back.max(skipped);
+            (before, length) = (begin.wrapping_sub(back) as usize, past.wrapping_sub(begin) as usize);
+            back = begin.wrapping_sub(skipped);
+            at.advance(&primitive.d_dx, skipped);
+            ends = [last(at.as_ref()), last(at.as_ref()).wrapping_add(dq.wrapping_mul(left << log_step))];
         }
         let planes = perspective.planes();
         let at = at.as_ref();
-        let q = last(at);
-        let (from, to) = (q as u32, to as u32);
-        let mut most = from.max(to) | 1;
+        let [mut q, to] = ends;
+        let mut most = (q as u32).max(to as u32) | 1;
         let mut shift = 0;
         if SMALL {
             // Takes a few rounds, and fewer instructions than `leading_zeros` does with its table.
@@ -405,24 +458,26 @@ impl UvStepper {
         } else {
             shift = most.leading_zeros();
         }
-        let (mut q, mut dq) = (q, dq);
-        if class == PerspectiveClass::Affine {
+        if perspective.class() == PerspectiveClass::Affine {
             (q, dq, shift) = (0, 0, 0);
         }
         let up = |value: i32| value << (shift & 31);
-        *self = Self {
-            at: [up(q), up(value(at, 0)), up(value(at, 1))],
-            step: [up(dq) << log_step, up(du) << log_step, up(dv) << log_step],
+        let over = |change: i32| change << ((shift + log_step) & 31);
+        let step = [over(dq), over(du), over(dv)];
+        let [du, dv] = [up(value(at, 0)), up(value(at, 1))];
+        Self {
+            at: [up(q).wrapping_sub(step[0]), du.wrapping_sub(step[1]), dv.wrapping_sub(step[2])],
+            step,
             uv: (0, 0),
             u: Scale::new::<SMALL>(planes.first()),
             v: Scale::new::<SMALL>(planes.get(1)),
-            back: (x.wrapping_sub(first)).max(0) as u32,
+            back: back as u32,
             log_step,
-            before: (first.wrapping_sub(x)).max(0) as usize,
+            before,
+            length,
+            z: 0,
             dz_dx: primitive.dz_dx,
-        };
-        self.uv = self.divided::<SMALL>();
-        end.min(past).wrapping_sub(first.max(x)) as usize
+        }
     }
 
     /// Returns the number of pixels of the span before those that the stepper is for.
@@ -431,11 +486,10 @@ impl UvStepper {
         self.before
     }
 
-    /// Returns the number of pixels of the first run if it begins between two columns that are divided, otherwise 0.
+    /// Returns the number of pixels of the span that the stepper is for.
     #[inline(always)]
-    fn first_run(&self) -> usize {
-        let step = 1 << self.log_step;
-        (step - self.back as usize) & (step - 1)
+    pub(crate) fn length(&self) -> usize {
+        self.length
     }
 
     /// Computes u and v at the stepper's position.
@@ -458,29 +512,41 @@ impl UvStepper {
         (self.u.scaled::<SMALL>(u), self.v.scaled::<SMALL>(v))
     }
 
-    /// Moves on by one run, and returns the word and the step with which that run is drawn. Out of line: it has more
-    /// values than the loop around it has registers for.
+    /// Moves on by one run, and returns the word and the step with which that run is drawn, from its first column on.
+    /// Out of line: it has more values than the loop around it has registers for.
     #[inline(never)]
     fn next_run(&mut self) -> (u32, u32) {
-        self.next_run_on::<SMALL_CORE>()
+        self.next_run_on::<SMALL_CORE, false>()
     }
 
-    /// Does as [`next_run`](Self::next_run), for a small core or another one.
+    /// Does as [`next_run`](Self::next_run), for a small core or another one. `WHOLE` says that runs have 16 pixels.
     #[inline(always)]
-    fn next_run_on<const SMALL: bool>(&mut self) -> (u32, u32) {
+    fn next_run_on<const SMALL: bool, const WHOLE: bool>(&mut self) -> (u32, u32) {
         let [q, u, v] = self.at;
         let [dq, du, dv] = self.step;
         self.at = [q.wrapping_add(dq), u.wrapping_add(du), v.wrapping_add(dv)];
         let (from, to) = (self.uv, self.divided::<SMALL>());
         self.uv = to;
-        let half = 1 << self.log_step >> 1;
-        let per_pixel = |from: i32, to: i32| to.wrapping_sub(from).wrapping_add(half) >> self.log_step;
-        let step = step([per_pixel(from.0, to.0), per_pixel(from.1, to.1)]);
-        // Only the first run may begin between two columns.
-        let word = packed(from).wrapping_add(step.wrapping_mul(self.back));
-        self.back = 0;
-        (word, step)
+        let log_step = if WHOLE { RUN.trailing_zeros() } else { self.log_step & 31 };
+        let half = 1 << log_step >> 1;
+        let per_pixel = |from: i32, to: i32| to.wrapping_sub(from).wrapping_add(half) >> log_step;
+        (packed(from), step([per_pixel(from.0, to.0), per_pixel(from.1, to.1)]))
     }
+}
+
+/// Returns the number of steps to leave out before the straight ones of a span, and the number of the straight ones.
+/// q is given at both `ends` of `steps` steps, and changes by `change` over one.
+#[cold]
+#[inline(never)]
+fn straight_steps([mut from, mut to]: [i32; 2], steps: i32, change: i32, least: u32) -> (i32, i32) {
+    let (mut skipped, mut left) = (0, steps);
+    while left > 0 && !is_straight(from as u32, least) {
+        (skipped, left, from) = (skipped + 1, left - 1, from.wrapping_add(change));
+    }
+    while left > 0 && !is_straight(to as u32, least) {
+        (left, to) = (left - 1, to.wrapping_sub(change));
+    }
+    (skipped, left)
 }
 
 /// Scale that takes a coordinate from its interpolated form h back to 16.16.
@@ -539,7 +605,7 @@ mod tests {
     fn stepper([u, v]: [i32; 2], [du, dv]: [i32; 2]) -> UvStepper {
         let scale = || Scale::new::<SMALL_CORE>(None);
         let (at, step) = ([0, u, v], [0, du, dv]);
-        UvStepper { at, step, uv: (u, v), u: scale(), v: scale(), back: 0, log_step: 4, before: 0, dz_dx: 0 }
+        UvStepper { at, step, uv: (u, v), u: scale(), v: scale(), log_step: 4, ..UvStepper::EMPTY }
     }
 
     /// Compares all loops with the plain one, over an opaque tile.
@@ -553,7 +619,8 @@ mod tests {
             let mut uv = || rng.next_u32() as i32 >> 8;
             let (uv, duv) = ([uv(), uv()], [uv(), uv()]);
             let (vu, step) = stepper(uv, duv).next_run();
-            let cursor = || TexelCursor { z, dz_dx, vu, step };
+            let begun = || UvStepper { z, dz_dx, ..stepper(uv, duv) };
+            let mut cursor = TexelCursor { z, dz_dx, vu, step };
             let pixel = |k: usize| tile.fetch::<Rgb565>(vu.wrapping_add(step.wrapping_mul(k as u32)));
             let case = naive::Case { length: RUN, z, dz_dx, background: 0x1234_u16 };
             naive::compare(
@@ -565,11 +632,11 @@ mod tests {
                 &mut [
                     ("a run in one pass", &mut |color, depth| {
                         let (Ok(color), Ok(depth)) = (color.try_into(), depth.try_into()) else { return };
-                        cursor().run16::<Rgb565, _, D>(tile, test, color, depth);
+                        whole_run_in_one_pass::<Rgb565, _, D>(tile, test, &mut begun(), color, depth);
                     }),
                     ("a run in two passes", &mut |color, depth| {
                         let (Ok(color), Ok(depth)) = (color.try_into(), depth.try_into()) else { return };
-                        cursor().run16_two_pass::<Rgb565, _, D>(tile, test, &mut stepper(uv, duv), color, depth);
+                        whole_run_in_two_passes::<Rgb565, _, D>(tile, test, &mut begun(), color, depth);
                     }),
                 ],
             );
@@ -581,9 +648,13 @@ mod tests {
                 &stored,
                 pixel,
                 &mut [
-                    ("a tail", &mut |color, depth| cursor().tail::<Rgb565, _, D>(tile, test, color, depth)),
-                    ("a tail in two passes", &mut |color, depth| {
-                        cursor().short_two_pass::<Rgb565, _, D>(tile, test, color, depth);
+                    ("a tail", &mut |color, depth| cursor.tail::<Rgb565, _, D>(tile, test, color, depth)),
+                    ("a short run", &mut |color, depth| {
+                        short_run::<Rgb565, _, D>(tile, test, &mut begun(), color, depth);
+                    }),
+                    ("a short run in two passes", &mut |color, depth| {
+                        let word = (vu, step);
+                        short_run_in_two_passes::<Rgb565, _, D>(tile, test, &mut begun(), word, color, depth);
                     }),
                 ],
             );
@@ -634,7 +705,7 @@ mod tests {
             }
         }
         let most = primitive.d_dx.as_ref().iter().map(|change| change.unsigned_abs()).max().unwrap_or(0);
-        let fits = most >> (29 - log_step) == 0;
+        let fits = most >> (28 - log_step) == 0;
         primitive.perspective.set_least_straight(if fits { most << (log_step + 3) } else { u32::MAX });
         (primitive, x, length)
     }
@@ -652,14 +723,22 @@ mod tests {
         for case in 0..200_000 {
             let log_step = 1 + case % 5;
             let (primitive, x, length) = extreme(&mut rng, log_step);
-            let (mut small, mut other) = (UvStepper::EMPTY, UvStepper::EMPTY);
-            let length_small = small.begin_on::<true, _, _>(&primitive, (x, 0), length, log_step, 0);
-            let length = other.begin_on::<false, _, _>(&primitive, (x, 0), length, log_step, 0);
-            assert_eq!((length_small, small.before), (length, other.before), "{case}");
-            if length > 0 {
+            if UvStepper::log_step(&primitive, 1 << log_step) == 0 {
+                continue;
+            }
+            let mut small = UvStepper::begin_on::<true, _, _>(&primitive, (x, 0), length, log_step, 0);
+            let mut other = UvStepper::begin_on::<false, _, _>(&primitive, (x, 0), length, log_step, 0);
+            assert_eq!((small.length, small.before), (other.length, other.before), "{case}");
+            if other.length > 0 {
                 begun += 1;
-                for _ in 0..runs(x + small.before as i32, length, log_step) {
-                    assert_eq!(small.next_run_on::<true>(), other.next_run_on::<false>(), "{case}: {primitive:?}");
+                let mut whole = UvStepper::begin_on::<false, _, _>(&primitive, (x, 0), length, log_step, 0);
+                // One more: steppers begin a step before the first column.
+                for _ in 0..=runs(x + small.before as i32, other.length, log_step) {
+                    let word = other.next_run_on::<false, false>();
+                    assert_eq!(small.next_run_on::<true, false>(), word, "{case}: {primitive:?}");
+                    if 1 << log_step == RUN {
+                        assert_eq!(whole.next_run_on::<false, true>(), word, "{case}: {primitive:?}");
+                    }
                 }
             }
         }
@@ -673,12 +752,15 @@ mod tests {
         for case in 0..20_000 {
             let log_step = 1 + case % 5;
             let (primitive, x, length) = extreme(&mut rng, log_step);
-            let mut stepper = UvStepper::EMPTY;
-            let length = stepper.begin(&primitive, (x, 0), length, log_step, 0);
-            let x = x + stepper.before as i32;
+            if UvStepper::log_step(&primitive, 1 << log_step) == 0 {
+                continue;
+            }
+            let mut stepper = UvStepper::begin(&primitive, (x, 0), length, log_step, 0);
+            let (x, length) = (x + stepper.before as i32, stepper.length);
             if length == 0 {
                 continue;
             }
+            stepper.next_run();
             begun += 1;
             let first = x >> log_step << log_step;
             let mut exact = Corrected::new(&primitive, (first, 0));

@@ -242,7 +242,7 @@ pub trait PerspectiveSetup: Copy + Debug {
 
     /// Returns the least q = 1 / w for which varyings may be taken as linear between two columns of the screen that
     /// are the shader's step apart: it has to be reached at both. Half of it does for half the step, and so on.
-    /// `u32::MAX` means that varyings are divided at each pixel of this triangle.
+    /// `u32::MAX` means that varyings are divided at each pixel of this triangle; other values are below 2³¹.
     fn least_straight(&self) -> u32;
 
     /// Sets what [`least_straight`](Self::least_straight) returns.
