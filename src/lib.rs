@@ -54,20 +54,20 @@
 //! # The pipeline
 //!
 //! A frame's closure is called several times. A call works in one of three phases: it *records* a band of strips, it
-//! *replays* the records of one strip, or, where the records have no room even for one strip, it draws that strip
-//! *directly*.
+//! *replays* the records of one strip, or, where a frame has one strip or the records have no room for two, it draws a
+//! strip *directly*.
 //!
 //! | | stage | in | out | file | phase |
 //! |---|---|---|---|---|---|
 //! | 1 | bounds | a mesh, lines or points; a matrix | nothing, if the box is out of view; a vertex transform | `scene/scene.rs`, `vertex/transform.rs` | record, direct |
-//! | 2 | vertices | vertex numbers | packed vertices: place on the screen, or outcode; varyings | `scene/assembly.rs`, `vertex/{transform, project, shader}.rs` | record, direct |
+//! | 2 | vertices | vertex numbers | packed vertices: place on the screen, or outcode; varyings | `scene/vertex_stage.rs`, `vertex/{transform, project, shader}.rs` | record, direct |
 //! | 3 | primitive assembly | indices | triangles on the screen, or triangles to be clipped | `scene/scan.rs`, `mesh/mesh.rs` | record, direct |
 //! | 4 | clipping | a triangle with outcodes | a fan of triangles on the screen | `scene/assembly.rs`, `vertex/{clip, clip_distance}.rs` | record, direct |
 //! | 5 | culling | a triangle on the screen | nothing, if it shows the wrong side or covers no pixel | `scene/scan.rs` | record, direct |
 //! | 6 | recording | a triangle on the screen | three words in the list of the first strip it touches | `target/records.rs` | record |
-//! | 7 | faces | a triangle of the mesh | one word for all of its fragments, such as a lit colour | `scene/assembly.rs`, `vertex/shader.rs` | record, direct |
-//! | 8 | set-up | a triangle on the screen, its varyings | plane equations of depth and varyings | `scene/painter.rs`, `raster/gradient.rs` | replay, direct |
-//! | 9 | spans | three edges | runs of pixels, row by row | `scene/painter.rs`, `raster/{triangle, edge}.rs` | replay, direct |
+//! | 7 | faces | a triangle of the mesh | one word for all of its fragments, such as a lit colour | `scene/program.rs`, `vertex/shader.rs` | record, direct |
+//! | 8 | set-up | a triangle on the screen, its varyings | plane equations of depth and varyings | `scene/painter.rs`, `span/small.rs`, `raster/gradient.rs` | replay, direct |
+//! | 9 | spans | three edges | runs of pixels, row by row | `scene/painter.rs`, `span/small.rs`, `raster/{triangle, edge, small}.rs` | replay, direct |
 //! | 10 | depth test | depths of a span | pixels that are in front | `span/depth.rs` | replay, direct |
 //! | 11 | fragments | varyings at a pixel, the face's word | a pixel | `span/`, `shader/` | replay, direct |
 //! | 12 | output | a strip of pixels | bytes for a display | `frame/frame.rs`, `target/` | after each strip |

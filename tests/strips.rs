@@ -43,7 +43,8 @@ fn assert_strips_do_not_matter(name: &str, turn: Angle16, heights: &[usize], cap
         assert_eq!(found, None, "{name} at {turn:?}, strips of {rows} rows, {records} records");
         assert_eq!(stats.strips as usize, 240_usize.div_ceil(rows));
         match records {
-            0 => assert_eq!(stats.direct_strips, stats.strips, "{name}: {stats:?}"),
+            // A frame of one strip is drawn directly, too.
+            _ if records == 0 || rows == 240 => assert_eq!(stats.direct_strips, stats.strips, "{name}: {stats:?}"),
             AMPLE => assert_eq!((stats.overflows, stats.direct_strips), (0, 0), "{name}: {stats:?}"),
             _ => {}
         }
@@ -425,7 +426,7 @@ fn stats_tell_how_the_frame_was_made() {
 
     let few = frame(16, 2000);
     assert_eq!(few.strips, 15);
-    assert!(few.overflows > 0 && few.direct_strips == 0, "{few:?}");
+    assert!(few.overflows > 0 && few.direct_strips == 1, "after two bands of seven, one strip is alone: {few:?}");
     // Each strip is replayed in one walk; the others record, in vain or not.
     assert!(few.walks > 15 + few.overflows && few.walks < 60, "{few:?}");
 

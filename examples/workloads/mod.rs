@@ -21,7 +21,7 @@ use zstrip::light::{Matte, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud, Textured};
-use zstrip::span::{DepthState, DepthTest, Fragment, Shader, SpanOf};
+use zstrip::span::{DepthState, DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf};
 use zstrip::target::RecordsChoice;
 use zstrip::target::{Stats, Strip};
 use zstrip::target::{WithDepth, WithRecords};
@@ -252,6 +252,16 @@ impl<P: PixelFormat> Shader<P> for FaceColors {
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         Shader::<P>::span(&self.0, span, test);
+    }
+
+    #[inline]
+    fn small<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &[[i32; 0]; 3],
+        flat: u32,
+    ) -> SmallResult {
+        Shader::<P>::small(&self.0, triangle, corners, flat)
     }
 }
 

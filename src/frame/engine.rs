@@ -219,12 +219,13 @@ impl Engine<'_> {
             records.begin_replay(self.grid.strips.of(u32::from(*row - band.0)));
             return Phase::Replay;
         }
-        if *strips == 0 {
+        let rest = self.grid.strips_from(*row);
+        // A band of one strip would save nothing.
+        if *strips == 0 || rest == 1 {
             *band = (*row, *row + rows);
             records.clear();
             return Phase::Direct;
         }
-        let rest = self.grid.strips_from(*row);
         if *strips == u16::MAX {
             *tries = (rest >> 3).max(2);
         }

@@ -117,11 +117,14 @@ impl NormalMatrix {
     #[inline(never)]
     pub(crate) fn times(&self, normal: [i16; 3]) -> [i16; 3] {
         let n = long(normal);
-        let sum = self.rows.map(|row| {
-            let [a, b, c] = long(row);
-            a.wrapping_mul(n[0]).wrapping_add(b.wrapping_mul(n[1])).wrapping_add(c.wrapping_mul(n[2]))
-        });
-        unit_vector_of_any_length(sum).map(|c| c as i16)
+        // In place: an array of rows by value would be copied by a call.
+        let mut sum = [0; 3];
+        for (sum, row) in sum.iter_mut().zip(&self.rows) {
+            let [a, b, c] = long(*row);
+            *sum = a.wrapping_mul(n[0]).wrapping_add(b.wrapping_mul(n[1])).wrapping_add(c.wrapping_mul(n[2]));
+        }
+        let [x, y, z] = unit_vector_of_any_length(sum);
+        [x as i16, y as i16, z as i16]
     }
 }
 

@@ -270,11 +270,30 @@ impl ShortDivisor {
     #[inline(always)]
     pub const fn new(q: u32) -> Self {
         let shift = leading_zeros(q) & 31;
-        let x16 = ((q << shift) >> 16) as i32;
+        Self::of_shifted(q << shift, shift)
+    }
+
+    #[inline(always)]
+    const fn of_shifted(x: u32, shift: u32) -> Self {
+        let x16 = (x >> 16) as i32;
         let r = SEED[(x16 >> 7) as usize & 0xFF] as i32;
         let defect = (1_i32 << 31).wrapping_sub(x16.wrapping_mul(r));
         let r = r + (r.wrapping_mul(defect >> 8).wrapping_add(1 << 22) >> 23);
         Self { shift, reciprocal: r, defect: (1_i32 << 31).wrapping_sub(x16.wrapping_mul(r)) }
+    }
+
+    /// Makes a divisor as [`new`](Self::new) does, of a number below 2¹³.
+    #[inline(always)]
+    pub fn of_13_bits(q: u32) -> Self {
+        // Usually 5 bits more than a byte holds: one comparison finds the leading zeros.
+        let shift = if !SMALL_CORE {
+            q.leading_zeros() & 31
+        } else if q >> 5 != 0 {
+            19 + byte_zeros((q >> 5) as u8)
+        } else {
+            24 + byte_zeros(q as u8)
+        };
+        Self::of_shifted(q << (shift & 31), shift)
     }
 
     /// Returns the number of bits that the divisor is shifted by to reach 2³¹..2³².

@@ -31,8 +31,8 @@ pub struct Gradients {
     /// px.
     reciprocal: u32,
     shift: i32,
-    /// The shift, if x and y are within -2¹⁵..2¹⁵; otherwise more than any shift.
-    small_shift: i32,
+    /// Set if x and y are within -2¹⁵..2¹⁵.
+    is_short: bool,
     /// The pixel at which planes are evaluated: the one that holds vertex 0, moved onto the screen for large triangles.
     origin: (i32, i32),
 }
@@ -54,21 +54,21 @@ impl Gradients {
     #[inline]
     pub fn new(v: &[ScreenVertex; 3], area: i64, (width, height): (u16, u16)) -> Self {
         let [a, b, c] = v;
-        let (x, y, is_small);
+        let (x, y, is_short);
         if area < 0 {
             (x, y) = ([a.x - b.x, a.x - c.x], [a.y - b.y, a.y - c.y]);
-            is_small = within(1 << 15, [-x[0], -x[1], -y[0], -y[1]]);
+            is_short = within(1 << 15, [-x[0], -x[1], -y[0], -y[1]]);
         } else {
             (x, y) = ([b.x - a.x, c.x - a.x], [b.y - a.y, c.y - a.y]);
-            is_small = within(1 << 15, [x[0], x[1], y[0], y[1]]);
+            is_short = within(1 << 15, [x[0], x[1], y[0], y[1]]);
         }
         let origin = (a.x >> 8, a.y >> 8);
         let to = (256 * origin.0 + 128 - a.x, 256 * origin.1 + 128 - a.y);
-        let mut it = Self { x, y, to, area, reciprocal: 0, shift: 0, small_shift: LARGE, origin };
-        if is_small {
+        let mut it = Self { x, y, to, area, reciprocal: 0, shift: 0, is_short, origin };
+        if is_short {
             let magnitude = (area as i32).unsigned_abs();
             let shift = leading_zeros(magnitude);
-            (it.shift, it.small_shift) = (shift as i32, shift as i32);
+            it.shift = shift as i32;
             it.reciprocal = reciprocal(magnitude << shift);
         } else if within(1 << 17, [b.x - a.x, c.x - a.x, b.y - a.y, c.y - a.y]) {
             // Areas up to 2³⁵. Only their upper 32 bits count, which loses 2⁻³¹.
@@ -96,20 +96,11 @@ impl Gradients {
             return PlaneEquation { dx: 0, dy: 0, base: (values[0] as u32) << scale };
         }
         // The usual case, small differences on a small triangle, fits 32 bits: 2¹⁴ · 2¹⁵ · 2.
-        let up = self.small_shift + scale as i32 - 23;
-        if up <= 4 && moderate(v1) & moderate(v2) {
-            let a = v1 * self.y[1] - v2 * self.y[0];
-            let b = v2 * self.x[0] - v1 * self.x[1];
-            let (dx, dy) = if SMALL_CORE { high_two(a, b, self.reciprocal) } else { high(a, b, self.reciprocal) };
-            // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³ = 2^up high. A unit of `high` is at most
-            // 2⁴ / 2¹⁶, which makes 2⁻⁴ over the 128 px of a small triangle in both directions.
-            let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
-            if up < 0 {
-                if bits >> 29 == 0 {
-                    return self.through_vertex_0(values[0], scale, dx >> -up, dy >> -up);
-                }
-            } else if bits >> (29 - up) == 0 {
-                return self.through_vertex_0(values[0], scale, dx << up, dy << up);
+        if self.is_short && moderate(v1) & moderate(v2) {
+            let (a, b) = (v1 * self.y[1] - v2 * self.y[0], v2 * self.x[0] - v1 * self.x[1]);
+            // 256 2^scale n / area = 2^(shift + 8 + scale) n reciprocal / 2⁶³.
+            if let Some((dx, dy)) = gradients(a, b, self.reciprocal, self.shift + scale as i32 - 23) {
+                return self.through_vertex_0(values[0], scale, dx, dy);
             }
         }
         self.plane_outlined(values, scale)
@@ -165,7 +156,7 @@ impl Gradients {
         [minor(&v, &self.y), -minor(&v, &self.x)]
     }
 
-    /// Returns the gradients, 256 2^scale n / |area|, if both are below 2²⁹ (2¹³ in 16.16).
+    /// Returns the gradients, 256 2^scale n / |area|, if both are below 2²⁸ (2¹² in 16.16).
     ///
     /// Below this bound, the reciprocal loses little enough: its relative error is below 2⁻²⁸, so less than 2⁻⁵ of a
     /// unit over 512 px in both directions, and one unit of 2⁻¹⁶ per pixel.
@@ -181,10 +172,13 @@ impl Gradients {
             let high = mul_high_outlined(normalized, self.reciprocal);
             // With up = zeros - 33: high 2³² 2^(shift + scale - up) / 2⁵⁵.
             let down = zeros as i32 - 10 - self.shift - scale as i32;
-            if self.reciprocal == 0 || down < 2 {
+            if self.reciprocal == 0 || down < 0 {
                 return None;
             }
             *gradient = high >> down.min(31);
+            if (*gradient ^ *gradient >> 31) as u32 >> 28 != 0 {
+                return None;
+            }
         }
         Some(gradients)
     }
@@ -221,22 +215,35 @@ impl Gradients {
     }
 }
 
-/// A [`small_shift`](Gradients::small_shift) that is larger than any shift: the triangle is not small.
-const LARGE: i32 = 1 << 16;
-
-/// Returns the high words of two products with a number whose top bit is set, rounded down.
-#[inline(always)]
-fn high(a: i32, b: i32, n: u32) -> (i32, i32) {
-    // One instruction per product, if n is taken as n - 2³².
-    let high = |a: i32| (((i64::from(a) * i64::from(n as i32)) >> 32) as i32).wrapping_add(a);
-    (high(a), high(b))
+/// Returns ⌊n `reciprocal` 2^(`up` - 32)⌋ for two numerators n, if both results are below 2²⁸. The top bit of
+/// `reciprocal` is set, and -32 < `up` < 32.
+///
+/// These are the results of [`Gradients::gentle`], bit for bit.
+///
+/// Not inlined, because its registers would push the values that are live around it to the stack.
+#[inline(never)]
+pub(crate) fn gradients(a: i32, b: i32, reciprocal: u32, up: i32) -> Option<(i32, i32)> {
+    let (dx, dy) = (high(a, reciprocal), high(b, reciprocal));
+    let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
+    if up <= 0 {
+        let down = -up & 31;
+        return if bits >> down >> 28 == 0 { Some((dx >> down, dy >> down)) } else { None };
+    }
+    // The result has bits of the low words, too.
+    let low = |n: i32| (n as u32).wrapping_mul(reciprocal) >> ((32 - up) & 31);
+    let (x, y) = ((dx << (up & 31)) as u32 | low(a), (dy << (up & 31)) as u32 | low(b));
+    if up <= 28 && bits >> (28 - up) == 0 { Some((x as i32, y as i32)) } else { None }
 }
 
-/// Returns the high words as [`high`] does, by products of 16 bits. Not inlined, because its registers would push the
-/// values that are live around it to the stack.
-#[inline(never)]
-fn high_two(a: i32, b: i32, n: u32) -> (i32, i32) {
-    (mul_high_signed(a, n), mul_high_signed(b, n))
+/// Returns the high word of a product with a number whose top bit is set, rounded down.
+#[inline(always)]
+pub(crate) fn high(a: i32, n: u32) -> i32 {
+    if SMALL_CORE {
+        mul_high_signed(a, n)
+    } else {
+        // One instruction, if n is taken as n - 2³².
+        (((i64::from(a) * i64::from(n as i32)) >> 32) as i32).wrapping_add(a)
+    }
 }
 
 /// Returns whether all numbers are within -`half`..`half`, where `half` is a power of two.
@@ -262,16 +269,53 @@ mod tests {
     use super::*;
     use crate::math::random::Rng;
 
+    /// Compares gradients in 32 bits with those of the long way, and with exact ones.
+    #[test]
+    fn short_gradients_are_those_of_the_long_way() {
+        let mut rng = Rng::new(1);
+        let (mut short, mut steep) = (0, 0);
+        for case in 0..200_000 {
+            let size = 1 << (2 + case % 13);
+            let mut point = || ScreenVertex::new(rng.between(-size, size), rng.between(-size, size), 0);
+            let v = [point(), point(), point()];
+            let area = crate::vertex::signed_area(&v[0], &v[1], &v[2]);
+            if area == 0 {
+                continue;
+            }
+            let most = 1 << (1 + case / 13 % 14);
+            let values = [0, rng.between(-most, most), rng.between(-most, most)];
+            let scale = [16, 13, 3, 0][case % 4];
+            let plan = Gradients::new(&v, area, (320, 240));
+            let numerators = plan.numerators(values);
+            let [a, b] = numerators.map(|n| i32::try_from(n).expect("32 bits"));
+            let up = plan.shift + scale as i32 - 23;
+            let found = gradients(a, b, plan.reciprocal, up);
+            assert_eq!(found, plan.gentle(&numerators, scale).map(Into::into), "{v:?} {values:?} {scale}");
+            let exact = numerators.map(|n| (i128::from(n) << (8 + scale)) as f64 / area.abs() as f64);
+            match found {
+                Some((x, y)) => {
+                    short += 1;
+                    for (found, exact) in [x, y].into_iter().zip(exact) {
+                        let bound = 1.0 + exact.abs() * 2f64.powi(-28);
+                        assert!((f64::from(found) - exact).abs() <= bound, "{found} {exact}");
+                    }
+                }
+                None => {
+                    steep += 1;
+                    assert!(exact.iter().any(|exact| exact.abs() > 2f64.powi(27)), "{exact:?}");
+                }
+            }
+        }
+        assert!(short > 100_000 && steep > 1000, "{short}, {steep}");
+    }
+
     #[test]
     fn both_cores_multiply_alike() {
         let mut rng = Rng::new(1);
-        let mut random = || rng.next_u32();
         for case in 0..100_000 {
-            let (a, b) = (random() as i32 >> (2 + case % 20), random() as i32 >> (2 + case % 17));
-            let n = [random(), random() >> 1, u32::MAX, 0][case % 4] | 1 << 31;
-            let exact = |a: i32| ((i64::from(a) * i64::from(n)) >> 32) as i32;
-            assert_eq!(high(a, b, n), (exact(a), exact(b)), "{a} {b} {n}");
-            assert_eq!(high_two(a, b, n), (exact(a), exact(b)), "{a} {b} {n}");
+            let (a, n) = (rng.next_u32() as i32 >> (2 + case % 20), rng.next_u32() | 1 << 31);
+            let exact = ((i64::from(a) * i64::from(n)) >> 32) as i32;
+            assert_eq!((high(a, n), mul_high_signed(a, n)), (exact, exact), "{a} {n}");
         }
     }
 

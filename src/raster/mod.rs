@@ -10,12 +10,16 @@ mod gradient;
 mod line;
 mod perspective;
 mod point;
+mod small;
 mod triangle;
 
 pub use along::Along;
 pub(crate) use direction::unit;
 pub use gradient::{Gradients, PlaneEquation};
+pub(crate) use gradient::{gradients, high};
 pub use line::{Line, LinePixels};
 pub use perspective::{homogenize, straighten, widen, widen_along};
 pub use point::{square, wide_square};
+pub(crate) use small::{HEIGHT, ShortEdge, ShortPlanes, WIDTH};
+pub(crate) use triangle::first_centre;
 pub use triangle::{Outline, PixelRect, Spans, pixel_rect, spans};

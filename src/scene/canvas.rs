@@ -302,8 +302,12 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
     ) {
         let Self { scene, clip, state, .. } = self;
         if !pixel_rect(v).intersection(clip).is_empty() {
-            let varyings = varyings.map(level);
-            scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(v, &varyings, face);
+            let mut varyings = varyings.map(level);
+            scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(
+                &mut v.clone(),
+                &mut varyings,
+                face,
+            );
         }
     }
 

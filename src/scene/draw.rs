@@ -1,15 +1,18 @@
 //! The calls that draw meshes: a mesh, a matrix and a shader come in, and go through [the pipeline](crate#the-pipeline)
 //! from top to bottom. Stages 1 to 7 are in `assemble`, stages 8 to 11 in `replay`.
 
-use super::assembly::{Assembly, AssemblyHooks};
-use super::painter::Painter;
+use super::assembly::{Assembly, ClampedSlabs, Program};
+use super::painter::{RecordDrawer, SmallRows};
+use super::program::{AssemblyHooks, MeshProgram};
+use super::scan::BoxTest;
 use super::scene::{Draw, Phase, Primitives, Scene};
 use super::state::State;
+use super::vertex_stage::VertexStage;
 use crate::math::Projective;
 use crate::mesh::Mesh;
-use crate::span::Shader;
+use crate::span::{BiasSteps, Shader, SmallResult};
 use crate::target::{Framebuffer, TriangleRecord, Triangles};
-use crate::vertex::{Transform, Varyings};
+use crate::vertex::{ScreenVertex, Transform};
 
 impl<F: Framebuffer> Scene<'_, F> {
     /// Draws a mesh with the default state: back faces are culled, nearer fragments win, and triangles are clipped at
@@ -42,7 +45,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         let draw = Draw::new::<S, ()>(state, hooks.depth_scale, mesh, mvp, Primitives::Triangles);
         if F::RECORDS && self.phase == Phase::Replay {
             if self.find_draw(&draw) {
-                self.replay(state, hooks, shader);
+                (hooks.raster.replay)(self, state, &hooks.raster, shader, false);
             }
         } else {
             self.assemble(&draw, hooks, shader);
@@ -52,51 +55,85 @@ impl<F: Framebuffer> Scene<'_, F> {
     /// Records the triangles of a draw, or draws them directly: stages 1 to 7.
     #[inline(never)]
     fn assemble<S: Shader<F::Format>>(&mut self, draw: &Draw<'_>, hooks: &AssemblyHooks<F, S>, shader: &S) {
-        let (state, mesh) = (draw.state, draw.mesh);
         // Stage 1, bounds.
         let mut transform = Transform::default();
-        if !self.begin_draw(draw, Some(&mut transform)) {
-            return;
+        if self.begin_draw(draw, Some(&mut transform)) {
+            let stage = VertexStage { mesh: draw.mesh, shader, transform: &transform };
+            let program = MeshProgram { stage, state: draw.state, hooks: &hooks.raster };
+            self.assemble_by(draw, &program, &transform, hooks.clamped_slabs);
+            self.end_draw();
         }
+    }
+
+    /// Stages 2 to 7 of a draw that may be visible.
+    #[inline(never)]
+    fn assemble_by(
+        &mut self,
+        draw: &Draw<'_>,
+        program: &dyn Program<F>,
+        transform: &Transform,
+        clamped_slabs: Option<ClampedSlabs<F>>,
+    ) {
         let clip = self.clip_rect(&self.band);
-        let culling = state.culling();
-        let mut assembly = Assembly { scene: self, state, hooks, mesh, shader, transform: &transform, culling, clip };
+        let culling = draw.state.culling();
+        let mut assembly = Assembly { scene: self, draw, program, transform, clamped_slabs, culling, clip };
         match draw.hierarchy() {
             // Stages 2 to 7, per part of the mesh that may be visible. Vertices are shaded when triangles ask for them.
             Some(nodes) => assembly.hierarchy(nodes, draw.mvp),
             _ => {
                 // Stage 2, vertices: all at once, if their results are kept.
-                if F::RECORDS {
-                    assembly.shade_all();
-                }
+                program.shade_all(assembly.scene);
                 // Stages 3 to 7, triangle by triangle: assembly, clipping, culling, recording, faces.
-                assembly.triangles(0..mesh.triangle_count());
+                assembly.triangles(0..draw.mesh.triangle_count());
             }
         }
-        self.end_draw();
     }
 
-    /// Draws the recorded triangles of this draw in the current strip: stages 8 to 11, for each triangle in
-    /// [`Painter::triangle_of_area`].
+    /// Draws triangles of this draw in the current strip: stages 8 to 11. These are the recorded ones of the strip, or
+    /// those that wait to be drawn at once, which are taken out of the records. This code is compiled once, for all
+    /// shaders.
     #[inline(never)]
-    fn replay<S: Shader<F::Format>>(&mut self, state: &State, hooks: &AssemblyHooks<F, S>, shader: &S) {
-        let end = Triangles::end_of(self.target.rows.end);
+    pub(super) fn replay(
+        &mut self,
+        state: &State,
+        bias: Option<BiasSteps>,
+        waiting: bool,
+        drawer: &mut dyn RecordDrawer<F>,
+    ) {
         let clip = &self.clip_rect(&self.target.rows);
-        let last = self.records.last_triangle();
+        let end = Triangles::end_of(self.target.rows.end);
+        let (target, screen) = (&mut self.target, self.screen);
+        let rows = SmallRows::new(screen, clip, state, bias.map(|bias| (bias, state.bias)));
         let mut triangles = self.records.triangles();
-        // Stage 8, set-up; stage 9, spans; stage 10, depth test; stage 11, fragments.
-        let mut painter =
-            Painter { target: &mut self.target, screen: self.screen, clip, state, hooks: &hooks.raster, shader };
-        let mut triangle = TriangleRecord::default();
-        let mut varyings = [S::Varyings::ZERO; 3];
-        while triangles.replay(last, end, &mut triangle) {
-            let [i, j, k] = triangle.corners();
-            // Loaded in place, because arrays of varyings would be copied when they are returned.
-            let [a, b, c] = &mut varyings;
-            triangles.varyings::<S>(i, a);
-            triangles.varyings::<S>(j, b);
-            triangles.varyings::<S>(k, c);
-            painter.triangle(&triangle.v, &varyings, triangle.face);
+        let mut test = BoxTest::new(clip);
+        let mut record = TriangleRecord::default();
+        let mut v = [ScreenVertex::new(0, 0, 0); 3];
+        if waiting {
+            triangles.begin_waiting();
+        }
+        let fits = drawer.fits();
+        loop {
+            let mut place = if fits { rows.all(target) } else { None };
+            let draw = |triangles: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]| match &mut place {
+                Some(place) => drawer.small(place, triangles, record, v),
+                None => SmallResult::Large,
+            };
+            let found = if waiting {
+                triangles.waiting_each(&mut record, &mut test.left_out, draw)
+            } else {
+                triangles.replay_each(end, &mut record, draw)
+            };
+            if !found {
+                break;
+            }
+            if !waiting || test.first_row(triangles.positions_of(record.corners)).is_some() {
+                triangles.vertices_of(&record, &mut v);
+                drawer.single((target, screen, clip), &triangles, &record, &mut v);
+            }
+        }
+        if waiting {
+            test.finish(self.stats, triangles.count().into());
+            triangles.clear();
         }
     }
 }

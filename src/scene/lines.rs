@@ -5,18 +5,18 @@
 //! strip looks at all of them. This takes some 80 instructions per line that lies elsewhere, and no memory. A vertex is
 //! shaded, stage 2, in the first strip that needs it.
 
-use super::assembly::{Assembly, AssemblyHooks};
 use super::painter::{Painter, RasterHooks};
 use super::scan::may_reach;
 use super::scene::{Draw, Phase, Primitives, Scene};
 use super::state::State;
 use super::stroke::{Stroke, block};
+use super::vertex_stage::VertexStage;
 use crate::math::{Pixels, Projective};
 use crate::mesh::{Lines, Points};
 use crate::raster::{PixelRect, square};
 use crate::span::Shader;
-use crate::target::{Framebuffer, PackedVertex};
-use crate::vertex::{DepthSlab, Face, Outcode, ScreenMatrix, ScreenVertex, Side, Transform, clip_line};
+use crate::target::Framebuffer;
+use crate::vertex::{DepthSlab, Face, Outcode, PackedVertex, ScreenMatrix, ScreenVertex, Side, Transform, clip_line};
 
 impl<'a, F: Framebuffer> Scene<'a, F> {
     /// Draws lines with a stroke: nearer fragments win, and lines are clipped at the near and the far plane.
@@ -210,8 +210,8 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
             let place = if packed.is_on_screen() {
                 Some(packed.screen())
             } else if packed.outcode() & !self.draw.state.range.clamped().0 == 0 {
-                let assembly = self.assembly();
-                assembly.transform.project(&assembly.transformed(index))
+                let (_, stage) = self.stage();
+                stage.transform.project(&stage.transformed(index))
             } else {
                 None
             };
@@ -230,29 +230,24 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
     #[inline]
     fn packed_vertex(&mut self, index: usize) -> PackedVertex {
         let packed = self.scene.records.packed_vertex(index);
-        if packed.is_unshaded() { self.assembly().shade(index) } else { packed }
+        if !packed.is_unshaded() {
+            return packed;
+        }
+        let (scene, stage) = self.stage();
+        stage.shade(scene, index)
     }
 
-    /// Returns the vertex stage, and makes the transform if there is none yet.
+    /// Returns the vertex stage beside the scene, and makes the transform if there is none yet.
     #[inline(never)]
-    fn assembly(&mut self) -> Assembly<'_, 'a, F, S> {
-        let Self { scene, draw, shader, clip, transform } = self;
+    fn stage(&mut self) -> (&mut Scene<'a, F>, VertexStage<'_, S>) {
+        let Self { scene, draw, shader, transform, .. } = self;
         let transform = transform.get_or_insert_with(|| {
             let (mut screen, mut transform) = (ScreenMatrix::EMPTY, Transform::default());
             screen.set_from(draw.mvp, &scene.viewport);
             draw.set_transform(&screen, &mut transform);
             transform
         });
-        Assembly {
-            scene,
-            state: draw.state,
-            hooks: &const { AssemblyHooks::ANY },
-            mesh: draw.mesh,
-            shader,
-            transform,
-            culling: draw.state.culling(),
-            clip: clip.clone(),
-        }
+        (scene, VertexStage { mesh: draw.mesh, shader, transform })
     }
 
     /// Returns the varyings of a vertex.
@@ -261,7 +256,8 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
             // The transform is not needed, and may not have been made.
             return self.scene.records.varyings::<S>(index);
         }
-        self.assembly().varyings(index)
+        let (scene, stage) = self.stage();
+        stage.kept(scene, index)
     }
 
     fn face(&self, [a, b]: [u16; 2], number: usize) -> u32 {
@@ -308,18 +304,19 @@ impl<'s, 'a, F: Framebuffer, S: Shader<F::Format>> LineDraw<'s, 'a, F, S> {
     /// Returns whether a line that has to be cut may cover pixels of this strip.
     #[inline(never)]
     fn may_reach(&mut self, corners: [u16; 2], reach: i32) -> bool {
-        let assembly = self.assembly();
-        may_reach(&assembly.clip, reach, &corners.map(|index| assembly.transformed(usize::from(index))))
+        let (_, stage) = self.stage();
+        let ends = corners.map(|index| stage.transformed(usize::from(index)));
+        may_reach(&self.clip, reach, &ends)
     }
 
     /// Cuts a line to one slab of depth, and returns the ends of the remaining part on the screen. Not inlined, so that
     /// the ends in clip space are no longer on the stack when the line is drawn.
     #[inline(never)]
     fn cut(&mut self, corners: [u16; 2], codes: Outcode, slab: DepthSlab) -> Option<[(ScreenVertex, S::Varyings); 2]> {
-        let assembly = self.assembly();
+        let (_, stage) = self.stage();
         let [i, j] = corners.map(usize::from);
-        let [a, b] = clip_line([assembly.transformed(i), assembly.transformed(j)], codes, slab)?;
-        let (from, to) = (assembly.transform.project(&a.vertex)?, assembly.transform.project(&b.vertex)?);
-        Some([(from, assembly.end_varyings(corners, &a)), (to, assembly.end_varyings(corners, &b))])
+        let [a, b] = clip_line([stage.transformed(i), stage.transformed(j)], codes, slab)?;
+        let (from, to) = (stage.transform.project(&a.vertex)?, stage.transform.project(&b.vertex)?);
+        Some([(from, stage.rounded_end(corners, &a)), (to, stage.rounded_end(corners, &b))])
     }
 }

@@ -9,10 +9,12 @@ mod draw;
 mod lines;
 mod overlay;
 mod painter;
+mod program;
 mod scan;
 mod scene;
 mod state;
 mod stroke;
+mod vertex_stage;
 
 pub use canvas::{Canvas, ScreenPoint};
 pub use scene::Scene;

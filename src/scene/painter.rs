@@ -4,13 +4,16 @@
 //! rectangle are written.
 
 use super::scene::{Scene, Target, check};
-use super::state::State;
-use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, homogenize, straighten, widen};
+use super::state::{State, Winding};
+use crate::color::PixelFormat;
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, first_centre};
 use crate::span::{
-    DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Primitive, Shader, Span, SpanOf, TriangleSetup,
+    BiasSteps, DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Primitive, Shader, SmallResult,
+    SmallTarget, SmallTriangle, Span, SpanOf, interpolate, set_up_shader, subslice,
 };
-use crate::target::Framebuffer;
-use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, signed_area};
+use crate::target::{Framebuffer, TriangleRecord, Triangles, turns as turns_of};
+use crate::vertex::{MAX_IN_REGISTERS, PackedVertex, Projected, ScreenVertex, Varyings, VertexShader, signed_area};
+use core::ops::Range;
 
 /// Draws the triangles of a draw call, with its state and its shader.
 pub(super) struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -29,60 +32,186 @@ pub(super) struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
     /// Draws the spans of a triangle under a depth test: stage 9 of [the pipeline](crate#the-pipeline).
     #[expect(clippy::type_complexity, reason = "an alias would have to repeat the bounds of both types")]
     spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
+    /// Draws a triangle in the way of small ones, stages 8 and 9, and returns whether it is small.
+    small: Small<F, S>,
+    /// Draws triangles in the records.
+    pub(super) replay: ReplayBy<F, S>,
     /// Computes the depth bias of a triangle, a part of stage 8, if the state may have one.
-    bias: Option<Bias>,
+    bias: Option<BiasSteps>,
 }
 
+/// Draws triangles from the records with a shader.
+pub(super) trait RecordDrawer<F: Framebuffer> {
+    /// Returns whether any triangle may be small.
+    fn fits(&self) -> bool;
+
+    /// Draws a triangle, if it is small.
+    fn small(
+        &mut self,
+        target: &mut SmallTarget<'_, Raw<F>>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: [&[u32; 2]; 3],
+    ) -> SmallResult;
+
+    /// Draws a triangle with these vertices, small or not.
+    fn single(
+        &mut self,
+        place: Place<'_, '_, F>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: &mut [ScreenVertex; 3],
+    );
+}
+
+/// A place that triangles are drawn to: its pixels, the size of the screen, and the pixels that may be drawn.
+pub(super) type Place<'p, 't, F> = (&'p mut Target<'t, F>, (u16, u16), &'p PixelRect);
+
+/// The [`RecordDrawer`] of a shader under a depth test.
+struct ShaderDrawer<'p, F: Framebuffer, S: Shader<F::Format>, D> {
+    state: &'p State,
+    hooks: &'p RasterHooks<F, S>,
+    shader: &'p S,
+    test: D,
+    varyings: [S::Varyings; 3],
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for ShaderDrawer<'_, F, S, D> {
+    fn fits(&self) -> bool {
+        fits::<S>()
+    }
+
+    fn small(
+        &mut self,
+        target: &mut SmallTarget<'_, Raw<F>>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: [&[u32; 2]; 3],
+    ) -> SmallResult {
+        if fits::<S>() {
+            load::<S>(triangles, record, &mut self.varyings);
+            self.shader.small(SmallTriangle { target, v, test: self.test }, &self.varyings, record.face)
+        } else {
+            SmallResult::Large
+        }
+    }
+
+    fn single(
+        &mut self,
+        (target, screen, clip): Place<'_, '_, F>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: &mut [ScreenVertex; 3],
+    ) {
+        load_outlined::<S>(triangles, record, &mut self.varyings);
+        let Self { state, hooks, shader, .. } = *self;
+        Painter { target, screen, clip, state, hooks, shader }.triangle(v, &mut self.varyings, record.face);
+    }
+}
+
+/// Returns whether triangles of a shader may be small. With more varyings, or perspective-correct ones, those take far
+/// longer than the rest of a triangle does.
+const fn fits<S: VertexShader>() -> bool {
+    S::Varyings::LEN <= MAX_IN_REGISTERS && S::Varyings::PERSPECTIVE == 0
+}
+
+/// A pixel of a framebuffer.
+type Raw<F> = <<F as Framebuffer>::Format as PixelFormat>::Raw;
+/// The draw whose triangles are replayed: its state, the functions for it, and its shader.
+type ReplayBy<F, S> = fn(&mut Scene<'_, F>, &State, &RasterHooks<F, S>, &S, waiting: bool);
+type Small<F, S> =
+    fn(&mut Painter<'_, '_, F, S>, &[ScreenVertex; 3], &[<S as VertexShader>::Varyings; 3], u32) -> SmallResult;
+
 impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
+    /// Functions under one depth test.
+    ///
+    /// Small triangles have a way of their own under depth tests, and with few varyings that are linear on the screen:
+    /// others take far longer than the rest of a triangle does.
+    const fn by<D: StateTest>() -> Self {
+        Self {
+            spans: |painter, set_up| painter.spans(set_up, D::of(painter.test())),
+            // Without varyings both ways draw the same, and one triangle by itself gains little.
+            small: if fits::<S>() && S::Varyings::LEN > 0 {
+                |painter, v, varyings, flat| painter.small(v, varyings, flat, D::of(painter.test()))
+            } else {
+                |_, _, _, _| SmallResult::Large
+            },
+            replay: |scene, state, hooks, shader, waiting| {
+                if F::RECORDS {
+                    let (test, varyings) = (D::of(state.depth), [S::Varyings::ZERO; 3]);
+                    let mut drawer = ShaderDrawer { state, hooks, shader, test, varyings };
+                    scene.replay(state, hooks.bias, waiting, &mut drawer);
+                }
+            },
+            bias: None,
+        }
+    }
+
     /// Functions for [`State::DEFAULT`].
-    pub(super) const DEFAULT: Self = Self { spans: if F::DEPTH { spans_nearer } else { spans_over }, bias: None };
+    pub(super) const DEFAULT: Self = if F::DEPTH { Self::by::<DepthLess>() } else { Self::OVER };
+
+    /// Functions without a depth test.
+    const OVER: Self = Self::by::<DepthOff>();
 
     /// Functions for any state.
-    pub(super) const ANY: Self = Self { spans: if F::DEPTH { spans_by_state } else { spans_over }, bias: Some(biased) };
+    pub(super) const ANY: Self = if F::DEPTH {
+        Self {
+            spans: |painter, set_up| (Self::of_test(painter.test()).spans)(painter, set_up),
+            small: |painter, v, varyings, flat| (Self::of_test(painter.test()).small)(painter, v, varyings, flat),
+            replay: |scene, state, hooks, shader, waiting| {
+                (Self::of_test(state.depth).replay)(scene, state, hooks, shader, waiting)
+            },
+            bias: Some(DepthBias::steps),
+        }
+    } else {
+        Self { bias: Some(DepthBias::steps), ..Self::OVER }
+    };
+
+    /// Returns the functions for a test.
+    fn of_test(depth: DepthState) -> Self {
+        match depth {
+            DepthState::LESS => Self::by::<DepthLess>(),
+            DepthState::OFF => Self::OVER,
+            _ => Self::by::<DepthDyn>(),
+        }
+    }
 
     /// Chooses the functions for a state.
     #[inline(always)]
     pub(super) fn of(state: &State) -> Self {
-        Self {
-            spans: match state.depth {
-                DepthState::LESS => Self::DEFAULT.spans,
-                DepthState::OFF => spans_over,
-                _ => Self::ANY.spans,
-            },
-            bias: if state.bias.is_none() { None } else { Self::ANY.bias },
-        }
+        let by_test = match state.depth {
+            DepthState::LESS => Self::DEFAULT,
+            DepthState::OFF => Self::OVER,
+            _ => Self::ANY,
+        };
+        Self { bias: if state.bias.is_none() { None } else { Self::ANY.bias }, ..by_test }
     }
 }
 
-type Bias = fn(&DepthBias, &[ScreenVertex; 3], &PlaneEquation) -> i32;
-
-/// Computes the steps that a depth bias adds to the depths of a triangle.
-fn biased(bias: &DepthBias, [a, b, c]: &[ScreenVertex; 3], depth: &PlaneEquation) -> i32 {
-    bias.steps(a.z.min(b.z).min(c.z)..a.z.max(b.z).max(c.z), depth.dx, depth.dy)
+/// A depth test that a state may ask for.
+trait StateTest: DepthTest {
+    /// Returns the test of a state.
+    fn of(state: DepthState) -> Self;
 }
 
-fn spans_nearer<F: Framebuffer, S: Shader<F::Format>>(
-    painter: &mut Painter<'_, '_, F, S>,
-    set_up: &SetUp<'_, S::Varyings, S::Setup>,
-) {
-    painter.spans(set_up, DepthLess);
+impl StateTest for DepthLess {
+    #[inline(always)]
+    fn of(_: DepthState) -> Self {
+        Self
+    }
 }
 
-fn spans_over<F: Framebuffer, S: Shader<F::Format>>(
-    painter: &mut Painter<'_, '_, F, S>,
-    set_up: &SetUp<'_, S::Varyings, S::Setup>,
-) {
-    painter.spans(set_up, DepthOff);
+impl StateTest for DepthOff {
+    #[inline(always)]
+    fn of(_: DepthState) -> Self {
+        Self
+    }
 }
 
-fn spans_by_state<F: Framebuffer, S: Shader<F::Format>>(
-    painter: &mut Painter<'_, '_, F, S>,
-    set_up: &SetUp<'_, S::Varyings, S::Setup>,
-) {
-    match painter.test() {
-        DepthState::LESS => painter.spans(set_up, DepthLess),
-        DepthState::OFF => painter.spans(set_up, DepthOff),
-        other => painter.spans(set_up, DepthDyn::new(other)),
+impl StateTest for DepthDyn {
+    #[inline(always)]
+    fn of(state: DepthState) -> Self {
+        Self::new(state)
     }
 }
 
@@ -94,27 +223,54 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle, unless its area is 0.
     #[inline]
-    pub(super) fn triangle(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
-        let area = signed_area(&v[0], &v[1], &v[2]);
-        if area != 0 {
-            self.triangle_of_area(v, area, varyings, flat);
+    pub(super) fn triangle(&mut self, v: &mut [ScreenVertex; 3], varyings: &mut [S::Varyings; 3], flat: u32) {
+        turn(varyings, turn_vertices(v));
+        if (self.hooks.small)(self, v, varyings, flat) == SmallResult::Large {
+            self.large(v, varyings, flat);
         }
     }
 
-    /// Draws a triangle whose signed area is given, and is not 0.
+    /// Draws a triangle in the way of large ones, unless its area is 0. Its highest corner is the first.
     #[inline(never)]
-    pub(super) fn triangle_of_area(
-        &mut self,
-        v: &[ScreenVertex; 3],
-        area: i64,
-        varyings: &[S::Varyings; 3],
-        flat: u32,
-    ) {
+    fn large(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
+        let area = signed_area(&v[0], &v[1], &v[2]);
+        if area == 0 {
+            return;
+        }
         let primitive = Primitive::constant(S::Varyings::ZERO, flat, self.state.side(area), S::Setup::default());
         let mut set_up = SetUp { v, area, depth: PlaneEquation::default(), primitive };
         self.set_up(&mut set_up, varyings);
         // Stage 9, in a loop for each kind of depth test.
         (self.hooks.spans)(self, &set_up);
+    }
+
+    /// Draws a triangle, if it is small.
+    #[inline(never)]
+    fn small<D: DepthTest>(
+        &mut self,
+        v: &[ScreenVertex; 3],
+        varyings: &[S::Varyings; 3],
+        flat: u32,
+        test: D,
+    ) -> SmallResult {
+        let mut words = [[0; 2]; 3];
+        pack(v, &mut words);
+        let [a, b, c] = words.each_ref();
+        let (shader, bias) = (self.shader, self.bias_steps());
+        let mut result = SmallResult::Outside;
+        let mut rows = SmallRows::new(self.screen, self.clip, self.state, bias);
+        rows.begin([a[1], b[1], c[1]]);
+        while let Some(mut target) = rows.next(self.target)
+            && result != SmallResult::Large
+        {
+            result = shader.small(SmallTriangle { target: &mut target, v: [a, b, c], test }, varyings, flat);
+        }
+        result
+    }
+
+    /// Returns the depth bias, and how it is computed, if the state may have one.
+    fn bias_steps(&self) -> Option<(BiasSteps, DepthBias)> {
+        self.hooks.bias.map(|bias| (bias, self.state.bias))
     }
 
     /// Computes the plane equations of depth and varyings, and lets the shader set up: stage 8 of [the
@@ -124,42 +280,21 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     #[inline(never)]
     fn set_up(&self, set_up: &mut SetUp<'_, S::Varyings, S::Setup>, varyings: &[S::Varyings; 3]) {
         let SetUp { v, area, depth, primitive } = set_up;
-        let corners = varyings.each_ref();
         if S::Varyings::LEN == 0 && v[0].z == v[1].z && v[0].z == v[2].z {
             // Depth is constant, and there are no varyings: no gradient to compute.
             depth.base = u32::from(v[0].z) << 16;
         } else {
             let gradients = Gradients::new(v, *area, self.screen);
             *depth = gradients.plane([i32::from(v[0].z), i32::from(v[1].z), i32::from(v[2].z)], 16);
-            let mut homogeneous;
-            let [a, b, c] = if S::Varyings::PERSPECTIVE > 0 {
-                homogeneous = *varyings;
-                homogenize(&mut homogeneous, v, self.screen, S::STEP, &mut primitive.perspective);
-                homogeneous.each_ref()
-            } else {
-                corners
-            };
-            let values = [a.as_ref(), b.as_ref(), c.as_ref()];
-            widen(&gradients, &values, &mut primitive.perspective);
-            let Primitive { at_origin, d_dx, d_dy, perspective, .. } = &mut *primitive;
-            let planes = at_origin.as_mut().iter_mut().zip(d_dx.as_mut()).zip(d_dy.as_mut());
-            for (k, ((at_origin, dx), dy)) in planes.enumerate() {
-                let value = |vertex: &[i32]| vertex.get(k).copied().unwrap_or(0) >> S::ZERO_BITS;
-                let plane = gradients.plane([value(values[0]), value(values[1]), value(values[2])], S::ZERO_BITS);
-                (*at_origin, *dx, *dy) = (plane.base as i32, plane.dx, plane.dy);
-            }
-            if S::Varyings::PERSPECTIVE > 0 && S::STEP > 1 {
-                straighten(d_dx.as_ref(), S::STEP.trailing_zeros(), perspective);
-            }
+            interpolate(self.shader, &gradients, v, self.screen, varyings, primitive);
         }
         primitive.dz_dx = depth.dx;
         if let Some(bias) = self.hooks.bias {
-            let steps = bias(&self.state.bias, v, depth);
+            let [a, b, c] = v.each_ref().map(|v| v.z);
+            let steps = bias(self.state.bias, a.min(b).min(c)..a.max(b).max(c), depth.dx, depth.dy);
             depth.base = depth.base.wrapping_add((steps as u32) << 16);
         }
-        let position = (v[0].x >> 8, v[0].y >> 8);
-        let triangle = TriangleSetup::new(primitive, corners, area.unsigned_abs(), position);
-        primitive.setup = self.shader.setup(&triangle);
+        set_up_shader(self.shader, [v[0].x, v[0].y], varyings, area.unsigned_abs(), primitive);
     }
 
     /// Draws the spans between the edges of a triangle, row by row: stage 9 of [the pipeline](crate#the-pipeline).
@@ -266,19 +401,139 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     }
 }
 
+/// Returns the number of corners before the highest one. Corners of equal height are told apart by depth.
+#[inline(always)]
+fn turns([a, b, c]: &[ScreenVertex; 3]) -> u32 {
+    // As the words of a `PackedVertex` compare.
+    let word = |v: &ScreenVertex| v.y << 8 | i32::from(v.z & 0xFF);
+    turns_of([word(a), word(b), word(c)])
+}
+
+/// The places where small triangles are drawn: all rows at once if they lie one after the other, or one row after the
+/// other.
+pub(super) struct SmallRows<'p> {
+    screen: (u16, u16),
+    clip: &'p PixelRect,
+    clockwise_fronts: bool,
+    bias: Option<(BiasSteps, DepthBias)>,
+    /// The rows that are left.
+    rows: Range<i32>,
+}
+
+impl<'p> SmallRows<'p> {
+    #[inline(always)]
+    pub(super) const fn new(
+        screen: (u16, u16),
+        clip: &'p PixelRect,
+        state: &State,
+        bias: Option<(BiasSteps, DepthBias)>,
+    ) -> Self {
+        Self { screen, clip, clockwise_fronts: matches!(state.front, Winding::Clockwise), bias, rows: 0..0 }
+    }
+
+    /// Begins with the first row of a triangle whose vertices have these second words. Its highest vertex is the first.
+    #[inline(never)]
+    fn begin(&mut self, [a, b, c]: [u32; 3]) {
+        let row = |word: u32| first_centre(word as i32 >> 8);
+        let top = row(a).max(self.clip.y.start);
+        // At least one row, in which a triangle is found to be large.
+        self.rows = top..row(b).max(row(c)).min(self.clip.y.end).max(top + 1);
+    }
+
+    /// Returns all rows, if they lie one after the other.
+    #[inline(never)]
+    pub(super) fn all<'t, F: Framebuffer>(&self, target: &'t mut Target<'_, F>) -> Option<SmallTarget<'t, Raw<F>>> {
+        let (width, rows) = (usize::from(self.screen.0), &target.rows);
+        let color = target.framebuffer.rows(rows.start as u32, width)?;
+        if color.len() < width.wrapping_mul((rows.end - rows.start) as usize) {
+            return None;
+        }
+        Some(self.target(color, target.depth, rows.start, self.clip.y.clone()))
+    }
+
+    /// Returns the next place.
+    #[inline(never)]
+    fn next<'t, F: Framebuffer>(&mut self, target: &'t mut Target<'_, F>) -> Option<SmallTarget<'t, Raw<F>>> {
+        let y = self.rows.next()?;
+        let (width, first) = (usize::from(self.screen.0), target.rows.start);
+        if target
+            .framebuffer
+            .rows(first as u32, width)
+            .is_some_and(|rows| rows.len() >= width.wrapping_mul((target.rows.end - first) as usize))
+        {
+            self.rows.end = y;
+            return self.all(target);
+        }
+        let at = width.wrapping_mul((y - first) as usize);
+        let rows = y.max(self.clip.y.start)..(y + 1).min(self.clip.y.end);
+        Some(self.target(target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, rows))
+    }
+
+    fn target<'t, R>(
+        &self,
+        color: &'t mut [R],
+        depth: &'t mut [u16],
+        first: i32,
+        rows: Range<i32>,
+    ) -> SmallTarget<'t, R> {
+        let Self { screen, clip, clockwise_fronts, bias, .. } = *self;
+        SmallTarget { color, depth, first, columns: clip.x.clone(), rows, screen, clockwise_fronts, bias }
+    }
+}
+
+/// Turns the corners of a triangle with these vertices, so that the highest one comes first.
+#[inline(never)]
+pub(super) fn turn_corners(v: &[ScreenVertex; 3], corners: &mut [u16; 3]) {
+    turn(corners, turns(v));
+}
+
+/// Turns the vertices of a triangle, so that the highest one comes first. Returns the number of those before it.
+#[inline(never)]
+fn turn_vertices(v: &mut [ScreenVertex; 3]) -> u32 {
+    let turns = turns(v);
+    turn(v, turns);
+    turns
+}
+
+/// Packs vertices on the screen.
+#[inline(never)]
+fn pack(v: &[ScreenVertex; 3], words: &mut [[u32; 2]; 3]) {
+    for (words, v) in words.iter_mut().zip(v) {
+        *words = PackedVertex::new(&Projected::OnScreen(*v)).words();
+    }
+}
+
+/// Reads the varyings of a recorded triangle, out of line.
+#[inline(never)]
+fn load_outlined<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, to: &mut [S::Varyings; 3]) {
+    load::<S>(triangles, record, to);
+}
+
+/// Reads the varyings of a recorded triangle. In place, because arrays of varyings would be copied when they are
+/// returned.
+#[inline(always)]
+fn load<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, [a, b, c]: &mut [S::Varyings; 3]) {
+    let [i, j, k] = record.corners;
+    triangles.varyings::<S>(i, a);
+    triangles.varyings::<S>(j, b);
+    triangles.varyings::<S>(k, c);
+}
+
+/// Turns three things, so that number `turns` comes first.
+#[inline(always)]
+fn turn<T>([a, b, c]: &mut [T; 3], turns: u32) {
+    for _ in 0..turns {
+        core::mem::swap(a, b);
+        core::mem::swap(b, c);
+    }
+}
+
 /// A triangle with its plane equations and the data of the shader: the result of stage 8.
 pub(super) struct SetUp<'a, V: Varyings, T> {
     v: &'a [ScreenVertex; 3],
     area: i64,
     depth: PlaneEquation,
     primitive: Primitive<V, T>,
-}
-
-/// Returns `length` elements from `start` on, if there are as many. Two steps check this with one comparison each; a
-/// range is checked at both ends at once, which costs twice as much.
-#[inline(always)]
-fn subslice<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]> {
-    slice.get_mut(start..)?.get_mut(..length)
 }
 
 impl<'a, F: Framebuffer> Scene<'a, F> {

@@ -3,9 +3,9 @@
 
 use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
-use crate::raster::{PixelRect, pixel_rect};
-use crate::target::{PackedVertex, Records, Stats, StripRows};
-use crate::vertex::{ClipVertex, Outcode, ScreenVertex, signed_area, small};
+use crate::raster::{PixelRect, first_centre, pixel_rect};
+use crate::target::{Records, Room, Stats, StripRows, Triangles, positions_at};
+use crate::vertex::{ClipVertex, Outcode, PackedVertex, ScreenVertex, signed_area, small};
 use core::ops::Range;
 
 /// A pass over the triangles of a mesh: its position, and the triangle that it stopped at.
@@ -16,8 +16,18 @@ pub(super) struct Scan<'m> {
     next: usize,
     end: usize,
     culling: Culling,
-    recording: bool,
+    /// Destination of the triangles that are not culled.
+    pub(super) to: ScanTo,
     pub(super) triangle: ScreenTriangle,
+}
+
+/// Destinations of the triangles that may be visible.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum ScanTo {
+    /// Record them, for the strips of the band.
+    Records,
+    /// Leave as many as there is room for in the records, to be drawn at once.
+    Drawing,
 }
 
 /// Placeholder for a recorded triangle's face word, until `shade_faces` fills it. The upper bits hold the number of the
@@ -60,6 +70,8 @@ pub(super) enum ScanEvent {
     NeedsVertices,
     /// A triangle has to be clipped, by these planes and by clip distances.
     NeedsClip(Outcode),
+    /// There is no more room: what was put into the records has to be drawn, or placed into the strips' lists.
+    Full,
     /// There are no more triangles, or the current triangle cannot be visible.
     Done,
 }
@@ -126,17 +138,62 @@ impl ScreenTriangle {
 }
 
 /// Returns the edge vectors b − a and c − a, x and y of each in 24.8, from words of
-/// [`PackedVertex`](crate::target::PackedVertex)s. `None` unless all components fit 16 bits and all vertices lie within
-/// 16,511 px of the screen's corner.
+/// [`PackedVertex`](crate::vertex::PackedVertex)s. `None` unless all components fit 16 bits.
 ///
 /// # Format
-/// A vertex off the screen has x = -2²³, and no y. Its difference from any x below 2²² is not small.
+/// A vertex off the screen has x = -2²³, and its difference from any other x is not small.
 #[inline(always)]
-fn small_sides(a: [i32; 2], b: [i32; 2], c: [i32; 2]) -> Option<[i32; 4]> {
-    let (ax, ay) = (a[0] >> 8, a[1] >> 8);
-    let [bx, by, cx, cy] = [(b[0] >> 8) - ax, (b[1] >> 8) - ay, (c[0] >> 8) - ax, (c[1] >> 8) - ay];
-    let far = a[0].wrapping_add(1 << 30) | a[1].wrapping_add(1 << 30);
-    if far >= 0 && small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
+fn small_sides(a: &[u32; 2], b: &[u32; 2], c: &[u32; 2]) -> Option<[i32; 4]> {
+    let (ax, ay) = (a[0] as i32 >> 8, a[1] as i32 >> 8);
+    let side = |p: u32, from: i32| (p as i32 >> 8) - from;
+    let [bx, by, cx, cy] = [side(b[0], ax), side(b[1], ay), side(c[0], ax), side(c[1], ay)];
+    if small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
+}
+
+/// A rectangle without pixels.
+const NOWHERE: PixelRect = PixelRect { x: 0..0, y: 0..0 };
+
+/// Tests the bounding box of triangles: stage 5, the second part of culling.
+pub(super) struct BoxTest<'t> {
+    clip: &'t PixelRect,
+    /// Triangles that were left out: without a centre of a pixel, and outside of the rectangle.
+    pub(super) left_out: [u32; 2],
+}
+
+impl<'t> BoxTest<'t> {
+    pub(super) fn new(clip: &'t PixelRect) -> Self {
+        // No triangle is in an empty rectangle. A rectangle without rows has this effect without a test per triangle.
+        Self { clip: if clip.is_empty() { &NOWHERE } else { clip }, left_out: [0; 2] }
+    }
+
+    /// Returns the first row that a triangle with these vertices can have a pixel in; `None` if it can have none in the
+    /// rectangle.
+    #[inline(never)]
+    pub(super) fn first_row(&mut self, [a, b, c]: [&[u32; 2]; 3]) -> Option<i32> {
+        // Packed words compare as their coordinates do. Results are those of `pixel_rect`.
+        let word = |axis: usize| [a[axis] as i32, b[axis] as i32, c[axis] as i32];
+        let range = |[a, b, c]: [i32; 3]| first_centre(a.min(b).min(c) >> 8)..first_centre(a.max(b).max(c) >> 8);
+        let (y, x) = (range(word(1)), range(word(0)));
+        if x.start >= x.end || y.start >= y.end {
+            self.left_out[0] += 1;
+            return None;
+        }
+        let clip = self.clip;
+        let (top, end) = (y.start.max(clip.y.start), y.end.min(clip.y.end));
+        if x.start >= clip.x.end || clip.x.start >= x.end || top >= end {
+            self.left_out[1] += 1;
+            return None;
+        }
+        Some(top)
+    }
+
+    /// Adds the counts of the triangles that were left out, of `count` that were tested.
+    pub(super) fn finish(&self, stats: &mut Stats, count: u32) {
+        let [empty, outside] = self.left_out;
+        stats.empty = stats.empty.wrapping_add(empty);
+        stats.outside = stats.outside.wrapping_add(outside);
+        stats.drawn = stats.drawn.wrapping_add(count).wrapping_sub(empty).wrapping_sub(outside);
+    }
 }
 
 /// Returns whether a triangle in clip space may cover pixels of a rectangle, or up to `reach` px away from it. Looks at
@@ -167,12 +224,9 @@ pub(super) fn may_reach(clip: &PixelRect, reach: i32, corners: &[ClipVertex]) ->
     sides == [true; 4] && !clip.is_empty()
 }
 
-/// A rectangle to the right of all triangles.
-const NOWHERE: PixelRect = PixelRect { x: i32::MAX..i32::MAX, y: 0..0 };
-
 impl<'m> Scan<'m> {
     /// Begins a scan of the triangles with these numbers.
-    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling, recording: bool) -> Self {
+    pub(super) fn new(mesh: &'m Mesh<'m>, numbers: Range<usize>, culling: Culling, to: ScanTo) -> Self {
         let indices = match mesh.data() {
             data if data.topology == Topology::Triangles => data.indices,
             _ => None,
@@ -184,126 +238,211 @@ impl<'m> Scan<'m> {
             next: numbers.start,
             end: numbers.end.min(mesh.triangle_count()),
             culling,
-            recording,
+            to,
             triangle: ScreenTriangle::NONE,
         }
     }
 
-    /// Goes on to the next triangle that the caller has to handle. Visible triangles that precede it are recorded, with
-    /// [`PendingFace`]s as their face words. While triangles are recorded, the scan stops only at triangles that need
-    /// their vertices. Otherwise it stops at visible triangles, too.
-    pub(super) fn next(
-        &mut self,
-        records: &mut Records<'_>,
-        strips: &StripRows,
-        band: i32,
-        clip: &PixelRect,
-        stats: &mut Stats,
-    ) -> ScanEvent {
-        loop {
-            if !self.scan_small(records, strips, band, clip, stats) {
-                return ScanEvent::Done;
-            }
-            if self.triangle.v.iter().any(|v| v.x == PackedVertex::OFF_SCREEN_X) {
-                return ScanEvent::NeedsVertices;
-            }
-            if self.triangle.passes_culling(self.culling, clip, stats) {
-                if !self.recording {
-                    return ScanEvent::Visible;
-                }
-                let pending = PendingFace::new(self.next, (self.triangle.area >> 32) as i32);
-                records.push_triangle(self.triangle.corners, pending.0, strips.of((self.triangle.row - band) as u32));
-            }
-        }
-    }
-
-    /// Records triangles until one needs the exact test of [`ScreenTriangle::passes_culling`]. Nearly all triangles
-    /// pass here: they are small, and on the screen or not far off it. If nothing is recorded, stops at the first
-    /// triangle that may be visible, too. Returns whether it stopped at a triangle.
+    /// Goes on to the next triangle that the caller has to handle. Triangles that precede it and may be visible are put
+    /// into the records, with [`PendingFace`]s as their face words, and into no strip's list yet.
     #[inline(never)]
-    fn scan_small(
-        &mut self,
-        records: &mut Records<'_>,
-        strips: &StripRows,
-        band: i32,
-        clip: &PixelRect,
-        stats: &mut Stats,
-    ) -> bool {
+    pub(super) fn next(&mut self, records: &mut Records<'_>, stats: &mut Stats) -> ScanEvent {
         let mut triangles = records.triangles();
         let first = triangles.count();
-        // If nothing is recorded, a list without room ends the loop at the first visible triangle, at no cost per
-        // triangle. A test of `recording` there would take 4 % of the scan.
-        if !self.recording {
-            triangles.leave_no_room();
-        }
-        // No triangle is inside an empty rectangle. A rectangle far away has this effect without a test per triangle.
-        let clip = if clip.is_empty() { &NOWHERE } else { clip };
-        let strips = *strips;
-        let culling = self.culling;
-        let in_a_row = self.mesh.data().topology == Topology::Triangles && self.mesh.data().indices.is_none();
-        let mut list = self.list;
-        let mut number = self.next;
-        let found = loop {
-            // Stage 3, primitive assembly: the most common meshes take the shortest way.
-            let (corners, positions) = match list.split_first_chunk() {
-                Some((corners, rest)) => {
-                    list = rest;
-                    (*corners, triangles.positions_of(*corners))
+        let event = loop {
+            let Some(stop) = self.cull(&mut triangles, stats) else { break ScanEvent::Done };
+            let [i, j, k] = self.triangle.corners;
+            let corners = [i, j, k];
+            let [a, b, c] = triangles.positions_of(corners).map(|words| PackedVertex::of(*words));
+            let mut event = None;
+            if stop == Stop::Large && !(a.is_on_screen() & b.is_on_screen() & c.is_on_screen()) {
+                event = Some(ScanEvent::NeedsVertices);
+            } else {
+                let area = signed_area(&a.screen(), &b.screen(), &c.screen());
+                let side = (area >> 32) as i32;
+                if area == 0 {
+                    stats.degenerate = stats.degenerate.wrapping_add(1);
+                } else if self.culling.leaves_out(side) {
+                    stats.back_facing = stats.back_facing.wrapping_add(1);
+                } else if !triangles.push(corners, PendingFace::new(self.next + 1, side).0) {
+                    // Those that wait here leave room, all of them or those without a pixel.
+                    if triangles.count() != first {
+                        break ScanEvent::Full;
+                    }
+                    if self.to == ScanTo::Records {
+                        triangles.overflow();
+                        break ScanEvent::Done;
+                    }
+                    // There is room for none: triangles are handled one by one.
+                    event = Some(ScanEvent::NeedsVertices);
                 }
-                _ if number >= self.end => break None,
-                _ if in_a_row => triangles.in_a_row(number),
-                _ => match self.mesh.any_triangle(number) {
-                    Some(corners) => (corners, triangles.positions_of(corners)),
-                    None => break None,
-                },
-            };
-            number += 1;
-            // Stage 5, culling: first by winding, as early as possible, and then of triangles that cover no pixel.
-            let [i, j, k] = corners;
-            let [a, b, c] = positions;
-            let Some([bx, by, cx, cy]) = small_sides(a, b, c) else {
-                break Some((corners, positions));
-            };
-            let area = bx * cy - cx * by;
-            if area == 0 || culling.leaves_out(area) {
-                let count = if area == 0 { &mut stats.degenerate } else { &mut stats.back_facing };
-                *count = count.wrapping_add(1);
-                continue;
             }
-            // As in `pixel_rect`, but from packed words, which compare as their coordinates do.
-            let centre = |word: i32| (word + (127 << 8)) >> 16;
-            let y = centre(a[1].min(b[1]).min(c[1]))..centre(a[1].max(b[1]).max(c[1]));
-            let x = centre(a[0].min(b[0]).min(c[0]))..centre(a[0].max(b[0]).max(c[0]));
-            if x.start >= x.end || y.start >= y.end {
-                stats.empty = stats.empty.wrapping_add(1);
-                continue;
-            }
-            if x.start >= clip.x.end || clip.x.start >= x.end || y.start >= clip.y.end || clip.y.start >= y.end {
-                stats.outside = stats.outside.wrapping_add(1);
-                continue;
-            }
-            // Stage 6, recording: into the list of the strip that the triangle begins in.
-            let strip = strips.of((y.start.max(clip.y.start) - band) as u32);
-            if !triangles.push(u32::from(i) | u32::from(j) << 16, k, PendingFace::new(number, area).0, strip) {
-                if !self.recording {
-                    break Some((corners, positions));
-                }
-                triangles.overflow();
-                break None;
+            // The scan goes on after this triangle.
+            self.triangle.number = self.next as u16;
+            self.next += 1;
+            self.list = self.list.get(3..).unwrap_or_default();
+            stats.triangles = stats.triangles.wrapping_add(1);
+            if let Some(event) = event {
+                break event;
             }
         };
-        stats.drawn = stats.drawn.wrapping_add((triangles.count() - first).into());
         triangles.finish();
-        stats.triangles = stats.triangles.wrapping_add((number - self.next) as u32);
-        self.list = list;
-        self.next = number;
-        self.triangle.number = number.wrapping_sub(1) as u16;
-        let Some((corners, [a, b, c])) = found else { return false };
-        self.triangle.corners = corners;
-        self.triangle.v =
-            [PackedVertex::signed(a).screen(), PackedVertex::signed(b).screen(), PackedVertex::signed(c).screen()];
-        true
+        event
     }
+
+    /// Stage 5, the first part of culling: leaves out triangles that show the wrong side, and puts the others into the
+    /// records. Stores the corners of the triangle that it stops at. Returns `None` if there are no more triangles.
+    #[inline(never)]
+    fn cull(&mut self, triangles: &mut Triangles<'_>, stats: &mut Stats) -> Option<Stop> {
+        let (room, positions) = triangles.room();
+        let mut pass = CullPass { culling: self.culling, room, positions, degenerate: 0, corners: [0; 3] };
+        let before = self.next;
+        // Stage 3, primitive assembly: the most common meshes take the shortest way.
+        let data = self.mesh.data();
+        let stop = if data.topology != Topology::Triangles {
+            pass.any(self.mesh, &mut self.next, self.end)
+        } else if data.indices.is_some() {
+            pass.list(&mut self.list, &mut self.next)
+        } else {
+            pass.row(&mut self.next, self.end)
+        };
+        let CullPass { room, degenerate, corners: [i, j, k], .. } = pass;
+        self.triangle.corners = [i, j, k];
+        let left = room.left();
+        let recorded = triangles.fill(left);
+        let count = (self.next - before) as u32;
+        stats.triangles = stats.triangles.wrapping_add(count);
+        stats.degenerate = stats.degenerate.wrapping_add(degenerate);
+        stats.back_facing = stats.back_facing.wrapping_add(count.wrapping_sub(degenerate).wrapping_sub(recorded));
+        stop
+    }
+}
+
+/// Reasons why a pass over triangles stops at one.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Stop {
+    /// The triangle is large, or not all of its vertices are on the screen.
+    Large,
+    /// There is no room for it.
+    Full,
+}
+
+/// Triangles are on their way through the first part of culling. Each loop is a function of its own, with few values,
+/// so that all of them are in registers.
+struct CullPass<'p, 'r> {
+    culling: Culling,
+    room: Room<'p>,
+    positions: &'r [[u32; 2]],
+    degenerate: u32,
+    /// The triangle that the pass stops at.
+    corners: [u16; 3],
+}
+
+impl CullPass<'_, '_> {
+    /// Passes over an indexed list.
+    #[inline(never)]
+    fn list(&mut self, list: &mut &[u16], number: &mut usize) -> Option<Stop> {
+        let Self { culling, positions, .. } = *self;
+        let mut room = self.room.take();
+        let (mut rest, mut next) = (*list, *number);
+        let stop = loop {
+            let Some((corners, after)) = rest.split_first_chunk() else { break None };
+            if let Some(stop) = cull_one(
+                culling,
+                &mut room,
+                &mut self.degenerate,
+                next + 1,
+                *corners,
+                positions_at(positions, *corners),
+            ) {
+                let [i, j, k] = *corners;
+                self.corners = [i, j, k];
+                break Some(stop);
+            }
+            (rest, next) = (after, next + 1);
+        };
+        (*list, *number, self.room) = (rest, next, room);
+        stop
+    }
+
+    /// Passes over a list without indices.
+    #[inline(never)]
+    fn row(&mut self, number: &mut usize, end: usize) -> Option<Stop> {
+        let Self { culling, positions, .. } = *self;
+        let mut room = self.room.take();
+        let mut next = *number;
+        let mut rest = positions.get(3 * next..3 * end).unwrap_or_default();
+        let stop = loop {
+            let Some(([a, b, c], after)) = rest.split_first_chunk() else { break None };
+            let first = (3 * next) as u16;
+            let corners = [first, first.wrapping_add(1), first.wrapping_add(2)];
+            if let Some(stop) = cull_one(culling, &mut room, &mut self.degenerate, next + 1, corners, [a, b, c]) {
+                self.corners = corners;
+                break Some(stop);
+            }
+            (rest, next) = (after, next + 1);
+        };
+        (*number, self.room) = (next, room);
+        stop
+    }
+
+    /// Passes over triangles of any topology.
+    #[inline(never)]
+    fn any(&mut self, mesh: &Mesh<'_>, number: &mut usize, end: usize) -> Option<Stop> {
+        while *number < end {
+            // A list of one triangle.
+            let corners = mesh.any_triangle(*number)?;
+            let stop = self.list(&mut corners.as_slice(), number);
+            if stop.is_some() {
+                return stop;
+            }
+        }
+        None
+    }
+}
+
+/// Culls one triangle by its winding, or puts it into the records. `next` is the number of the triangle after it.
+#[inline(always)]
+fn cull_one(
+    culling: Culling,
+    room: &mut Room<'_>,
+    degenerate: &mut u32,
+    next: usize,
+    corners: [u16; 3],
+    [a, b, c]: [&[u32; 2]; 3],
+) -> Option<Stop> {
+    let Some([bx, by, cx, cy]) = small_sides(a, b, c) else { return Some(Stop::Large) };
+    let area = bx * cy - cx * by;
+    if area == 0 {
+        // Or none of the vertices is on the screen.
+        if (a[0] as i32) < PackedVertex::LEAST_X {
+            return Some(Stop::Large);
+        }
+        *degenerate += 1;
+    } else if !culling.leaves_out(area) && !room.push(corners, PendingFace::new(next, area).0) {
+        return Some(Stop::Full);
+    }
+    None
+}
+
+/// Stage 5, the second part of culling, and stage 6, recording: leaves out those of the triangles recorded from `first`
+/// on that cover no pixel, and puts the others into the lists of the strips that they begin in.
+#[inline(never)]
+pub(super) fn place(
+    records: &mut Records<'_>,
+    first: u16,
+    strips: &StripRows,
+    band: i32,
+    clip: &PixelRect,
+    stats: &mut Stats,
+) {
+    let mut triangles = records.triangles();
+    let count = triangles.count() - first;
+    let mut test = BoxTest::new(clip);
+    let strips = *strips;
+    triangles.keep_each(first, |v| test.first_row(v).map(|row| strips.of((row - band) as u32)));
+    test.finish(stats, count.into());
+    triangles.finish();
 }
 
 #[cfg(test)]
@@ -313,6 +452,7 @@ mod tests {
     use crate::math::random::Rng;
     use crate::math::{Scalar, Vec3};
     use crate::mesh::{MeshData, Positions};
+    use crate::span::SmallResult;
     use crate::target::{Layout, TriangleRecord};
     use crate::vertex::Projected;
     use std::vec;
@@ -372,9 +512,16 @@ mod tests {
             records.begin_draw(7, positions.len(), 2);
             records.vertices_mut().0.copy_from_slice(&positions);
             let strips = StripRows::new(16, true);
-            let mut scan = Scan::new(&mesh, 0..COUNT, state.culling(), true);
+            let mut scan = Scan::new(&mesh, 0..COUNT, state.culling(), ScanTo::Records);
             let (mut stats, mut unplaced) = (Stats::default(), Vec::new());
-            while scan.next(&mut records, &strips, rows.start, &clip, &mut stats) == ScanEvent::NeedsVertices {
+            loop {
+                let first = records.triangle_count();
+                let event = scan.next(&mut records, &mut stats);
+                place(&mut records, first, &strips, rows.start, &clip, &mut stats);
+                if event == ScanEvent::Done {
+                    break;
+                }
+                assert!(event == ScanEvent::NeedsVertices);
                 unplaced.push((scan.triangle.number, scan.triangle.corners));
             }
             records.end_draw();
@@ -384,7 +531,7 @@ mod tests {
             let (mut left, mut drawn) = (Vec::new(), vec![Vec::new(); STRIPS]);
             for number in 0..COUNT {
                 let corners = mesh.triangle(number).expect("a triangle");
-                let packed = corners.map(|k| PackedVertex::from_words(positions[usize::from(k)]));
+                let packed = corners.map(|k| PackedVertex::of(positions[usize::from(k)]));
                 triangle.v = packed.map(PackedVertex::screen);
                 if !packed.iter().all(|packed| packed.is_on_screen()) {
                     left.push((number as u16, corners));
@@ -397,18 +544,22 @@ mod tests {
             for (strip, drawn) in drawn.iter().enumerate() {
                 records.begin_replay(strip);
                 assert!(records.replay_draw(7, positions.len(), 2));
-                let last = records.last_triangle();
-                let mut triangle = TriangleRecord::default();
-                for expected in drawn {
-                    assert!(
-                        records.triangles().replay(last, i32::MAX >> 2, &mut triangle),
-                        "case {case}, strip {strip}"
-                    );
-                    let (number, area) = PendingFace(triangle.face).parts();
-                    assert_eq!((triangle.corners(), number, area > 0), *expected, "case {case}, strip {strip}");
+                let mut listed = drawn.iter();
+                records.triangles().replay_each(i32::MAX >> 2, &mut TriangleRecord::default(), |_, triangle, v| {
+                    let (corners, number, front) = listed.next().expect("no more triangles");
+                    let (next, area) = PendingFace(triangle.face).parts();
+                    assert_eq!((next, area > 0), (*number, *front), "case {case}, strip {strip}");
+                    let [a, b, c] = *corners;
+                    let turned = [[a, b, c], [b, c, a], [c, a, b]];
+                    assert!(turned.contains(&triangle.corners), "case {case}, strip {strip}");
+                    let [a, b, c] = triangle.corners.map(|k| positions[usize::from(k)]);
+                    assert_eq!(v, [&a, &b, &c], "case {case}, strip {strip}");
+                    let [a, b, c] = [a, b, c].map(|words| words[1] as i32);
+                    assert!(a <= b && a <= c, "case {case}, strip {strip}: the highest corner is not the first");
                     found += 1;
-                }
-                assert!(!records.triangles().replay(last, i32::MAX >> 2, &mut triangle), "case {case}, strip {strip}");
+                    SmallResult::Drawn
+                });
+                assert_eq!(listed.next(), None, "case {case}, strip {strip}");
             }
         }
         assert!(found > 3000, "{found} triangles");

@@ -192,13 +192,6 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         if F::RECORDS && self.phase != Phase::Direct { samples(mesh, count, primitive) } else { 0 }
     }
 
-    /// Stage 6, recording: puts a triangle into the list of the strip that it begins in.
-    #[inline(never)]
-    pub(super) fn record(&mut self, row: i32, corners: [u16; 3], face: u32) {
-        let strip = self.strips.of((row - self.band.start) as u32);
-        self.records.push_triangle(corners, face, strip);
-    }
-
     pub(super) fn is_recording(&self) -> bool {
         F::RECORDS && self.phase == Phase::Record
     }
@@ -266,6 +259,10 @@ pub(super) struct Draw<'d> {
     types: u32,
     /// Set if the shader moves vertices.
     displaced: bool,
+    /// Set if the shader has cull distances.
+    pub(super) has_cull_distances: bool,
+    /// Set if any varying is perspective-correct.
+    pub(super) is_perspective: bool,
     /// Sets the depth scale of the state. `None` if it is known at compile time that the state has no depth scale to
     /// set.
     depth_scale: Option<fn(&mut Transform, DepthScale)>,
@@ -286,7 +283,9 @@ impl<'d> Draw<'d> {
     ) -> Self {
         check::<S>();
         let (stride, types) = (S::WORDS + VERTEX_WORDS, types::<S, K>());
-        Self { state, mesh, mvp, primitives, stride, types, displaced: S::DISPLACES, depth_scale }
+        let (displaced, has_cull_distances) = (S::DISPLACES, S::CULL_DISTANCES > 0);
+        let is_perspective = S::Varyings::PERSPECTIVE > 0;
+        Self { state, mesh, mvp, primitives, stride, types, displaced, has_cull_distances, is_perspective, depth_scale }
     }
 
     /// Returns whether the mesh's bounds, and those of its hierarchy, tell where it is drawn.

@@ -381,8 +381,8 @@ fn fill<F: Framebuffer, S: Shader<F::Format>>(
     [from, to]: [&S::Varyings; 2],
     flat: u32,
 ) {
-    painter.triangle(&[*a, *b, *c], &[*from, *to, *to], flat);
-    painter.triangle(&[*a, *c, *d], &[*from, *to, *from], flat);
+    painter.triangle(&mut [*a, *b, *c], &mut [*from, *to, *to], flat);
+    painter.triangle(&mut [*a, *c, *d], &mut [*from, *to, *from], flat);
 }
 
 impl DrawStroke for Thick {

@@ -3,7 +3,7 @@
 use super::surface::Surface;
 use crate::color::{PixelFormat, unpacked};
 use crate::light::Unlit;
-use crate::span::{DepthTest, Fragment, Shader, SpanOf, flat_span};
+use crate::span::{DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, ValueBrush, flat_span};
 use crate::vertex::{Face, VertexRef, VertexShader};
 use embedded_graphics_core::pixelcolor::{IntoStorage, Rgb888};
 
@@ -80,5 +80,19 @@ impl<P: PixelFormat, S: Surface> Shader<P> for Flat<S> {
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         flat_span(span, test);
+    }
+
+    #[inline(always)]
+    fn small<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &[[i32; 0]; 3],
+        flat: u32,
+    ) -> SmallResult {
+        if P::DITHER.is_some() {
+            triangle.draw_spans(self, corners, flat)
+        } else {
+            triangle.draw(&mut ValueBrush(P::pack(unpacked(flat))))
+        }
     }
 }

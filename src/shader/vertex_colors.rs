@@ -2,7 +2,8 @@
 
 use crate::color::{PixelFormat, unsqueeze};
 use crate::span::{
-    ColorSetup, DepthTest, Fragment, Shader, SpanOf, TriangleSetup, draw_fragments, luma_span, packed_span,
+    ChannelBrush, ColorSetup, DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup,
+    draw_fragments, luma_span, packed_span,
 };
 use crate::vertex::VertexShader;
 
@@ -35,6 +36,20 @@ impl<P: PixelFormat, S: VertexColors> Shader<P> for S {
             luma_span(span, test);
         } else {
             draw_fragments(self, span, test);
+        }
+    }
+
+    #[inline(always)]
+    fn small<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &[[i32; 3]; 3],
+        flat: u32,
+    ) -> SmallResult {
+        if ChannelBrush::<P>::FITS {
+            triangle.draw(&mut ChannelBrush::new(corners))
+        } else {
+            triangle.draw_spans(self, corners, flat)
         }
     }
 }

@@ -55,6 +55,9 @@ impl DepthBias {
     }
 }
 
+/// [`DepthBias::steps`], as a hook of states that may have a bias.
+pub(crate) type BiasSteps = fn(DepthBias, Range<u16>, i32, i32) -> i32;
+
 #[cfg(test)]
 mod tests {
     use super::*;

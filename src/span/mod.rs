@@ -1,6 +1,7 @@
 //! The seam between triangles and pixels: the depth test, and the trait that colours fragments. A program meets
 //! [`DepthState`] first, in a [`State`](crate::scene::State); [`Shader`] is for shaders of one's own.
 
+mod channels;
 mod color_setup;
 mod depth;
 mod depth_bias;
@@ -10,18 +11,23 @@ mod naive;
 mod packed;
 mod perspective;
 mod shader;
+mod small;
 mod solid;
 mod span;
 mod textured;
 
+pub(crate) use channels::ChannelBrush;
 pub use color_setup::ColorSetup;
 pub use depth::{Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff, DepthState, DepthTest};
+pub(crate) use depth_bias::BiasSteps;
 pub use depth_bias::DepthBias;
 pub(crate) use luma::luma_span;
 pub(crate) use packed::packed_span;
 pub use perspective::Corrected;
-pub(crate) use shader::draw_fragments;
 pub use shader::{Shader, SpanOf};
-pub(crate) use solid::flat_span;
+pub(crate) use shader::{draw_fragments, interpolate, set_up_shader};
+pub(crate) use small::subslice;
+pub use small::{SmallResult, SmallTarget, SmallTriangle};
+pub(crate) use solid::{ValueBrush, flat_span};
 pub use span::{Fragment, Primitive, Span, TriangleSetup};
 pub(crate) use textured::{STEP, UvStepper, texture_span};

@@ -35,7 +35,6 @@ use crate::color::{PixelFormat, spread, spread_step, word};
 use crate::math::SMALL_CORE;
 use crate::vertex::Varyings;
 use core::hint::black_box;
-use core::sync::atomic::{Ordering, compiler_fence};
 
 const RUN: usize = super::depth::RUN;
 
@@ -202,11 +201,8 @@ fn draw_short_at<P: PixelFormat, D: DepthTest>(
     x: i32,
     y: i32,
 ) {
-    let Some(depth) = depth.get_mut(..color.len()) else { return };
     let word = word(channels_at::<P>(primitive, x, y));
-    // Keeps the loads below this line from moving above it, where registers are needed for the word.
-    compiler_fence(Ordering::SeqCst);
-    SpanCursor::new(z, word, primitive).draw_short::<P, D>(test, primitive, P::dither((x, y)), color, depth);
+    draw_short::<P, D>(test, depth, z, primitive, color, word, P::dither((x, y)));
 }
 
 /// Draws less than a run, beginning with a word of channels.

@@ -22,9 +22,11 @@
 use super::color_setup::ColorSetup;
 use super::depth::{DepthTest, RUN, count_passing_prefix};
 use super::packed::packed_span;
+use super::small::Brush;
 use super::span::{Primitive, Span};
 use crate::color::{PixelFormat, fill, squeeze, unpacked};
 use crate::math::SMALL_CORE;
+use crate::raster::ShortPlanes;
 use core::hint::black_box;
 
 /// Least number of pixels for which a call is worth its cost.
@@ -42,10 +44,22 @@ pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 0]
     if !D::ENABLED {
         return fill(color, value);
     }
+    value_span(color, depth, z, primitive.dz_dx, value, test);
+}
+
+/// Stores one value wherever the depth test passes.
+#[inline(always)]
+fn value_span<R: Copy, D: DepthTest>(
+    color: &mut [R],
+    depth: &mut [D::Depth],
+    mut z: u32,
+    dz_dx: i32,
+    value: R,
+    test: D,
+) {
     if color.len() >= LONG {
-        return tested_span(color, depth, z, primitive.dz_dx, value, test);
+        return tested_span(color, depth, z, dz_dx, value, test);
     }
-    let (mut z, dz_dx) = (z, primitive.dz_dx);
     for (color, depth) in color.iter_mut().zip(depth) {
         let near = (z >> 16) as u16;
         if test.passes(near, *depth) {
@@ -53,6 +67,26 @@ pub(crate) fn flat_span<P: PixelFormat, D: DepthTest>(span: Span<'_, P, [i32; 0]
             *color = value;
         }
         z = z.wrapping_add_signed(dz_dx);
+    }
+}
+
+/// Draws a small triangle of one value.
+pub(crate) struct ValueBrush<R>(pub(crate) R);
+
+impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ValueBrush<P::Raw> {
+    const PLANES: bool = false;
+
+    #[inline(always)]
+    fn set_up(&mut self, _: &ShortPlanes, _: bool, _: (i32, i32), _: i32) -> bool {
+        true
+    }
+
+    #[inline(always)]
+    fn next_row(&mut self) {}
+
+    #[inline(always)]
+    fn span(&self, color: &mut [P::Raw], depth: &mut [D::Depth], z: u32, dz_dx: i32, _: i32, test: D) {
+        value_span(color, depth, z, dz_dx, self.0, test);
     }
 }
 

@@ -16,7 +16,7 @@ pub(crate) use draw_target::OverlayTarget;
 pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use packer::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
 pub use records::records_len;
-pub(crate) use records::{Layout, PackedVertex, Records, TriangleRecord, Triangles, VERTEX_WORDS};
+pub(crate) use records::{Layout, Records, Room, TriangleRecord, Triangles, VERTEX_WORDS, positions_at, turns};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
 pub(crate) use strip_rows::{StripRows, whole_rows};

@@ -17,7 +17,8 @@
 //! record, however tall it is.
 
 use crate::color::clear_words;
-use crate::vertex::{MAX_IN_REGISTERS, Projected, ScreenVertex, Varyings, VertexShader};
+use crate::span::SmallResult;
+use crate::vertex::{MAX_IN_REGISTERS, PackedVertex, ScreenVertex, Varyings, VertexShader};
 
 /// Number that stands for no triangle.
 const NONE: u16 = u16::MAX;
@@ -51,96 +52,11 @@ pub const fn records_len(
         .saturating_add(TRIANGLE.saturating_mul(triangles))
 }
 
-/// A recorded position of a vertex, in two words: x in the upper 24 bits of the first, y in those of the second;
-/// below x the high byte of z, below y the low byte.
-///
-/// A vertex that is not on the screen has an x that no vertex on the screen has. The low byte of that word is its
-/// outcode, or a mark that it is not shaded yet: [`UNSHADED`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct PackedVertex([u32; 2]);
-
-const OFF_SCREEN: u32 = 0x8000_0000;
-const UNSHADED: u32 = OFF_SCREEN | 0x80;
-
-impl PackedVertex {
-    /// Packs a vertex on the screen, or one that has to be clipped and so cannot be projected.
-    #[inline]
-    pub(crate) const fn new(placed: &Projected) -> Self {
-        match placed {
-            Projected::OnScreen(v) => {
-                Self([(v.x as u32) << 8 | (v.z >> 8) as u32, (v.y as u32) << 8 | (v.z & 0xFF) as u32])
-            }
-            Projected::NeedsClip(code) => Self([OFF_SCREEN | code.0 as u32, 0]),
-        }
-    }
-
-    /// A vertex that is not shaded yet.
-    pub(crate) const NONE: Self = Self([UNSHADED, 0]);
-
-    /// x that [`screen`](Self::screen) returns for a vertex that is not on the screen.
-    pub(crate) const OFF_SCREEN_X: i32 = OFF_SCREEN as i32 >> 8;
-
-    /// Makes a packed vertex of its words, which are taken as signed.
-    #[inline]
-    pub(crate) const fn signed([a, b]: [i32; 2]) -> Self {
-        Self([a as u32, b as u32])
-    }
-
-    /// Makes a packed vertex of its words.
-    #[cfg(test)]
-    pub(crate) const fn from_words(words: [u32; 2]) -> Self {
-        Self(words)
-    }
-
-    #[inline]
-    pub(crate) const fn is_unshaded(self) -> bool {
-        self.0[0] == UNSHADED
-    }
-
-    #[inline]
-    pub(crate) const fn is_on_screen(self) -> bool {
-        self.0[0] >> 8 != OFF_SCREEN >> 8
-    }
-
-    /// Returns the outcode of a vertex that is not on the screen, 0 for one that is.
-    pub(crate) const fn outcode(self) -> u8 {
-        if self.is_on_screen() { 0 } else { self.0[0] as u8 }
-    }
-
-    /// Returns the two words.
-    #[inline]
-    pub(crate) const fn words(self) -> [u32; 2] {
-        self.0
-    }
-
-    /// Limit of first words, taken as signed: a first word below it belongs to a vertex that is not on the screen.
-    /// The second word of a vertex on the screen begins with its y.
-    pub(crate) const LEAST_X: i32 = (OFF_SCREEN as i32) + 0x100;
-
-    /// Returns the position of a vertex on the screen.
-    #[inline]
-    pub(crate) const fn screen(self) -> ScreenVertex {
-        let [a, b] = self.0;
-        ScreenVertex::new(a as i32 >> 8, b as i32 >> 8, ((a & 0xFF) << 8 | (b & 0xFF)) as u16)
-    }
-}
-
-/// A triangle from the records.
+/// A triangle from the records: the numbers of its vertices, and the word of its face. The highest vertex is the first.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct TriangleRecord {
-    pub(crate) v: [ScreenVertex; 3],
-    /// Numbers of the first two corners, the second in the upper half; `last` is the third.
-    corners: u32,
-    last: u16,
+    pub(crate) corners: [u16; 3],
     pub(crate) face: u32,
-}
-
-impl TriangleRecord {
-    /// Returns the numbers of its vertices.
-    #[inline]
-    pub(crate) const fn corners(&self) -> [u16; 3] {
-        [self.corners as u16, (self.corners >> 16) as u16, self.last]
-    }
 }
 
 /// The words of the records, and the layout that says which things lie where in them.
@@ -156,15 +72,69 @@ fn pair(halves: [u16; 2]) -> u32 {
     bytemuck::cast(halves)
 }
 
+/// Returns the numbers of a triangle's vertices, from the first two words of its record.
+#[inline(always)]
+fn corners_of(a: u32, b: u32) -> [u16; 3] {
+    let [k, _]: [u16; 2] = bytemuck::cast(b);
+    [a as u16, (a >> 16) as u16, k]
+}
+
+/// Returns the words of three vertices' [`PackedVertex`]s.
+#[inline(always)]
+pub(crate) fn positions_at(positions: &[[u32; 2]], [i, j, k]: [u16; 3]) -> [&[u32; 2]; 3] {
+    let at = |index: u16| positions.get(usize::from(index)).unwrap_or(&PackedVertex::NONE_WORDS);
+    [at(i), at(j), at(k)]
+}
+
+/// Returns the number of corners before the highest one, by the second words of their [`PackedVertex`]s.
+#[inline(always)]
+pub(crate) const fn turns([a, b, c]: [i32; 3]) -> u32 {
+    if b < a {
+        if c < b { 2 } else { 1 }
+    } else if c < a {
+        2
+    } else {
+        0
+    }
+}
+
+/// Words that triangles are put into, from the end. They are in no strip's list yet.
+#[derive(Debug)]
+pub(crate) struct Room<'r> {
+    words: &'r mut [u32],
+}
+
+impl Room<'_> {
+    /// Puts in a triangle. Returns `false` if there is no room for it.
+    #[inline(always)]
+    pub(crate) fn push(&mut self, [i, j, k]: [u16; 3], face: u32) -> bool {
+        // Fewer words than a triangle takes stay where they are.
+        if self.words.len() < TRIANGLE {
+            return false;
+        }
+        let Some((rest, triangle)) = core::mem::take(&mut self.words).split_last_chunk_mut() else { return false };
+        *triangle = [u32::from(i) | u32::from(j) << 16, pair([k, NONE]), face];
+        self.words = rest;
+        true
+    }
+
+    /// Takes the words, and leaves none.
+    #[inline(always)]
+    pub(crate) fn take(&mut self) -> Self {
+        Self { words: core::mem::take(&mut self.words) }
+    }
+
+    /// Returns the words that are left.
+    #[inline(always)]
+    pub(crate) const fn left(&self) -> usize {
+        self.words.len()
+    }
+}
+
 /// Returns the two halves of a word.
 #[inline]
 fn halves(word: &mut u32) -> &mut [u16; 2] {
     bytemuck::cast_mut(word)
-}
-
-#[inline]
-fn signed([a, b]: &[u32; 2]) -> [i32; 2] {
-    [*a as i32, *b as i32]
 }
 
 /// The words of a draw, taken apart into slices for a pass over its triangles.
@@ -182,33 +152,37 @@ pub(crate) struct Triangles<'r> {
     layout: &'r mut Layout,
 }
 
-impl Triangles<'_> {
-    /// Returns the words of three vertices' [`PackedVertex`]s, as signed numbers.
+impl<'r> Triangles<'r> {
+    /// Takes the room for triangles that are not recorded yet, as [`Room`], and the positions of all vertices.
     #[inline(always)]
-    pub(crate) fn positions_of(&self, [i, j, k]: [u16; 3]) -> [[i32; 2]; 3] {
-        let place = |index: u16| signed(self.positions.get(usize::from(index)).unwrap_or(&PackedVertex::NONE.0));
-        [place(i), place(j), place(k)]
+    pub(crate) fn room(&mut self) -> (Room<'_>, &'r [[u32; 2]]) {
+        let taken = TRIANGLE * usize::from(self.count);
+        let free = self.triangles.len().saturating_sub(taken);
+        (Room { words: self.triangles.get_mut(..free).unwrap_or_default() }, self.positions)
     }
 
-    /// Returns the vertex numbers of a triangle in a list without indices, and the words of their [`PackedVertex`]s.
+    /// Counts the triangles that were put into the [`room`](Self::room), of which so much is left. Returns how many
+    /// these are.
     #[inline(always)]
-    pub(crate) fn in_a_row(&self, number: usize) -> ([u16; 3], [[i32; 2]; 3]) {
-        let first = 3 * number;
-        let positions = match self.positions.get(first..) {
-            Some([a, b, c, ..]) => [signed(a), signed(b), signed(c)],
-            _ => [signed(&PackedVertex::NONE.0); 3],
-        };
-        ([first as u16, (first + 1) as u16, (first + 2) as u16], positions)
+    pub(crate) fn fill(&mut self, left: usize) -> u32 {
+        let before = self.count;
+        // A division by three that leaves nothing is a product modulo 2³²: 3 · 0xAAAA_AAAB = 2³³ + 1.
+        self.count = (self.triangles.len().wrapping_sub(left) as u32).wrapping_mul(0xAAAA_AAAB) as u16;
+        u32::from(self.count.wrapping_sub(before))
+    }
+
+    /// Puts in a triangle that is in no strip's list yet. Returns `false` if there is no room for it.
+    #[inline(never)]
+    pub(crate) fn push(&mut self, corners: [u16; 3], face: u32) -> bool {
+        let (mut room, _) = self.room();
+        let fits = room.push(corners, face);
+        self.count += u16::from(fits);
+        fits
     }
 
     /// Returns the number of recorded triangles.
     pub(crate) const fn count(&self) -> u16 {
         self.count
-    }
-
-    /// Makes [`push`](Self::push) return `false` from here on.
-    pub(crate) fn leave_no_room(&mut self) {
-        self.triangles = &mut [];
     }
 
     /// Notes that there was no room for a triangle.
@@ -221,55 +195,141 @@ impl Triangles<'_> {
         self.layout.triangles = self.count;
     }
 
-    /// Records a triangle whose topmost strip, in this band, is `strip`. `corners` has the numbers of its first two
-    /// corners. Returns `false` if there was no room.
+    /// Keeps those of the triangles recorded from `first` on for which `strip` returns a strip, and puts each into the
+    /// list of this strip, the topmost one of the band that it touches, with its highest vertex first. `strip` is given
+    /// the words of its vertices' [`PackedVertex`]s in this order.
     #[inline(always)]
-    pub(crate) fn push(&mut self, corners: u32, last: u16, face: u32, strip: usize) -> bool {
-        let behind = TRIANGLE * usize::from(self.count) + TRIANGLE;
-        let Some(at) = self.triangles.len().checked_sub(behind) else { return false };
-        let Some([a, b, c, ..]) = self.triangles.get_mut(at..) else { return false };
-        let number = self.count;
-        (*a, *b, *c) = (corners, pair([last, NONE]), face);
-        self.count += 1;
-        let Some([first, end]) = self.lists.get_mut(strip).map(halves) else { return true };
+    pub(crate) fn keep_each(&mut self, first: u16, mut strip: impl FnMut([&'r [u32; 2]; 3]) -> Option<usize>) {
+        let mut kept = first;
+        for number in first..self.count {
+            let Some(&[a, b, face]) = self.triangles.get(self.triangle_at(number)..).and_then(<[u32]>::first_chunk)
+            else {
+                break;
+            };
+            let ([i, j, k], v) = self.highest_first(corners_of(a, b));
+            let Some(strip) = strip(v) else { continue };
+            if let Some(words) = self.triangles.get_mut(self.triangle_at(kept)..).and_then(<[u32]>::first_chunk_mut) {
+                *words = [u32::from(i) | u32::from(j) << 16, pair([k, NONE]), face];
+            }
+            self.append(strip, kept);
+            kept += 1;
+        }
+        self.count = kept;
+    }
+
+    /// Puts a triangle at the end of a strip's list.
+    #[inline(always)]
+    fn append(&mut self, strip: usize, number: u16) {
+        let Some([first, end]) = self.lists.get_mut(strip).map(halves) else { return };
         let before = core::mem::replace(end, number);
         if before == NONE {
             *first = number;
         } else {
             self.link(before, number);
         }
-        true
     }
 
-    /// Reads the next triangle of the draw in this strip; returns `false` if there is none with a number below
-    /// `last`. A triangle that reaches beyond `end`, see [`end_of`](Self::end_of), moves on to the next strip.
+    /// Hands the triangles of the draw in this strip to `draw`, one after the other, with their vertices, until `draw`
+    /// finds one that is large. Returns whether it did. The triangle is in `to` then.
+    ///
+    /// A triangle that reaches beyond `end`, see [`end_of`](Self::end_of), moves on to the next strip.
     #[inline(always)]
-    pub(crate) fn replay(&mut self, last: u32, end: i32, to: &mut TriangleRecord) -> bool {
-        let number = self.layout.next;
-        if u32::from(number) >= last {
-            return false;
+    pub(crate) fn replay_each(
+        &mut self,
+        end: i32,
+        to: &mut TriangleRecord,
+        mut draw: impl FnMut(&Self, &TriangleRecord, [&[u32; 2]; 3]) -> SmallResult,
+    ) -> bool {
+        loop {
+            let number = self.layout.next;
+            if u32::from(number) >= self.layout.last {
+                return false;
+            }
+            let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
+            let [_, next]: [u16; 2] = bytemuck::cast(*b);
+            *to = TriangleRecord { corners: corners_of(*a, *b), face: *face };
+            self.layout.next = next;
+            let v = self.positions_of(to.corners);
+            // The first vertex is not below the others.
+            if (end - (v[1][1] as i32 >> 8)) | (end - (v[2][1] as i32 >> 8)) < 0 {
+                self.move_on(number);
+            }
+            if draw(self, to, v) == SmallResult::Large {
+                return true;
+            }
         }
-        let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
-        let [last, next]: [u16; 2] = bytemuck::cast(*b);
-        (to.corners, to.last, to.face) = (*a, last, *face);
-        self.layout.next = next;
-        let [i, j, k] = to.corners();
-        let screen = |index: u16| match self.positions.get(usize::from(index)) {
-            Some(words) => PackedVertex(*words).screen(),
-            None => self.added(index).screen(),
-        };
-        // Vertices are read one by one, so that few values are in registers at once.
-        let [a, b, c] = &mut to.v;
-        *a = screen(i);
-        let mut above = end - a.y;
-        *b = screen(j);
-        above |= end - b.y;
-        *c = screen(k);
-        above |= end - c.y;
-        if above < 0 {
-            self.move_on(number);
+    }
+
+    /// Starts with the first triangle that waits to be drawn at once.
+    pub(crate) const fn begin_waiting(&mut self) {
+        self.layout.next = 0;
+    }
+
+    /// Takes all triangles out of the records.
+    pub(crate) const fn clear(self) {
+        self.layout.triangles = 0;
+    }
+
+    /// Hands the triangles that wait to be drawn at once to `draw`, as [`replay_each`](Self::replay_each) does, with
+    /// their highest vertices first. Counts those that are not drawn because they are empty, or outside.
+    #[inline(always)]
+    pub(crate) fn waiting_each(
+        &mut self,
+        to: &mut TriangleRecord,
+        [empty, outside]: &mut [u32; 2],
+        mut draw: impl FnMut(&Self, &TriangleRecord, [&[u32; 2]; 3]) -> SmallResult,
+    ) -> bool {
+        loop {
+            let number = self.layout.next;
+            if number >= self.count {
+                return false;
+            }
+            let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
+            let (corners, face) = (corners_of(*a, *b), *face);
+            self.layout.next = number + 1;
+            let (corners, v) = self.highest_first(corners);
+            *to = TriangleRecord { corners, face };
+            match draw(self, to, v) {
+                SmallResult::Drawn => {}
+                SmallResult::Empty => *empty += 1,
+                SmallResult::Outside => *outside += 1,
+                SmallResult::Large => return true,
+            }
         }
-        true
+    }
+
+    /// Finds the vertices of a triangle of the mesh, and turns them so that the highest one is the first.
+    #[inline(always)]
+    fn highest_first(&self, [i, j, k]: [u16; 3]) -> ([u16; 3], [&'r [u32; 2]; 3]) {
+        let [a, b, c] = positions_at(self.positions, [i, j, k]);
+        match turns([a[1] as i32, b[1] as i32, c[1] as i32]) {
+            0 => ([i, j, k], [a, b, c]),
+            1 => ([j, k, i], [b, c, a]),
+            _ => ([k, i, j], [c, a, b]),
+        }
+    }
+
+    /// Reads the vertices of a triangle.
+    #[inline(never)]
+    pub(crate) fn vertices_of(&self, triangle: &TriangleRecord, to: &mut [ScreenVertex; 3]) {
+        for (to, index) in to.iter_mut().zip(triangle.corners) {
+            *to = PackedVertex(*self.position(index)).screen();
+        }
+    }
+
+    /// Returns the words of three vertices' [`PackedVertex`]s.
+    pub(crate) fn positions_of(&self, corners: [u16; 3]) -> [&'r [u32; 2]; 3] {
+        let [i, j, k] = corners;
+        [self.position(i), self.position(j), self.position(k)]
+    }
+
+    /// Returns the words of a vertex's [`PackedVertex`].
+    #[inline(always)]
+    fn position(&self, index: u16) -> &'r [u32; 2] {
+        match self.positions.get(usize::from(index)) {
+            Some(words) => words,
+            None => self.added(index),
+        }
     }
 
     /// Returns the largest y that vertices of a triangle can have if the triangle ends above `row`.
@@ -280,11 +340,9 @@ impl Triangles<'_> {
 
     /// Returns the position of a vertex that the clipper added.
     #[inline(never)]
-    fn added(&self, index: u16) -> PackedVertex {
-        match self.vertices.get(self.layout.stride * usize::from(index)..) {
-            Some([a, b, ..]) => PackedVertex([*a, *b]),
-            _ => PackedVertex::NONE,
-        }
+    fn added(&self, index: u16) -> &'r [u32; 2] {
+        let words = self.vertices.get(self.layout.stride * usize::from(index)..);
+        words.and_then(|words| words.first_chunk()).unwrap_or(&PackedVertex::NONE.0)
     }
 
     /// Reads the varyings of a vertex of the draw.
@@ -315,6 +373,7 @@ impl Triangles<'_> {
         S::load(self.vertices.get(at..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
     }
 
+    #[inline(always)]
     fn triangle_at(&self, number: u16) -> usize {
         self.triangles.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
     }
@@ -374,9 +433,11 @@ pub(crate) struct Layout {
     added: u16,
     stride: usize,
     overflow: bool,
-    /// Replay: number of the strip; its next triangle; the last triangle that was moved on; and the triangle after
+    /// Replay: number of the strip; one more than the last triangle of the draw;
+    /// the next triangle; the last triangle that was moved on; and the triangle after
     /// that one in the next strip's list.
     strip: usize,
+    last: u32,
     next: u16,
     moved: u16,
     after: u16,
@@ -516,7 +577,7 @@ impl<'a> Records<'a> {
     }
 
     /// Stores a vertex of the current draw, for whose vertices there is room.
-    #[inline]
+    #[inline(never)]
     pub(crate) fn store_vertex<S: VertexShader>(&mut self, index: usize, packed: PackedVertex, varyings: &S::Varyings) {
         let (position, rest) = self.words_of(index);
         let [a, b] = packed.0;
@@ -548,9 +609,12 @@ impl<'a> Records<'a> {
     }
 
     /// Records a triangle whose topmost strip, in this band, is `strip`.
-    pub(crate) fn push_triangle(&mut self, [i, j, k]: [u16; 3], face: u32, strip: usize) {
+    pub(crate) fn push_triangle(&mut self, corners: [u16; 3], face: u32, strip: usize) {
         let mut triangles = self.parts();
-        if !triangles.push(u32::from(i) | u32::from(j) << 16, k, face, strip) {
+        let number = triangles.count;
+        if triangles.push(corners, face) {
+            triangles.append(strip, number);
+        } else {
             triangles.overflow();
         }
         triangles.finish();
@@ -600,6 +664,7 @@ impl<'a> Records<'a> {
         self.layout.vertices = self.get(header + 1) as usize;
         self.layout.count = vertices;
         self.layout.stride = stride;
+        self.layout.last = self.get(header + 2);
         self.layout.front = self.get(header + 3) as usize;
         self.get(header) == fingerprint
     }
@@ -624,11 +689,5 @@ impl<'a> Records<'a> {
 
     fn triangle_at(&self, number: u16) -> usize {
         self.words.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
-    }
-
-    /// Returns one more than the number of the last triangle of the draw that was found.
-    #[inline(never)]
-    pub(crate) fn last_triangle(&self) -> u32 {
-        self.get(self.layout.header + 2)
     }
 }

@@ -130,14 +130,6 @@ impl ClipCorner {
             ],
         }
     }
-
-    /// Returns a copy, made number by number: a copy in one piece to where the compiler cannot tell source and
-    /// destination apart would link `memmove`, of 1.5 KB.
-    #[inline(always)]
-    fn by_number(&self) -> Self {
-        let (ClipVertex { x, y, z, w }, [a, b, c]) = (self.vertex, self.weights);
-        Self { vertex: ClipVertex { x, y, z, w }, weights: [a, b, c] }
-    }
 }
 
 /// Mixes the varyings of a triangle's corners by weights. At a corner of the triangle itself, the varyings come out
@@ -252,16 +244,24 @@ impl<'p> Clipping<'p> {
             let Some(to) = self.polygon.pop_front() else { return };
             let dt = distance(&to);
             if (df >= 0) != (dt >= 0) {
-                let _ = self.polygon.push_back(crossing(plane, &from, &to, df, dt));
+                self.push(&crossing(plane, &from, &to, df, dt));
             }
             if (dt >= 0) == inside {
-                let _ = self.polygon.push_back(to.by_number());
+                self.push(&to);
             }
             (from, df) = (to, dt);
         }
         if self.polygon.storage_len() < 3 {
             self.polygon.clear();
         }
+    }
+
+    /// Adds a corner, field by field: a copy of the whole would link `memmove`, of 1.5 KB.
+    #[inline(never)]
+    fn push(&mut self, corner: &ClipCorner) {
+        let ClipVertex { x, y, z, w } = corner.vertex;
+        let [a, b, c] = corner.weights;
+        let _ = self.polygon.push_back(ClipCorner { vertex: ClipVertex { x, y, z, w }, weights: [a, b, c] });
     }
 
     /// Returns the corners of the clipped polygon, in order.

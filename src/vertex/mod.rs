@@ -9,6 +9,7 @@
 pub(crate) mod clip;
 mod clip_distance;
 mod clip_line;
+mod packed;
 mod painters_order;
 pub(crate) mod project;
 mod shader;
@@ -22,6 +23,7 @@ pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSl
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
+pub(crate) use packed::PackedVertex;
 pub use painters_order::{SortError, SortReport, SortScratch, painters_order};
 pub use project::{DepthScale, ScreenVertex};
 pub(crate) use project::{inverse_w, project, signed_area, small};

@@ -1,0 +1,222 @@
+//! Small triangles → pixels: set-up, edges, rows and pixels in one function with few live values. Vertices are read
+//! where the vertex stage left them, and a brush draws the spans.
+//!
+//! The plain loop:
+//!
+//! ```text
+//! depth, brush: planes through the corners
+//! left, right: edges from the highest corner
+//! for each row:
+//!     draw left..right
+//!     at the bend: a new edge on one side
+//! ```
+//! A triangle is small or not by its vertices and the columns of the viewport alone; neither strips nor records take
+//! part in the decision. Coverage and depth are, bit for bit, those of the way that large triangles take.
+
+use super::depth::DepthTest;
+use super::depth_bias::{BiasSteps, DepthBias};
+use crate::color::PixelFormat;
+use crate::raster::{HEIGHT, ShortEdge, ShortPlanes, WIDTH, first_centre, gradients};
+use crate::vertex::PackedVertex;
+use core::ops::Range;
+
+/// Pixels that small triangles are drawn into: rows that lie one after the other in memory.
+pub struct SmallTarget<'a, R> {
+    /// Colours and depths, from column 0 of the first row on.
+    pub(crate) color: &'a mut [R],
+    pub(crate) depth: &'a mut [u16],
+    /// The first row.
+    pub(crate) first: i32,
+    /// Columns that all of a triangle has to be in, and rows that may be drawn.
+    pub(crate) columns: Range<i32>,
+    pub(crate) rows: Range<i32>,
+    pub(crate) screen: (u16, u16),
+    /// Set if triangles that go with the clock, with y up, show their front.
+    pub(crate) clockwise_fronts: bool,
+    /// Depth bias, if there may be one, and how it is computed.
+    pub(crate) bias: Option<(BiasSteps, DepthBias)>,
+}
+
+/// A triangle that may be small, as [`Shader::small`](crate::span::Shader::small) gets it: its target, and its corners,
+/// with the highest one first.
+pub struct SmallTriangle<'t, 'a, P: PixelFormat, D: DepthTest> {
+    pub(crate) target: &'t mut SmallTarget<'a, P::Raw>,
+    /// Words of [`PackedVertex`]s.
+    pub(crate) v: [&'t [u32; 2]; 3],
+    pub(crate) test: D,
+}
+
+/// Results of drawing a triangle that may be small.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SmallResult {
+    /// The triangle is small, and drawn.
+    Drawn,
+    /// The triangle is small, and its bounding box holds no centre of a pixel.
+    Empty,
+    /// The triangle is small, and in none of the rows that may be drawn.
+    Outside,
+    /// The triangle is not small, or has to be drawn like triangles that are not.
+    Large,
+}
+
+/// Draws the spans of a small triangle, from the top to the bottom.
+pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
+    /// Set if the brush has planes besides depth.
+    const PLANES: bool;
+
+    /// Sets up a triangle, of which (`column`, `row`) is the first pixel: spans are counted from there. `swapped` says
+    /// that the last two corners have changed places in `planes`. Returns `false` if the brush cannot draw it.
+    fn set_up(&mut self, planes: &ShortPlanes, swapped: bool, place: (i32, i32), dz_dx: i32) -> bool;
+
+    /// Goes on to the next row.
+    fn next_row(&mut self);
+
+    /// Draws a span that begins `column` pixels to the right of the first pixel.
+    fn span(&self, color: &mut [P::Raw], depth: &mut [D::Depth], z: u32, dz_dx: i32, column: i32, test: D);
+}
+
+impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
+    /// Draws the triangle with a brush, if it is small.
+    #[inline(always)]
+    pub(crate) fn draw<B: Brush<P, D>>(self, brush: &mut B) -> SmallResult {
+        let [a, b, c] = self.v;
+        draw_small(self.target, a, b, c, brush, self.test)
+    }
+}
+
+/// Draws a triangle with its highest corner first, if it is small.
+///
+/// # Format
+/// Differences of depths are below 2¹⁶, and sides below 60 · 2⁸ and 25 · 2⁸: determinants are below 2 · 65,535 · 60 ·
+/// 2⁸ < 2³¹. The planes' gradients are below 2²⁸.
+#[inline(never)]
+fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
+    target: &mut SmallTarget<'_, P::Raw>,
+    a: &[u32; 2],
+    b: &[u32; 2],
+    c: &[u32; 2],
+    brush: &mut B,
+    test: D,
+) -> SmallResult {
+    let (a, b, c) = (PackedVertex(*a), PackedVertex(*b), PackedVertex(*c));
+    let (ax, ay) = (a.x(), a.y());
+    let (mut by, mut cy) = (b.y() - ay, c.y() - ay);
+    if (by as u32 > HEIGHT as u32) | (cy as u32 > HEIGHT as u32) {
+        return SmallResult::Large;
+    }
+    let (mut bx, mut cx) = (b.x() - ax, c.x() - ax);
+    let (least, most) = (bx.min(cx).min(0), bx.max(cx).max(0));
+    let (start, past) = (first_centre(ax + least), first_centre(ax + most));
+    if most - least > WIDTH || start < target.columns.start || past > target.columns.end {
+        return SmallResult::Large;
+    }
+    let (top, end) = (first_centre(ay), first_centre(ay + by.max(cy)));
+    let area = bx * cy - cx * by;
+    if start >= past || top >= end || area == 0 {
+        return SmallResult::Empty;
+    }
+    let row = top.max(target.rows.start);
+    if row >= end.min(target.rows.end) {
+        return SmallResult::Outside;
+    }
+    let column = (ax + least) >> 8;
+    let (z, mut bz, mut cz) = (a.z(), b.z(), c.z());
+    // From here on, b is on the left and c on the right.
+    let swapped = area > 0;
+    if swapped {
+        (bx, by, bz, cx, cy, cz) = (cx, cy, cz, bx, by, bz);
+    }
+    // Depth at the first pixel, with the half that rounds.
+    let (dz_b, dz_c) = (bz - z, cz - z);
+    let mut depth = ((z << 16) as u32).wrapping_add(1 << 15);
+    let (mut dz_dx, mut dz_dy) = (0, 0);
+    let (right, down) = (column - (ax >> 8), row - (ay >> 8));
+    let to = (128 - (ax & 0xFF), 128 - (ay & 0xFF));
+    let mut planes =
+        ShortPlanes { b: (bx, by), c: (cx, cy), to: (to.0 + 256 * right, to.1 + 256 * down), reciprocal: 0, shift: 0 };
+    if B::PLANES || dz_b | dz_c != 0 {
+        (planes.reciprocal, planes.shift) = ShortPlanes::inverse(area.unsigned_abs());
+        let (n, m) = planes.numerators(dz_b, dz_c);
+        // 2²⁴ n / area.
+        let Some((dx, dy)) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 7) else {
+            return SmallResult::Large;
+        };
+        (dz_dx, dz_dy) = (dx, dy);
+        // As `Gradients` has it: from the vertex to the centre of its pixel, and from there on.
+        let offset = ((dx >> 6) * to.0 + (dy >> 6) * to.1) >> 2;
+        depth = depth
+            .wrapping_add(offset as u32)
+            .wrapping_add_signed(dx.wrapping_mul(right))
+            .wrapping_add_signed(dy.wrapping_mul(down));
+    }
+    if let Some(bias) = &target.bias {
+        depth = depth.wrapping_add(biased(bias, [z, bz, cz], dz_dx, dz_dy));
+    }
+    if !brush.set_up(&planes, swapped, (column, row), dz_dx) {
+        return SmallResult::Large;
+    }
+    let sides = core::hint::black_box([bx, by, cx, cy]);
+    let start = ax - (column << 8);
+    let p = 256 * row + 128 - ay;
+    let (left_end, right_end) =
+        (first_centre(ay + by).min(target.rows.end), first_centre(ay + cy).min(target.rows.end));
+    let (mut left, mut right) = (ShortEdge::new(start, bx, by, p), ShortEdge::new(start, cx, cy, p));
+    let width = usize::from(target.screen.0);
+    let mut at = width.wrapping_mul((row - target.first) as usize).wrapping_add(column as usize);
+    // Both get one length, so that the compiler knows a span inside of one to be inside of the other.
+    let mut nothing = [(); usize::MAX];
+    let (colors, depths) = (&mut *target.color, D::slots(target.depth, &mut nothing));
+    let length = colors.len().min(depths.len());
+    let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else {
+        return SmallResult::Drawn;
+    };
+    // The rows down to the bend, and those from there on.
+    let bend = left_end.min(right_end);
+    let (mut count, mut rest) = (bend - row, left_end.max(right_end) - bend.max(row));
+    // A single row may be shorter than the screen. (The first column may be -1, without a pixel in it.)
+    let limit = if length < width { (length as i32 - column).clamp(0, 63) as u32 } else { 63 };
+    loop {
+        right.limit(limit);
+        while count > 0 {
+            let (from, past) = (left.column(), right.column());
+            if from < past {
+                let (start, length) = (at.wrapping_add(from as usize), (past - from) as usize);
+                let Some(depths) = subslice(depths, start, length) else { return SmallResult::Drawn };
+                let Some(colors) = subslice(colors, start, length) else { return SmallResult::Drawn };
+                let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
+                brush.span(colors, depths, z, dz_dx, from as i32, test);
+            }
+            left.step();
+            right.step();
+            at = at.wrapping_add(width);
+            depth = depth.wrapping_add_signed(dz_dy);
+            brush.next_row();
+            count -= 1;
+        }
+        if rest <= 0 {
+            return SmallResult::Drawn;
+        }
+        let p = p + 256 * (bend - row).max(0);
+        let [bx, by, cx, cy] = sides;
+        if right_end < left_end {
+            right = ShortEdge::outlined(start + cx, bx - cx, by - cy, p - cy);
+        } else {
+            left = ShortEdge::outlined(start + bx, cx - bx, cy - by, p - by);
+        }
+        (count, rest) = (rest, 0);
+    }
+}
+
+/// Returns what a bias adds to the depths of a triangle with these depths, 16.16.
+#[inline(never)]
+fn biased((steps, bias): &(BiasSteps, DepthBias), [a, b, c]: [i32; 3], dz_dx: i32, dz_dy: i32) -> u32 {
+    let depths = a.min(b).min(c) as u16..a.max(b).max(c) as u16;
+    (steps(*bias, depths, dz_dx, dz_dy) as u32) << 16
+}
+
+/// Returns `length` elements from `start` on, if there are as many. Two steps check this with one comparison each; a
+/// range is checked at both ends at once, which costs twice as much.
+#[inline(always)]
+pub(crate) fn subslice<T>(slice: &mut [T], start: usize, length: usize) -> Option<&mut [T]> {
+    slice.get_mut(start..)?.get_mut(..length)
+}
