@@ -72,10 +72,10 @@
 //! | 11 | fragments | varyings at a pixel, the face's word | a pixel | `span/`, `shader/` | replay, direct |
 //! | 12 | output | a strip of pixels | bytes for a display | `frame/frame.rs`, `target/` | after each strip |
 //!
-//! In `scene/draw.rs`, one function calls stages 1 to 7, and another one stages 8 to 11. A triangle that is clipped
-//! goes through stages 5 to 7 after stage 4; all others skip stage 4. Lines and points share stages 1 and 2, and 9 to
-//! 11. In between, `scene/lines.rs` goes over all of them in each strip, and records only their vertices. Shapes of a
-//! [`Canvas`] enter at stage 8.
+//! One function in `scene/draw.rs` calls stages 1 to 7, and one in `scene/replay.rs` calls stages 8 to 11. A triangle
+//! that is clipped goes through stages 5 to 7 after stage 4; all others skip stage 4. Lines and points share stages 1
+//! and 2, and 9 to 11. In between, `scene/lines.rs` goes over all of them in each strip, and records only their
+//! vertices. Shapes of a [`Canvas`] enter at stage 8.
 //!
 //! # The floors
 //!

@@ -6,9 +6,10 @@ mod reference;
 mod scenes;
 mod support;
 
+use core::cell::RefCell;
 use reference::rng::Rng;
 use scenes::{Draw, Room};
-use support::{difference, strips};
+use support::{Soup, difference, strips};
 use zstrip::color::Rgb565Be;
 use zstrip::embedded_graphics_core::Pixel;
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
@@ -16,9 +17,11 @@ use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::embedded_graphics_core::primitives::{PointsIter, Rectangle};
 use zstrip::frame::{Frame, FrameError, FramebufferRenderer, RamBudget, Renderer};
-use zstrip::math::Angle16;
+use zstrip::math::{Angle16, Pixels, Projective};
+use zstrip::shader::Gouraud;
 use zstrip::target::{DepthChoice, Depthless, FrameSlice, RecordsChoice, WithDepth, WithRecords};
-use zstrip::{Framebuffer, Scene, ScreenPoint, Smooth, Thick};
+use zstrip::vertex::Viewport;
+use zstrip::{Cull, Framebuffer, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 
 const SCREEN: (u16, u16) = (80, 60);
 const SIZE: Size = Size::new(80, 60);
@@ -332,6 +335,85 @@ fn rows_that_are_shorter_than_the_screen_get_their_own_pixels_and_no_others() {
                     assert_eq!(*pixel, right, "seed {}: ({x}, {y}), case {case}, {rows} rows", rng.seed());
                 }
             }
+        }
+    }
+}
+
+/// A framebuffer whose rows do not lie one after the other. It notes which of them are asked for.
+struct Watched<'l> {
+    pixels: Vec<u16>,
+    asked: &'l RefCell<Vec<u32>>,
+}
+
+impl Framebuffer for Watched<'_> {
+    type Format = Rgb565;
+
+    fn row(&mut self, y: u32) -> &mut [u16] {
+        self.asked.borrow_mut().push(y);
+        self.pixels.chunks_mut(WIDTH).nth(y as usize).unwrap_or_default()
+    }
+}
+
+/// Draws thick lines with gradients, polygons and meshes that reach beyond the screen on all sides, and `everything`.
+fn beyond<F: Framebuffer<Format = Rgb565>>(scene: &mut Scene<'_, F>, rng: &mut Rng) {
+    everything(scene);
+    let ends: Vec<_> = (0..40).map(|_| [rng.between(-30, 110), rng.between(-30, 90)].map(|v| v as i16)).collect();
+    let ends = || ends.iter().map(|[x, y]| ScreenPoint::center(*x, *y));
+    let colors = [Rgb888::CSS_ORANGE, Rgb888::CSS_INDIGO, Rgb888::CSS_AZURE];
+    let mut canvas = scene.canvas();
+    for (from, to) in ends().zip(ends().skip(1)) {
+        canvas.gradient_line((from, colors[0]), (to, colors[1]), &Thick::px(7));
+        canvas.gradient_line((to, colors[1]), (from, colors[2]), &Smooth::px(4));
+        canvas.gradient_line((to, colors[1]), (from, colors[2]), &Thin);
+        // Short ones.
+        let near = |offset| Pixels::from_num(0.8 * f64::from(offset));
+        let beside = ScreenPoint::new(from.x() + near(5), from.y() + near(4));
+        canvas.gradient_line((from, colors[0]), (beside, colors[1]), &Thick::px(3));
+        let below = ScreenPoint::new(from.x() - near(4), from.y() + near(9));
+        canvas.gradient(&[(from, colors[0]), (beside, colors[1]), (below, colors[2])]);
+        canvas.polygon(&[from, below, beside], colors[1]);
+    }
+    let corners: Vec<_> = ends().zip(colors.into_iter().cycle()).collect();
+    canvas.set_scissor(Some(&Rectangle::new(Point::new(-9, 22), Size::new(60, 23))));
+    corners.windows(3).for_each(|corners| canvas.gradient(corners));
+    let soup = Soup::new(&mut rng.clone(), 60);
+    scene.draw_with(State { cull: Cull::None, ..State::DEFAULT }, &soup.mesh(), &Projective::IDENTITY, &{
+        Gouraud::vertex_colors()
+    });
+    scene.set_viewport(Viewport::new(Point::new(5, 31), Size::new(40, 20)).expect("a viewport"));
+    room(scene, Angle16::from_degrees(200));
+}
+
+/// Rows that are not in the strip, or not on the screen, need not be there: a framebuffer may read them from elsewhere.
+#[test]
+fn rows_that_are_not_on_the_screen_are_not_asked_for() {
+    let asked = RefCell::new(Vec::new());
+    let mut rng = Rng::new(76);
+    for records in [0, 700, 40_000] {
+        for rows in [1, 7, 60] {
+            let (mut depth, mut words) = (vec![9; WIDTH * rows], vec![9; records]);
+            let renderer = FramebufferRenderer::new(SIZE).expect("a renderer").with_depth(&mut depth).expect("a row");
+            let mut renderer = renderer.with_records(&mut words);
+            let mut framebuffer = Watched { pixels: vec![0; WIDTH * 60], asked: &asked };
+            let scene_rng = rng.clone();
+            let (mut calls, what) = (0, format!("seed {}: {records} records, {rows} rows", rng.seed()));
+            let draw = |scene: &mut Scene<'_, Watched<'_>>| {
+                asked.borrow_mut().clear();
+                beyond(scene, &mut scene_rng.clone());
+                let asked = asked.borrow();
+                let strip = |y: &u32| y / rows as u32;
+                let (first, last) = (asked.iter().min(), asked.iter().max());
+                assert!(last.is_none_or(|y| *y < 60), "{what}: row {last:?} of 60");
+                assert_eq!(first.map(strip), last.map(strip), "{what}: rows {first:?} to {last:?}");
+                calls += u32::from(first.is_some());
+            };
+            renderer.frame(&mut framebuffer, Rgb888::CSS_NAVY, draw).expect("a frame");
+            assert_eq!(calls as usize, 60_usize.div_ceil(rows), "{what}");
+            let expected = strips::<Rgb565>(SCREEN, 60, 40_000, Rgb565::CSS_NAVY, |scene| {
+                beyond(scene, &mut scene_rng.clone());
+            });
+            assert_eq!(difference(&framebuffer.pixels, &expected.0, SCREEN.0), None, "{what}");
+            rng.next_u64();
         }
     }
 }

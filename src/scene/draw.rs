@@ -1,18 +1,16 @@
 //! The calls that draw meshes: a mesh, a matrix and a shader come in, and go through [the pipeline](crate#the-pipeline)
-//! from top to bottom. Stages 1 to 7 are in `assemble`, stages 8 to 11 in `replay`.
+//! from top to bottom. Stages 1 to 7 are in `assemble`; stages 8 to 11 of recorded triangles follow in the replay.
 
 use super::assembly::{Assembly, ClampedSlabs, Program};
-use super::painter::{RecordDrawer, SmallRows};
 use super::program::{AssemblyHooks, MeshProgram};
-use super::scan::BoxTest;
 use super::scene::{Draw, Phase, Primitives, Scene};
 use super::state::State;
 use super::vertex_stage::VertexStage;
 use crate::math::Projective;
 use crate::mesh::Mesh;
-use crate::span::{BiasSteps, Shader, SmallResult};
-use crate::target::{Framebuffer, TriangleRecord, Triangles};
-use crate::vertex::{ScreenVertex, Transform};
+use crate::span::Shader;
+use crate::target::Framebuffer;
+use crate::vertex::Transform;
 
 impl<F: Framebuffer> Scene<'_, F> {
     /// Draws a mesh with the default state: back faces are culled, nearer fragments win, and triangles are clipped at
@@ -86,54 +84,6 @@ impl<F: Framebuffer> Scene<'_, F> {
                 // Stages 3 to 7, triangle by triangle: assembly, clipping, culling, recording, faces.
                 assembly.triangles(0..draw.mesh.triangle_count());
             }
-        }
-    }
-
-    /// Draws triangles of this draw in the current strip: stages 8 to 11. These are the recorded ones of the strip, or
-    /// those that wait to be drawn at once, which are taken out of the records. This code is compiled once, for all
-    /// shaders.
-    #[inline(never)]
-    pub(super) fn replay(
-        &mut self,
-        state: &State,
-        bias: Option<BiasSteps>,
-        waiting: bool,
-        drawer: &mut dyn RecordDrawer<F>,
-    ) {
-        let clip = &self.clip_rect(&self.target.rows);
-        let end = Triangles::end_of(self.target.rows.end);
-        let (target, screen) = (&mut self.target, self.screen);
-        let rows = SmallRows::new(screen, clip, state, bias.map(|bias| (bias, state.bias)));
-        let mut triangles = self.records.triangles();
-        let mut test = BoxTest::new(clip);
-        let mut record = TriangleRecord::default();
-        let mut v = [ScreenVertex::new(0, 0, 0); 3];
-        if waiting {
-            triangles.begin_waiting();
-        }
-        let fits = drawer.fits();
-        loop {
-            let mut place = if fits { rows.all(target) } else { None };
-            let draw = |triangles: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]| match &mut place {
-                Some(place) => drawer.small(place, triangles, record, v),
-                None => SmallResult::Large,
-            };
-            let found = if waiting {
-                triangles.waiting_each(&mut record, &mut test.left_out, draw)
-            } else {
-                triangles.replay_each(end, &mut record, draw)
-            };
-            if !found {
-                break;
-            }
-            if !waiting || test.first_row(triangles.positions_of(record.corners)).is_some() {
-                triangles.vertices_of(&record, &mut v);
-                drawer.single((target, screen, clip), &triangles, &record, &mut v);
-            }
-        }
-        if waiting {
-            test.finish(self.stats, triangles.count().into());
-            triangles.clear();
         }
     }
 }

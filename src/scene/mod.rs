@@ -6,12 +6,15 @@
 mod assembly;
 mod canvas;
 mod draw;
+mod hooks;
 mod lines;
 mod overlay;
 mod painter;
 mod program;
+mod replay;
 mod scan;
 mod scene;
+mod small_rows;
 mod state;
 mod stroke;
 mod vertex_stage;

@@ -4,16 +4,15 @@
 //! rectangle are written.
 
 use super::scene::{Scene, Target, check};
-use super::state::{State, Winding};
-use crate::color::PixelFormat;
-use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, first_centre};
+use super::small_rows::SmallRows;
+use super::state::State;
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans};
 use crate::span::{
-    BiasSteps, DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Primitive, Shader, SmallResult,
-    SmallTarget, SmallTriangle, Span, SpanOf, interpolate, set_up_shader, subslice,
+    BiasSteps, DepthBias, DepthState, DepthTest, Primitive, Shader, SmallResult, SmallTriangle, Span, SpanOf,
+    interpolate, set_up_shader, subslice,
 };
-use crate::target::{Framebuffer, TriangleRecord, Triangles, turns as turns_of};
+use crate::target::{Framebuffer, turns as turns_of};
 use crate::vertex::{MAX_IN_REGISTERS, PackedVertex, Projected, ScreenVertex, Varyings, VertexShader, signed_area};
-use core::ops::Range;
 
 /// Draws the triangles of a draw call, with its state and its shader.
 pub(super) struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -31,189 +30,19 @@ pub(super) struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
 pub(super) struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
     /// Draws the spans of a triangle under a depth test: stage 9 of [the pipeline](crate#the-pipeline).
     #[expect(clippy::type_complexity, reason = "an alias would have to repeat the bounds of both types")]
-    spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
+    pub(super) spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
     /// Draws a triangle in the way of small ones, stages 8 and 9, and returns whether it is small.
-    small: Small<F, S>,
+    pub(super) small: Small<F, S>,
     /// Draws triangles in the records.
     pub(super) replay: ReplayBy<F, S>,
     /// Computes the depth bias of a triangle, a part of stage 8, if the state may have one.
-    bias: Option<BiasSteps>,
+    pub(super) bias: Option<BiasSteps>,
 }
 
-/// Draws triangles from the records with a shader.
-pub(super) trait RecordDrawer<F: Framebuffer> {
-    /// Returns whether any triangle may be small.
-    fn fits(&self) -> bool;
-
-    /// Draws a triangle, if it is small.
-    fn small(
-        &mut self,
-        target: &mut SmallTarget<'_, Raw<F>>,
-        triangles: &Triangles<'_>,
-        record: &TriangleRecord,
-        v: [&[u32; 2]; 3],
-    ) -> SmallResult;
-
-    /// Draws a triangle with these vertices, small or not.
-    fn single(
-        &mut self,
-        place: Place<'_, '_, F>,
-        triangles: &Triangles<'_>,
-        record: &TriangleRecord,
-        v: &mut [ScreenVertex; 3],
-    );
-}
-
-/// A place that triangles are drawn to: its pixels, the size of the screen, and the pixels that may be drawn.
-pub(super) type Place<'p, 't, F> = (&'p mut Target<'t, F>, (u16, u16), &'p PixelRect);
-
-/// The [`RecordDrawer`] of a shader under a depth test.
-struct ShaderDrawer<'p, F: Framebuffer, S: Shader<F::Format>, D> {
-    state: &'p State,
-    hooks: &'p RasterHooks<F, S>,
-    shader: &'p S,
-    test: D,
-    varyings: [S::Varyings; 3],
-}
-
-impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for ShaderDrawer<'_, F, S, D> {
-    fn fits(&self) -> bool {
-        fits::<S>()
-    }
-
-    fn small(
-        &mut self,
-        target: &mut SmallTarget<'_, Raw<F>>,
-        triangles: &Triangles<'_>,
-        record: &TriangleRecord,
-        v: [&[u32; 2]; 3],
-    ) -> SmallResult {
-        if fits::<S>() {
-            load::<S>(triangles, record, &mut self.varyings);
-            self.shader.small(SmallTriangle { target, v, test: self.test }, &self.varyings, record.face)
-        } else {
-            SmallResult::Large
-        }
-    }
-
-    fn single(
-        &mut self,
-        (target, screen, clip): Place<'_, '_, F>,
-        triangles: &Triangles<'_>,
-        record: &TriangleRecord,
-        v: &mut [ScreenVertex; 3],
-    ) {
-        load_outlined::<S>(triangles, record, &mut self.varyings);
-        let Self { state, hooks, shader, .. } = *self;
-        Painter { target, screen, clip, state, hooks, shader }.triangle(v, &mut self.varyings, record.face);
-    }
-}
-
-/// Returns whether triangles of a shader may be small. With more varyings, or perspective-correct ones, those take far
-/// longer than the rest of a triangle does.
-const fn fits<S: VertexShader>() -> bool {
-    S::Varyings::LEN <= MAX_IN_REGISTERS && S::Varyings::PERSPECTIVE == 0
-}
-
-/// A pixel of a framebuffer.
-type Raw<F> = <<F as Framebuffer>::Format as PixelFormat>::Raw;
 /// The draw whose triangles are replayed: its state, the functions for it, and its shader.
 type ReplayBy<F, S> = fn(&mut Scene<'_, F>, &State, &RasterHooks<F, S>, &S, waiting: bool);
 type Small<F, S> =
     fn(&mut Painter<'_, '_, F, S>, &[ScreenVertex; 3], &[<S as VertexShader>::Varyings; 3], u32) -> SmallResult;
-
-impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
-    /// Functions under one depth test.
-    ///
-    /// Small triangles have a way of their own under depth tests, and with few varyings that are linear on the screen:
-    /// others take far longer than the rest of a triangle does.
-    const fn by<D: StateTest>() -> Self {
-        Self {
-            spans: |painter, set_up| painter.spans(set_up, D::of(painter.test())),
-            // Without varyings both ways draw the same, and one triangle by itself gains little.
-            small: if fits::<S>() && S::Varyings::LEN > 0 {
-                |painter, v, varyings, flat| painter.small(v, varyings, flat, D::of(painter.test()))
-            } else {
-                |_, _, _, _| SmallResult::Large
-            },
-            replay: |scene, state, hooks, shader, waiting| {
-                if F::RECORDS {
-                    let (test, varyings) = (D::of(state.depth), [S::Varyings::ZERO; 3]);
-                    let mut drawer = ShaderDrawer { state, hooks, shader, test, varyings };
-                    scene.replay(state, hooks.bias, waiting, &mut drawer);
-                }
-            },
-            bias: None,
-        }
-    }
-
-    /// Functions for [`State::DEFAULT`].
-    pub(super) const DEFAULT: Self = if F::DEPTH { Self::by::<DepthLess>() } else { Self::OVER };
-
-    /// Functions without a depth test.
-    const OVER: Self = Self::by::<DepthOff>();
-
-    /// Functions for any state.
-    pub(super) const ANY: Self = if F::DEPTH {
-        Self {
-            spans: |painter, set_up| (Self::of_test(painter.test()).spans)(painter, set_up),
-            small: |painter, v, varyings, flat| (Self::of_test(painter.test()).small)(painter, v, varyings, flat),
-            replay: |scene, state, hooks, shader, waiting| {
-                (Self::of_test(state.depth).replay)(scene, state, hooks, shader, waiting)
-            },
-            bias: Some(DepthBias::steps),
-        }
-    } else {
-        Self { bias: Some(DepthBias::steps), ..Self::OVER }
-    };
-
-    /// Returns the functions for a test.
-    fn of_test(depth: DepthState) -> Self {
-        match depth {
-            DepthState::LESS => Self::by::<DepthLess>(),
-            DepthState::OFF => Self::OVER,
-            _ => Self::by::<DepthDyn>(),
-        }
-    }
-
-    /// Chooses the functions for a state.
-    #[inline(always)]
-    pub(super) fn of(state: &State) -> Self {
-        let by_test = match state.depth {
-            DepthState::LESS => Self::DEFAULT,
-            DepthState::OFF => Self::OVER,
-            _ => Self::ANY,
-        };
-        Self { bias: if state.bias.is_none() { None } else { Self::ANY.bias }, ..by_test }
-    }
-}
-
-/// A depth test that a state may ask for.
-trait StateTest: DepthTest {
-    /// Returns the test of a state.
-    fn of(state: DepthState) -> Self;
-}
-
-impl StateTest for DepthLess {
-    #[inline(always)]
-    fn of(_: DepthState) -> Self {
-        Self
-    }
-}
-
-impl StateTest for DepthOff {
-    #[inline(always)]
-    fn of(_: DepthState) -> Self {
-        Self
-    }
-}
-
-impl StateTest for DepthDyn {
-    #[inline(always)]
-    fn of(state: DepthState) -> Self {
-        Self::new(state)
-    }
-}
 
 impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// Returns the depth test. Without a depth buffer, every fragment passes.
@@ -225,7 +54,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     #[inline]
     pub(super) fn triangle(&mut self, v: &mut [ScreenVertex; 3], varyings: &mut [S::Varyings; 3], flat: u32) {
         turn(varyings, turn_vertices(v));
-        if (self.hooks.small)(self, v, varyings, flat) == SmallResult::Large {
+        self.turned(v, varyings, flat, false);
+    }
+
+    /// Draws a triangle, unless its area is 0. Its highest corner is the first. `large` says that it is known not to be
+    /// small.
+    #[inline(always)]
+    pub(super) fn turned(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32, large: bool) {
+        if large || (self.hooks.small)(self, v, varyings, flat) == SmallResult::Large {
             self.large(v, varyings, flat);
         }
     }
@@ -246,7 +82,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle, if it is small.
     #[inline(never)]
-    fn small<D: DepthTest>(
+    pub(super) fn small<D: DepthTest>(
         &mut self,
         v: &[ScreenVertex; 3],
         varyings: &[S::Varyings; 3],
@@ -299,7 +135,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws the spans between the edges of a triangle, row by row: stage 9 of [the pipeline](crate#the-pipeline).
     #[inline(never)]
-    fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
+    pub(super) fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
         if S::Varyings::LEN > MAX_IN_REGISTERS {
             return self.spans_outlined(set_up, test);
         }
@@ -409,78 +245,6 @@ fn turns([a, b, c]: &[ScreenVertex; 3]) -> u32 {
     turns_of([word(a), word(b), word(c)])
 }
 
-/// The places where small triangles are drawn: all rows at once if they lie one after the other, or one row after the
-/// other.
-pub(super) struct SmallRows<'p> {
-    screen: (u16, u16),
-    clip: &'p PixelRect,
-    clockwise_fronts: bool,
-    bias: Option<(BiasSteps, DepthBias)>,
-    /// The rows that are left.
-    rows: Range<i32>,
-}
-
-impl<'p> SmallRows<'p> {
-    #[inline(always)]
-    pub(super) const fn new(
-        screen: (u16, u16),
-        clip: &'p PixelRect,
-        state: &State,
-        bias: Option<(BiasSteps, DepthBias)>,
-    ) -> Self {
-        Self { screen, clip, clockwise_fronts: matches!(state.front, Winding::Clockwise), bias, rows: 0..0 }
-    }
-
-    /// Begins with the first row of a triangle whose vertices have these second words. Its highest vertex is the first.
-    #[inline(never)]
-    fn begin(&mut self, [a, b, c]: [u32; 3]) {
-        let row = |word: u32| first_centre(word as i32 >> 8);
-        let top = row(a).max(self.clip.y.start);
-        // At least one row, in which a triangle is found to be large.
-        self.rows = top..row(b).max(row(c)).min(self.clip.y.end).max(top + 1);
-    }
-
-    /// Returns all rows, if they lie one after the other.
-    #[inline(never)]
-    pub(super) fn all<'t, F: Framebuffer>(&self, target: &'t mut Target<'_, F>) -> Option<SmallTarget<'t, Raw<F>>> {
-        let (width, rows) = (usize::from(self.screen.0), &target.rows);
-        let color = target.framebuffer.rows(rows.start as u32, width)?;
-        if color.len() < width.wrapping_mul((rows.end - rows.start) as usize) {
-            return None;
-        }
-        Some(self.target(color, target.depth, rows.start, self.clip.y.clone()))
-    }
-
-    /// Returns the next place.
-    #[inline(never)]
-    fn next<'t, F: Framebuffer>(&mut self, target: &'t mut Target<'_, F>) -> Option<SmallTarget<'t, Raw<F>>> {
-        let y = self.rows.next()?;
-        let (width, first) = (usize::from(self.screen.0), target.rows.start);
-        if target
-            .framebuffer
-            .rows(first as u32, width)
-            .is_some_and(|rows| rows.len() >= width.wrapping_mul((target.rows.end - first) as usize))
-        {
-            self.rows.end = y;
-            return self.all(target);
-        }
-        let at = width.wrapping_mul((y - first) as usize);
-        let rows = y.max(self.clip.y.start)..(y + 1).min(self.clip.y.end);
-        Some(self.target(target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, rows))
-    }
-
-    fn target<'t, R>(
-        &self,
-        color: &'t mut [R],
-        depth: &'t mut [u16],
-        first: i32,
-        rows: Range<i32>,
-    ) -> SmallTarget<'t, R> {
-        let Self { screen, clip, clockwise_fronts, bias, .. } = *self;
-        SmallTarget { color, depth, first, columns: clip.x.clone(), rows, screen, clockwise_fronts, bias }
-    }
-}
-
 /// Turns the corners of a triangle with these vertices, so that the highest one comes first.
 #[inline(never)]
 pub(super) fn turn_corners(v: &[ScreenVertex; 3], corners: &mut [u16; 3]) {
@@ -501,22 +265,6 @@ fn pack(v: &[ScreenVertex; 3], words: &mut [[u32; 2]; 3]) {
     for (words, v) in words.iter_mut().zip(v) {
         *words = PackedVertex::new(&Projected::OnScreen(*v)).words();
     }
-}
-
-/// Reads the varyings of a recorded triangle, out of line.
-#[inline(never)]
-fn load_outlined<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, to: &mut [S::Varyings; 3]) {
-    load::<S>(triangles, record, to);
-}
-
-/// Reads the varyings of a recorded triangle. In place, because arrays of varyings would be copied when they are
-/// returned.
-#[inline(always)]
-fn load<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, [a, b, c]: &mut [S::Varyings; 3]) {
-    let [i, j, k] = record.corners;
-    triangles.varyings::<S>(i, a);
-    triangles.varyings::<S>(j, b);
-    triangles.varyings::<S>(k, c);
 }
 
 /// Turns three things, so that number `turns` comes first.

@@ -9,7 +9,8 @@ use embedded_graphics_core::geometry::Size;
 /// Rows of pixels to draw into.
 ///
 /// The rasterizer asks for a row before it draws into it, draws into the slice it gets, and skips pixels after the
-/// end of that slice. A row outside of the buffer is an empty slice.
+/// end of that slice. It asks only for rows of the strip that is being drawn. A row outside of the buffer is an empty
+/// slice.
 pub trait Framebuffer {
     /// The format of the pixels.
     type Format: PixelFormat;

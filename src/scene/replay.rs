@@ -1,0 +1,158 @@
+//! Triangles from the records → stages 8 to 11 of [the pipeline](crate#the-pipeline). They come in with the numbers of
+//! their vertices; small ones are drawn from the words that the vertex stage left, large ones by the painter.
+
+use super::painter::{Painter, RasterHooks};
+use super::scan::BoxTest;
+use super::scene::{Scene, Target};
+use super::small_rows::{Raw, SmallRows};
+use super::state::State;
+use crate::raster::PixelRect;
+use crate::span::{BiasSteps, DepthTest, Shader, SmallResult, SmallTarget, SmallTriangle};
+use crate::target::{Framebuffer, TriangleRecord, Triangles};
+use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, VertexShader};
+
+/// Draws triangles from the records with a shader.
+pub(super) trait RecordDrawer<F: Framebuffer> {
+    /// Returns whether any triangle may be small.
+    fn fits(&self) -> bool;
+
+    /// Draws a triangle, if it is small.
+    fn small(
+        &mut self,
+        target: &mut SmallTarget<'_, Raw<F>>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: [&[u32; 2]; 3],
+    ) -> SmallResult;
+
+    /// Draws a triangle with these vertices. `refused` says that [`small`](Self::small) has just found it to be large.
+    fn single(
+        &mut self,
+        place: Place<'_, '_, F>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: &[ScreenVertex; 3],
+        refused: bool,
+    );
+}
+
+/// A place that triangles are drawn to: its pixels, the size of the screen, and the pixels that may be drawn.
+pub(super) type Place<'p, 't, F> = (&'p mut Target<'t, F>, (u16, u16), &'p PixelRect);
+
+/// The [`RecordDrawer`] of a shader under a depth test.
+pub(super) struct ShaderDrawer<'p, F: Framebuffer, S: Shader<F::Format>, D> {
+    pub(super) state: &'p State,
+    pub(super) hooks: &'p RasterHooks<F, S>,
+    pub(super) shader: &'p S,
+    pub(super) test: D,
+    pub(super) varyings: [S::Varyings; 3],
+}
+
+impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for ShaderDrawer<'_, F, S, D> {
+    fn fits(&self) -> bool {
+        fits::<S>()
+    }
+
+    fn small(
+        &mut self,
+        target: &mut SmallTarget<'_, Raw<F>>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: [&[u32; 2]; 3],
+    ) -> SmallResult {
+        if fits::<S>() {
+            load::<S>(triangles, record, &mut self.varyings);
+            self.shader.small(SmallTriangle { target, v, test: self.test }, &self.varyings, record.face)
+        } else {
+            SmallResult::Large
+        }
+    }
+
+    fn single(
+        &mut self,
+        (target, screen, clip): Place<'_, '_, F>,
+        triangles: &Triangles<'_>,
+        record: &TriangleRecord,
+        v: &[ScreenVertex; 3],
+        refused: bool,
+    ) {
+        if !refused {
+            load_outlined::<S>(triangles, record, &mut self.varyings);
+        }
+        let Self { state, hooks, shader, .. } = *self;
+        Painter { target, screen, clip, state, hooks, shader }.turned(v, &self.varyings, record.face, refused);
+    }
+}
+
+/// Returns whether triangles of a shader may be small. With more varyings, or perspective-correct ones, those take far
+/// longer than the rest of a triangle does.
+pub(super) const fn fits<S: VertexShader>() -> bool {
+    S::Varyings::LEN <= MAX_IN_REGISTERS && S::Varyings::PERSPECTIVE == 0
+}
+
+/// Reads the varyings of a recorded triangle, out of line.
+#[inline(never)]
+fn load_outlined<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, to: &mut [S::Varyings; 3]) {
+    load::<S>(triangles, record, to);
+}
+
+/// Reads the varyings of a recorded triangle. In place, because arrays of varyings would be copied when they are
+/// returned.
+#[inline(always)]
+fn load<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, [a, b, c]: &mut [S::Varyings; 3]) {
+    let [i, j, k] = record.corners;
+    triangles.varyings::<S>(i, a);
+    triangles.varyings::<S>(j, b);
+    triangles.varyings::<S>(k, c);
+}
+
+impl<F: Framebuffer> Scene<'_, F> {
+    /// Draws triangles of this draw in the current strip: stages 8 to 11. These are the recorded ones of the strip, or
+    /// those that wait to be drawn at once, which are taken out of the records. This code is compiled once, for all
+    /// shaders.
+    #[inline(never)]
+    pub(super) fn replay(
+        &mut self,
+        state: &State,
+        bias: Option<BiasSteps>,
+        waiting: bool,
+        drawer: &mut dyn RecordDrawer<F>,
+    ) {
+        let clip = &self.clip_rect(&self.target.rows);
+        let end = Triangles::end_of(self.target.rows.end);
+        let (target, screen) = (&mut self.target, self.screen);
+        let rows = SmallRows::new(screen, clip, state, bias.map(|bias| (bias, state.bias)));
+        let mut triangles = self.records.triangles();
+        let mut test = BoxTest::new(clip);
+        let mut record = TriangleRecord::default();
+        let mut v = [ScreenVertex::new(0, 0, 0); 3];
+        if waiting {
+            triangles.begin_waiting();
+        }
+        let fits = drawer.fits();
+        loop {
+            let mut place = if fits { rows.all(target) } else { None };
+            let tried = place.is_some();
+            let draw = |triangles: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]| match &mut place {
+                Some(place) => drawer.small(place, triangles, record, v),
+                None => SmallResult::Large,
+            };
+            let found = if waiting {
+                triangles.waiting_each(&mut record, &mut test.left_out, draw)
+            } else {
+                triangles.replay_each(end, &mut record, draw)
+            };
+            if !found {
+                break;
+            }
+            if !waiting || test.first_row(triangles.positions_of(record.corners)).is_some() {
+                triangles.vertices_of(&record, &mut v);
+                drawer.single((target, screen, clip), &triangles, &record, &v, tried);
+            }
+        }
+        if waiting {
+            test.finish(self.stats, triangles.count().into());
+            triangles.clear();
+        }
+    }
+}
