@@ -219,21 +219,31 @@ impl Gradients {
 /// `reciprocal` is set, and -32 < `up` < 32.
 ///
 /// These are the results of [`Gradients::gentle`], bit for bit.
+#[inline(always)]
+pub(crate) fn gradients(a: i32, b: i32, reciprocal: u32, up: i32) -> Option<(i32, i32)> {
+    let (dx, dy) = gradients_or_steep(a, b, reciprocal, up);
+    if dx == STEEP { None } else { Some((dx, dy)) }
+}
+
+/// Returns gradients as [`gradients`] does, or [`STEEP`] and 0. Two numbers are returned in registers.
 ///
 /// Not inlined, because its registers would push the values that are live around it to the stack.
 #[inline(never)]
-pub(crate) fn gradients(a: i32, b: i32, reciprocal: u32, up: i32) -> Option<(i32, i32)> {
+fn gradients_or_steep(a: i32, b: i32, reciprocal: u32, up: i32) -> (i32, i32) {
     let (dx, dy) = (high(a, reciprocal), high(b, reciprocal));
     let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;
     if up <= 0 {
         let down = -up & 31;
-        return if bits >> down >> 28 == 0 { Some((dx >> down, dy >> down)) } else { None };
+        return if bits >> down >> 28 == 0 { (dx >> down, dy >> down) } else { (STEEP, 0) };
     }
     // The result has bits of the low words, too.
     let low = |n: i32| (n as u32).wrapping_mul(reciprocal) >> ((32 - up) & 31);
     let (x, y) = ((dx << (up & 31)) as u32 | low(a), (dy << (up & 31)) as u32 | low(b));
-    if up <= 28 && bits >> (28 - up) == 0 { Some((x as i32, y as i32)) } else { None }
+    if up <= 28 && bits >> (28 - up) == 0 { (x as i32, y as i32) } else { (STEEP, 0) }
 }
+
+/// Stands for a gradient that is too large.
+const STEEP: i32 = i32::MIN;
 
 /// Returns the high word of a product with a number whose top bit is set, rounded down.
 #[inline(always)]

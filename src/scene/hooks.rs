@@ -10,13 +10,12 @@ use crate::vertex::Varyings;
 impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
     /// Functions under one depth test.
     ///
-    /// Small triangles have a way of their own under depth tests, and with few varyings that are linear on the screen:
-    /// others take far longer than the rest of a triangle does.
+    /// Small triangles have a way of their own if the shader [`fits`] it.
     const fn by<D: StateTest>() -> Self {
         Self {
             spans: |painter, set_up| painter.spans(set_up, D::of(painter.test())),
             // Without varyings both ways draw the same, and one triangle by itself gains little.
-            small: if fits::<S>() && S::Varyings::LEN > 0 {
+            small: if fits::<F, S>() && S::Varyings::LEN > 0 {
                 |painter, v, varyings, flat| painter.small(v, varyings, flat, D::of(painter.test()))
             } else {
                 |_, _, _, _| SmallResult::Large

@@ -11,7 +11,7 @@ use crate::span::{
     BiasSteps, DepthBias, DepthState, DepthTest, Primitive, Shader, SmallResult, SmallTriangle, Span, SpanOf,
     interpolate, set_up_shader, subslice,
 };
-use crate::target::{Framebuffer, turns as turns_of};
+use crate::target::{Framebuffer, PackedCorners, turns as turns_of};
 use crate::vertex::{MAX_IN_REGISTERS, PackedVertex, Projected, ScreenVertex, Varyings, VertexShader, signed_area};
 
 /// Draws the triangles of a draw call, with its state and its shader.
@@ -92,6 +92,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let mut words = [[0; 2]; 3];
         pack(v, &mut words);
         let [a, b, c] = words.each_ref();
+        let mut packed = [0; 3 * MOST_PACKED];
+        if S::PACKS_SMALL {
+            pack_varyings::<S>(varyings, &mut packed);
+        }
+        let packed = PackedCorners { varyings: &packed, vertices: &[], corners: [0, 1, 2] };
         let (shader, bias) = (self.shader, self.bias_steps());
         let mut result = SmallResult::Outside;
         let mut rows = SmallRows::new(self.screen, self.clip, self.state, bias);
@@ -99,7 +104,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         while let Some(mut target) = rows.next(self.target)
             && result != SmallResult::Large
         {
-            result = shader.small(SmallTriangle { target: &mut target, v: [a, b, c], test }, varyings, flat);
+            let triangle = SmallTriangle { target: &mut target, v: [a, b, c], test };
+            result = if S::PACKS_SMALL {
+                shader.small_packed(triangle, &packed)
+            } else {
+                shader.small(triangle, varyings, flat)
+            };
         }
         result
     }
@@ -264,6 +274,21 @@ fn turn_vertices(v: &mut [ScreenVertex; 3]) -> u32 {
 fn pack(v: &[ScreenVertex; 3], words: &mut [[u32; 2]; 3]) {
     for (words, v) in words.iter_mut().zip(v) {
         *words = PackedVertex::new(&Projected::OnScreen(*v)).words();
+    }
+}
+
+/// Most words of a vertex that small triangles are drawn from.
+const MOST_PACKED: usize = 4;
+
+/// Packs varyings, as the records do.
+#[inline(never)]
+fn pack_varyings<S: VertexShader>(varyings: &[S::Varyings; 3], packed: &mut [u32; 3 * MOST_PACKED]) {
+    const { assert!(S::WORDS <= MOST_PACKED) };
+    for (k, varyings) in varyings.iter().enumerate() {
+        S::store(
+            varyings,
+            packed.get_mut(S::WORDS * k..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default(),
+        );
     }
 }
 

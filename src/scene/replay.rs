@@ -50,7 +50,7 @@ pub(super) struct ShaderDrawer<'p, F: Framebuffer, S: Shader<F::Format>, D> {
 
 impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for ShaderDrawer<'_, F, S, D> {
     fn fits(&self) -> bool {
-        fits::<S>()
+        fits::<F, S>()
     }
 
     fn small(
@@ -60,9 +60,12 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
         record: &TriangleRecord,
         v: [&[u32; 2]; 3],
     ) -> SmallResult {
-        if fits::<S>() {
+        let triangle = SmallTriangle { target, v, test: self.test };
+        if S::PACKS_SMALL {
+            self.shader.small_packed(triangle, &triangles.packed_corners::<S>(record.corners))
+        } else if fits::<F, S>() {
             load::<S>(triangles, record, &mut self.varyings);
-            self.shader.small(SmallTriangle { target, v, test: self.test }, &self.varyings, record.face)
+            self.shader.small(triangle, &self.varyings, record.face)
         } else {
             SmallResult::Large
         }
@@ -76,7 +79,7 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
         v: &[ScreenVertex; 3],
         refused: bool,
     ) {
-        if !refused {
+        if !refused || S::PACKS_SMALL {
             load_outlined::<S>(triangles, record, &mut self.varyings);
         }
         let Self { state, hooks, shader, .. } = *self;
@@ -85,9 +88,9 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
 }
 
 /// Returns whether triangles of a shader may be small. With more varyings, or perspective-correct ones, those take far
-/// longer than the rest of a triangle does.
-pub(super) const fn fits<S: VertexShader>() -> bool {
-    S::Varyings::LEN <= MAX_IN_REGISTERS && S::Varyings::PERSPECTIVE == 0
+/// longer than the rest of a triangle does, unless the shader has a way of its own.
+pub(super) const fn fits<F: Framebuffer, S: Shader<F::Format>>() -> bool {
+    S::PACKS_SMALL || S::Varyings::LEN <= MAX_IN_REGISTERS && S::Varyings::PERSPECTIVE == 0
 }
 
 /// Reads the varyings of a recorded triangle, out of line.

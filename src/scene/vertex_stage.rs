@@ -111,12 +111,11 @@ impl<S: VertexShader> VertexStage<'_, S> {
     fn varyings(&self, index: usize) -> S::Varyings {
         let mut varyings = self.shader.vertex(&VertexRef::new(self.mesh, index));
         if S::Varyings::PERSPECTIVE > 0 {
-            let w = if S::DISPLACES {
-                self.transformed(index).w
+            varyings.set_inverse_w(if S::DISPLACES {
+                inverse_w(&self.transformed(index))
             } else {
-                self.transform.w(&self.mesh.data().positions, index)
-            };
-            varyings.set_inverse_w(inverse_w(&ClipVertex { w, ..ClipVertex::default() }));
+                self.transform.inverse_w(&self.mesh.data().positions, index)
+            });
         }
         varyings
     }

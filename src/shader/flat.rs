@@ -92,7 +92,7 @@ impl<P: PixelFormat, S: Surface> Shader<P> for Flat<S> {
         if P::DITHER.is_some() {
             triangle.draw_spans(self, corners, flat)
         } else {
-            triangle.draw(&mut ValueBrush(P::pack(unpacked(flat))))
+            triangle.draw(&ValueBrush(P::pack(unpacked(flat))))
         }
     }
 }

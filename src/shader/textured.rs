@@ -4,8 +4,10 @@ use super::mipmap::{BLOCK, Levels, Mipmapped, OneLevel};
 use super::surface::Surface;
 use crate::color::PixelFormat;
 use crate::span::{
-    DepthTest, Fragment, Primitive, STEP, Shader, SpanOf, TriangleSetup, UvStepper, draw_fragments, texture_span,
+    DepthTest, Fragment, Light, Primitive, STEP, Shader, SmallResult, SmallTriangle, SpanOf, TexelBrush, TexelSource,
+    TriangleSetup, UvStepper, draw_fragments, texture_span,
 };
+use crate::target::PackedCorners;
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
 use crate::vertex::{Perspective, VertexRef, VertexShader};
 use core::marker::PhantomData;
@@ -16,6 +18,12 @@ use embedded_graphics_core::geometry::Size;
 ///
 /// The mesh's coordinates go from 0 to 1 over the texture; it repeats, and its nearest texels are shown, unless another
 /// [`Wrap`] and [`Filter`] are chosen. Texels whose alpha is below one half are not drawn.
+///
+/// # Small triangles
+/// Triangles of up to 60 × 25 px, as most of a model's are, take a shorter way if perspective moves none of their
+/// texels by more than 1/16 texel, or 1/32 at a step of 1. There, coordinates are planes on the screen, and nothing is
+/// divided. A triangle that the left or the right edge of the viewport cuts takes the other way, so scrolling may move
+/// its texels by as much. Mip chains have no shorter way.
 ///
 /// ```
 /// use zstrip::shader::Textured;
@@ -165,6 +173,43 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
             span = rest;
         }
     }
+
+    const PACKS_SMALL: bool = !L::MANY;
+
+    #[inline(always)]
+    fn small_packed<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &PackedCorners<'_>,
+    ) -> SmallResult {
+        match corners.words::<3>() {
+            Some(words) if !L::MANY => triangle.draw(&TexelBrush::new(self, words)),
+            _ => SmallResult::Large,
+        }
+    }
+}
+
+impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> TexelSource<P>
+    for Textured<'_, T, W, F, L, N>
+{
+    const LIT: bool = false;
+    const RGB565: bool = false;
+    const REPEATS: bool = W::REPEATS;
+    const EXACT: bool = N == 1;
+
+    #[inline(always)]
+    fn size(&self) -> Size {
+        self.level(0).map_or(Size::zero(), Texture::size)
+    }
+
+    #[inline(always)]
+    fn pixel(&self, uv: [i32; 2], _: Light, position: (i32, i32)) -> Option<P::Raw> {
+        let texture = self.level(0)?;
+        if P::ALPHA || P::DITHER.is_some() {
+            return visible::<P>(F::rgba::<T, W>(texture, uv), position);
+        }
+        F::pixel::<P, T, W>(texture, uv)
+    }
 }
 
 impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a, T, W, F, L, N> {
@@ -288,5 +333,44 @@ impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, cons
         let [r, g, b, a] = F::rgba::<T, W>(self.texture.texture(fragment)?, fragment.varyings.corrected());
         let [lr, lg, lb] = fragment.varyings.linear() else { return None };
         visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
+    }
+    const PACKS_SMALL: bool = !L::MANY;
+
+    #[inline(always)]
+    fn small_packed<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &PackedCorners<'_>,
+    ) -> SmallResult {
+        match corners.words::<4>() {
+            Some(words) if !L::MANY => triangle.draw(&TexelBrush::new(self, words)),
+            _ => SmallResult::Large,
+        }
+    }
+}
+
+impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, const N: usize> TexelSource<P>
+    for LitTexture<'_, T, S, W, F, L, N>
+{
+    const LIT: bool = true;
+    /// Texels and pixels of 16 bits are multiplied in those bits.
+    const RGB565: bool = P::PACKED && P::DITHER.is_none() && !P::ALPHA && F::NEAREST && T::IS_RGB565;
+    const REPEATS: bool = W::REPEATS;
+    const EXACT: bool = N == 1;
+
+    #[inline(always)]
+    fn size(&self) -> Size {
+        self.texture.level(0).map_or(Size::zero(), Texture::size)
+    }
+
+    #[inline(always)]
+    fn pixel(&self, uv: [i32; 2], light: Light, position: (i32, i32)) -> Option<P::Raw> {
+        let texture = self.texture.level(0)?;
+        if <Self as TexelSource<P>>::RGB565 {
+            return Some(P::from_rgb565(light.on_rgb565(F::rgb565::<T, W>(texture, uv))));
+        }
+        let [r, g, b, a] = F::rgba::<T, W>(texture, uv);
+        let [lr, lg, lb] = light.channels();
+        visible::<P>([under(r, lr), under(g, lg), under(b, lb), a], position)
     }
 }

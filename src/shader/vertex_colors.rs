@@ -47,7 +47,7 @@ impl<P: PixelFormat, S: VertexColors> Shader<P> for S {
         flat: u32,
     ) -> SmallResult {
         if ChannelBrush::<P>::FITS {
-            triangle.draw(&mut ChannelBrush::new(corners))
+            triangle.draw(&ChannelBrush::new(corners))
         } else {
             triangle.draw_spans(self, corners, flat)
         }

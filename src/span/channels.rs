@@ -10,7 +10,7 @@
 //! So a triangle takes three planes of 32 bits and nothing per row, and a pixel takes two additions.
 
 use super::depth::DepthTest;
-use super::small::Brush;
+use super::small::{Brush, BrushRows};
 use crate::color::PixelFormat;
 use crate::raster::{ShortPlanes, high};
 use core::marker::PhantomData;
@@ -21,11 +21,15 @@ const LEFT_OUT: u32 = 13;
 /// Draws a small triangle whose varyings are channels in 8.16, squeezed to 0.5..=254.5.
 pub(crate) struct ChannelBrush<'c, P> {
     corners: &'c [[i32; 3]; 3],
+    format: PhantomData<P>,
+}
+
+/// The spans of a [`ChannelBrush`].
+pub(crate) struct ChannelRows {
     /// The words at the first column of the row, and their changes.
     at: [u32; 2],
     dx: [u32; 2],
     dy: [u32; 2],
-    format: PhantomData<P>,
 }
 
 impl<'c, P: PixelFormat> ChannelBrush<'c, P> {
@@ -34,7 +38,7 @@ impl<'c, P: PixelFormat> ChannelBrush<'c, P> {
 
     #[inline(always)]
     pub(crate) fn new(corners: &'c [[i32; 3]; 3]) -> Self {
-        Self { corners, at: [0; 2], dx: [0; 2], dy: [0; 2], format: PhantomData }
+        Self { corners, format: PhantomData }
     }
 }
 
@@ -57,10 +61,12 @@ fn channel([a, b, c]: [i32; 3], planes: &ShortPlanes, down: u32, half: i32) -> [
 impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ChannelBrush<'_, P> {
     const PLANES: bool = true;
 
+    type Rows = ChannelRows;
+
     #[inline(always)]
-    fn set_up(&mut self, planes: &ShortPlanes, swapped: bool, _: (i32, i32), _: i32) -> bool {
+    fn set_up(&self, planes: &ShortPlanes, swapped: bool, _: (i32, i32), _: i32) -> Option<ChannelRows> {
         // Of areas below 2⁻⁷ px², changes would lose bits.
-        let Some(down @ 1..) = 23_u32.checked_sub(planes.shift) else { return false };
+        let Some(down @ 1..) = 23_u32.checked_sub(planes.shift) else { return None };
         let half = 1 << ((down - 1) & 31);
         let [a, mut b, mut c] = self.corners.each_ref();
         if swapped {
@@ -71,12 +77,13 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ChannelBrush<'_, P> {
         let pair = |red: u32, green: u32| (red << 16).wrapping_add(green);
         let [r, r_dx, r_dy] = channel(values(0), planes, down, half);
         let [g, g_dx, g_dy] = channel(values(1), planes, down, half);
-        (self.at[0], self.dx[0], self.dy[0]) = (pair(r, g), pair(r_dx, g_dx), pair(r_dy, g_dy));
+        let (at, dx, dy) = (pair(r, g), pair(r_dx, g_dx), pair(r_dy, g_dy));
         let [b, b_dx, b_dy] = channel(values(2), planes, down, half);
-        (self.at[1], self.dx[1], self.dy[1]) = (b << 16, b_dx << 16, b_dy << 16);
-        true
+        Some(ChannelRows { at: [at, b << 16], dx: [dx, b_dx << 16], dy: [dy, b_dy << 16] })
     }
+}
 
+impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ChannelRows {
     #[inline(always)]
     fn next_row(&mut self) {
         self.at[0] = self.at[0].wrapping_add(self.dy[0]);

@@ -14,6 +14,7 @@ mod shader;
 mod small;
 mod solid;
 mod span;
+mod texels;
 mod textured;
 
 pub(crate) use channels::ChannelBrush;
@@ -30,4 +31,5 @@ pub(crate) use small::subslice;
 pub use small::{SmallResult, SmallTarget, SmallTriangle};
 pub(crate) use solid::{ValueBrush, flat_span};
 pub use span::{Fragment, Primitive, Span, TriangleSetup};
+pub(crate) use texels::{Light, TexelBrush, TexelSource};
 pub(crate) use textured::{STEP, UvStepper, texture_span};

@@ -2,11 +2,13 @@
 
 use super::depth::{DepthDyn, DepthState, DepthTest};
 use super::perspective::{correct_at, longest_log_step, straight_log_step};
-use super::small::{Brush, SmallResult, SmallTriangle};
+use super::small::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
 use crate::raster::{Gradients, ShortPlanes, homogenize, straighten, widen};
+use crate::target::PackedCorners;
 use crate::vertex::{MAX_IN_REGISTERS, PackedVertex, ScreenVertex, Side, Varyings, VertexShader};
+use core::marker::PhantomData;
 
 /// The programmable fragment stage: colours pixels of format `P`.
 ///
@@ -155,6 +157,20 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         flat: u32,
     ) -> SmallResult {
         triangle.draw_spans(self, corners, flat)
+    }
+
+    /// Set if small triangles are drawn from packed varyings, by [`small_packed`](Self::small_packed).
+    const PACKS_SMALL: bool = false;
+
+    /// Draws a triangle, if it is small, from the words that [`store`](VertexShader::store) packed at its corners.
+    #[inline(always)]
+    fn small_packed<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &PackedCorners<'_>,
+    ) -> SmallResult {
+        let _ = (triangle, corners);
+        SmallResult::Large
     }
 }
 
@@ -379,10 +395,9 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
         corners: &[S::Varyings; 3],
         flat: u32,
     ) -> SmallResult {
-        let primitive = Primitive::constant(S::Varyings::ZERO, flat, Side::Front, S::Setup::default());
         let (screen, clockwise_fronts) = (self.target.screen, self.target.clockwise_fronts);
-        let mut brush = ShaderBrush { shader, corners, v: self.v, screen, clockwise_fronts, primitive, place: (0, 0) };
-        self.draw(&mut brush)
+        let brush = ShaderBrush { shader, corners, flat, v: self.v, screen, clockwise_fronts, format: PhantomData };
+        self.draw(&brush)
     }
 }
 
@@ -390,34 +405,51 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
 struct ShaderBrush<'s, P: PixelFormat, S: Shader<P> + ?Sized> {
     shader: &'s S,
     corners: &'s [S::Varyings; 3],
+    flat: u32,
     v: [&'s [u32; 2]; 3],
     screen: (u16, u16),
     clockwise_fronts: bool,
+    format: PhantomData<P>,
+}
+
+/// The spans of a [`ShaderBrush`].
+struct ShaderRows<'s, P: PixelFormat, S: Shader<P> + ?Sized> {
+    shader: &'s S,
     primitive: Primitive<S::Varyings, S::Setup>,
     /// The first column, and the row.
     place: (i32, i32),
 }
 
-impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> Brush<P, D> for ShaderBrush<'_, P, S> {
+impl<'s, P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> Brush<P, D> for ShaderBrush<'s, P, S> {
     const PLANES: bool = false;
 
+    type Rows = ShaderRows<'s, P, S>;
+
     #[inline(always)]
-    fn set_up(&mut self, planes: &ShortPlanes, swapped: bool, place: (i32, i32), dz_dx: i32) -> bool {
-        self.place = place;
-        self.primitive.side = if swapped == self.clockwise_fronts { Side::Front } else { Side::Back };
-        self.primitive.dz_dx = dz_dx;
+    fn set_up(
+        &self,
+        planes: &ShortPlanes,
+        swapped: bool,
+        place: (i32, i32),
+        dz_dx: i32,
+    ) -> Option<ShaderRows<'s, P, S>> {
+        let side = if swapped == self.clockwise_fronts { Side::Front } else { Side::Back };
+        let mut primitive = Primitive::constant(S::Varyings::ZERO, self.flat, side, S::Setup::default());
+        primitive.dz_dx = dz_dx;
         let (b, c) = (planes.b, planes.c);
         let area = i64::from(b.1 * c.0 - b.0 * c.1);
         if S::Varyings::LEN > 0 {
-            interpolate_packed(self.shader, self.v, self.screen, self.corners, &mut self.primitive);
+            interpolate_packed(self.shader, self.v, self.screen, self.corners, &mut primitive);
         } else {
             let first = PackedVertex(*self.v[0]);
             let first = [first.x(), first.y()];
-            set_up_shader(self.shader, first, self.corners, area.unsigned_abs(), &mut self.primitive);
+            set_up_shader(self.shader, first, self.corners, area.unsigned_abs(), &mut primitive);
         }
-        true
+        Some(ShaderRows { shader: self.shader, primitive, place })
     }
+}
 
+impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for ShaderRows<'_, P, S> {
     #[inline(always)]
     fn next_row(&mut self) {
         self.place.1 += 1;

@@ -59,15 +59,21 @@ pub enum SmallResult {
     Large,
 }
 
-/// Draws the spans of a small triangle, from the top to the bottom.
+/// Draws small triangles.
 pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
     /// Set if the brush has planes besides depth.
     const PLANES: bool;
 
-    /// Sets up a triangle, of which (`column`, `row`) is the first pixel: spans are counted from there. `swapped` says
-    /// that the last two corners have changed places in `planes`. Returns `false` if the brush cannot draw it.
-    fn set_up(&mut self, planes: &ShortPlanes, swapped: bool, place: (i32, i32), dz_dx: i32) -> bool;
+    /// Draws the spans of a triangle.
+    type Rows: BrushRows<P, D>;
 
+    /// Sets up a triangle, of which (`column`, `row`) is the first pixel: spans are counted from there. `swapped` says
+    /// that the last two corners have changed places in `planes`. Returns `None` if the brush cannot draw it.
+    fn set_up(&self, planes: &ShortPlanes, swapped: bool, place: (i32, i32), dz_dx: i32) -> Option<Self::Rows>;
+}
+
+/// Draws the spans of a small triangle, from the top to the bottom.
+pub(crate) trait BrushRows<P: PixelFormat, D: DepthTest> {
     /// Goes on to the next row.
     fn next_row(&mut self);
 
@@ -78,7 +84,7 @@ pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
 impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
     /// Draws the triangle with a brush, if it is small.
     #[inline(always)]
-    pub(crate) fn draw<B: Brush<P, D>>(self, brush: &mut B) -> SmallResult {
+    pub(crate) fn draw<B: Brush<P, D>>(self, brush: &B) -> SmallResult {
         let [a, b, c] = self.v;
         draw_small(self.target, a, b, c, brush, self.test)
     }
@@ -95,7 +101,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     a: &[u32; 2],
     b: &[u32; 2],
     c: &[u32; 2],
-    brush: &mut B,
+    brush: &B,
     test: D,
 ) -> SmallResult {
     let (a, b, c) = (PackedVertex(*a), PackedVertex(*b), PackedVertex(*c));
@@ -139,7 +145,10 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         let (n, m) = planes.numerators(dz_b, dz_c);
         // 2²⁴ n / area.
         let Some((dx, dy)) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 7) else {
-            return SmallResult::Large;
+            // Nearly all of these are seen edge on, and have no pixel.
+            let rows = row..end.min(target.rows.end);
+            let covers = covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len());
+            return if covers { SmallResult::Large } else { SmallResult::Drawn };
         };
         (dz_dx, dz_dy) = (dx, dy);
         // As `Gradients` has it: from the vertex to the centre of its pixel, and from there on.
@@ -152,9 +161,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     if let Some(bias) = &target.bias {
         depth = depth.wrapping_add(biased(bias, [z, bz, cz], dz_dx, dz_dy));
     }
-    if !brush.set_up(&planes, swapped, (column, row), dz_dx) {
-        return SmallResult::Large;
-    }
+    let Some(mut rows) = brush.set_up(&planes, swapped, (column, row), dz_dx) else { return SmallResult::Large };
     let sides = core::hint::black_box([bx, by, cx, cy]);
     let start = ax - (column << 8);
     let p = 256 * row + 128 - ay;
@@ -170,41 +177,66 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else {
         return SmallResult::Drawn;
     };
-    // The rows down to the bend, and those from there on.
-    let bend = left_end.min(right_end);
-    let (mut count, mut rest) = (bend - row, left_end.max(right_end) - bend.max(row));
     // A single row may be shorter than the screen. (The first column may be -1, without a pixel in it.)
     let limit = if length < width { (length as i32 - column).clamp(0, 63) as u32 } else { 63 };
+    right.limit(limit);
+    // Rows before the bend, and those from there on.
+    let bend = left_end.min(right_end) - row;
+    let (mut count, mut rest) = (bend, left_end.max(right_end) - row - bend);
     loop {
-        right.limit(limit);
-        while count > 0 {
-            let (from, past) = (left.column(), right.column());
-            if from < past {
-                let (start, length) = (at.wrapping_add(from as usize), (past - from) as usize);
-                let Some(depths) = subslice(depths, start, length) else { return SmallResult::Drawn };
-                let Some(colors) = subslice(colors, start, length) else { return SmallResult::Drawn };
-                let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
-                brush.span(colors, depths, z, dz_dx, from as i32, test);
+        if count <= 0 {
+            if rest <= 0 {
+                return SmallResult::Drawn;
             }
-            left.step();
-            right.step();
-            at = at.wrapping_add(width);
-            depth = depth.wrapping_add_signed(dz_dy);
-            brush.next_row();
-            count -= 1;
+            (count, rest) = (count + rest, 0);
+            let p = p + 256 * bend.max(0);
+            let [bx, by, cx, cy] = sides;
+            if right_end < left_end {
+                right = ShortEdge::outlined(start + cx, bx - cx, by - cy, p - cy);
+                right.limit(limit);
+            } else {
+                left = ShortEdge::outlined(start + bx, cx - bx, cy - by, p - by);
+            }
         }
-        if rest <= 0 {
-            return SmallResult::Drawn;
+        let (from, past) = (left.column(), right.column());
+        if from < past {
+            let (start, length) = (at.wrapping_add(from as usize), (past - from) as usize);
+            let Some(depths) = subslice(depths, start, length) else { return SmallResult::Drawn };
+            let Some(colors) = subslice(colors, start, length) else { return SmallResult::Drawn };
+            let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
+            rows.span(colors, depths, z, dz_dx, from as i32, test);
         }
-        let p = p + 256 * (bend - row).max(0);
-        let [bx, by, cx, cy] = sides;
-        if right_end < left_end {
-            right = ShortEdge::outlined(start + cx, bx - cx, by - cy, p - cy);
-        } else {
-            left = ShortEdge::outlined(start + bx, cx - bx, cy - by, p - by);
-        }
-        (count, rest) = (rest, 0);
+        left.step();
+        right.step();
+        at = at.wrapping_add(width);
+        depth = depth.wrapping_add_signed(dz_dy);
+        rows.next_row();
+        count -= 1;
     }
+}
+
+/// Returns whether a triangle covers a pixel in some rows. Its highest corner is at `x`, relative to the first column;
+/// the others are relative to it, with that on the left first. The first row's centres are `p` below it. All in 24.8.
+#[inline(never)]
+fn covers_pixels([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
+    let (mut left, mut right) = (ShortEdge::outlined(x, bx, by, p), ShortEdge::outlined(x, cx, cy, p));
+    let mut y = p;
+    let (mut left_bends, mut right_bends) = (by < cy, cy < by);
+    for _ in 0..rows {
+        if left_bends && y >= by {
+            (left, left_bends) = (ShortEdge::outlined(x + bx, cx - bx, cy - by, y - by), false);
+        }
+        if right_bends && y >= cy {
+            (right, right_bends) = (ShortEdge::outlined(x + cx, bx - cx, by - cy, y - cy), false);
+        }
+        if left.column() < right.column() {
+            return true;
+        }
+        left.step();
+        right.step();
+        y += 256;
+    }
+    false
 }
 
 /// Returns what a bias adds to the depths of a triangle with these depths, 16.16.

@@ -22,7 +22,7 @@
 use super::color_setup::ColorSetup;
 use super::depth::{DepthTest, RUN, count_passing_prefix};
 use super::packed::packed_span;
-use super::small::Brush;
+use super::small::{Brush, BrushRows};
 use super::span::{Primitive, Span};
 use crate::color::{PixelFormat, fill, squeeze, unpacked};
 use crate::math::SMALL_CORE;
@@ -76,11 +76,15 @@ pub(crate) struct ValueBrush<R>(pub(crate) R);
 impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ValueBrush<P::Raw> {
     const PLANES: bool = false;
 
-    #[inline(always)]
-    fn set_up(&mut self, _: &ShortPlanes, _: bool, _: (i32, i32), _: i32) -> bool {
-        true
-    }
+    type Rows = Self;
 
+    #[inline(always)]
+    fn set_up(&self, _: &ShortPlanes, _: bool, _: (i32, i32), _: i32) -> Option<Self> {
+        Some(Self(self.0))
+    }
+}
+
+impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ValueBrush<P::Raw> {
     #[inline(always)]
     fn next_row(&mut self) {}
 

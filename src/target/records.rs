@@ -98,6 +98,40 @@ pub(crate) const fn turns([a, b, c]: [i32; 3]) -> u32 {
     }
 }
 
+/// The packed varyings of a triangle's corners.
+#[derive(Clone, Copy, Debug)]
+pub struct PackedCorners<'r> {
+    /// Words of varyings, those of one vertex after the other.
+    pub(crate) varyings: &'r [u32],
+    /// Words of all vertices, among them those that the clipper added.
+    pub(crate) vertices: &'r [u32],
+    /// Numbers of the corners.
+    pub(crate) corners: [u16; 3],
+}
+
+impl<'r> PackedCorners<'r> {
+    /// Returns the words of each corner, `N` each.
+    #[inline(always)]
+    pub(crate) fn words<const N: usize>(&self) -> Option<[&'r [u32; N]; 3]> {
+        let [i, j, k] = self.corners;
+        Some([self.corner(i)?, self.corner(j)?, self.corner(k)?])
+    }
+
+    #[inline(always)]
+    fn corner<const N: usize>(&self, index: u16) -> Option<&'r [u32; N]> {
+        match self.varyings.get(N * usize::from(index)..).and_then(<[u32]>::first_chunk) {
+            Some(words) => Some(words),
+            None => self.added(index),
+        }
+    }
+
+    /// Returns the words of a corner that the clipper added.
+    #[inline(never)]
+    fn added<const N: usize>(&self, index: u16) -> Option<&'r [u32; N]> {
+        self.vertices.get((N + VERTEX_WORDS) * usize::from(index) + VERTEX_WORDS..)?.first_chunk()
+    }
+}
+
 /// Words that triangles are put into, from the end. They are in no strip's list yet.
 #[derive(Debug)]
 pub(crate) struct Room<'r> {
@@ -371,6 +405,14 @@ impl<'r> Triangles<'r> {
             (S::WORDS + VERTEX_WORDS) * index + VERTEX_WORDS
         };
         S::load(self.vertices.get(at..).and_then(|rest| rest.get(..S::WORDS)).unwrap_or_default())
+    }
+
+    /// Returns the packed varyings of a triangle's corners.
+    #[inline(always)]
+    pub(crate) fn packed_corners<S: VertexShader>(&self, corners: [u16; 3]) -> PackedCorners<'r> {
+        let ([i, j, k], count) = (corners, self.positions.len());
+        let varyings = self.vertices.get(VERTEX_WORDS * count..(VERTEX_WORDS + S::WORDS) * count).unwrap_or_default();
+        PackedCorners { varyings, vertices: self.vertices, corners: [i, j, k] }
     }
 
     #[inline(always)]

@@ -4,7 +4,7 @@
 
 use super::image::Texture;
 use super::texel::OPAQUE;
-use crate::color::{PixelFormat, fold_rgb565, mix_spread_rgb565, spread_rgb565};
+use crate::color::{PixelFormat, fold_rgb565, mix_spread_rgb565, pack_rgb565, spread_rgb565};
 use crate::math::{leading_zeros, mul_high, reciprocal};
 use embedded_graphics_core::geometry::Size;
 
@@ -86,6 +86,13 @@ pub trait Filter: Copy {
 
     /// Returns the pixel at coordinates in 16.16; `None` if it is transparent.
     fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Option<P::Raw>;
+
+    /// Returns the colour at coordinates in 16.16 as RGB565.
+    #[inline]
+    fn rgb565<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> u16 {
+        let [r, g, b, _] = Self::rgba::<T, W>(texture, uv);
+        pack_rgb565([r, g, b])
+    }
 }
 
 /// Takes the texel that the coordinates lie in.
@@ -113,6 +120,12 @@ impl Filter for Nearest {
     fn pixel<P: PixelFormat, T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> Option<P::Raw> {
         let (x, y) = Self::texel::<T, W>(texture, uv);
         texture.pixel::<P>(x, y)
+    }
+
+    #[inline(always)]
+    fn rgb565<T: Texture, W: Wrap>(texture: &T, uv: [i32; 2]) -> u16 {
+        let (x, y) = Self::texel::<T, W>(texture, uv);
+        texture.rgb565(x, y)
     }
 }
 

@@ -113,12 +113,25 @@ pub fn inverse_w(v: &ClipVertex) -> u32 {
     reciprocal(((v.w << (exponent - 1)) >> 31) as u32) & !63 | exponent
 }
 
+/// Returns 1 / w as [`inverse_w`] does, bit by bit, for 2²⁶ ≤ w < 2³¹.
+#[inline(always)]
+pub(super) fn inverse_w_short(w: i32) -> u32 {
+    let zeros = zeros_short(w);
+    reciprocal((w as u32) << zeros) & !63 | (32 + zeros)
+}
+
+/// Returns the leading zeros of a number in 2²⁶..2³¹, 1 to 5. The mask tells the compiler that no shift is by more than
+/// 31.
+#[inline(always)]
+const fn zeros_short(w: i32) -> u32 {
+    7 & if SMALL_CORE { byte_zeros((w >> 24) as u8) } else { (w as u32).leading_zeros() }
+}
+
 /// Projects 32-bit clip coordinates with 2²⁶ ≤ w ≤ 2³⁰ + 1, |x| and |y| at most that large, and 0 ≤ z ≤ w. The result
 /// equals that of [`project`], bit by bit.
 #[inline]
 pub(super) fn project_short([x, y, z, w]: [i32; 4]) -> ScreenVertex {
-    // 1 to 5. The mask tells the compiler that no shift is by more than 31.
-    let zeros = 7 & if SMALL_CORE { byte_zeros((w >> 24) as u8) } else { (w as u32).leading_zeros() };
+    let zeros = zeros_short(w);
     divide(x >> (7 - zeros), y >> (7 - zeros), (z as u32) << zeros, (w as u32) << zeros)
 }
 
@@ -236,6 +249,7 @@ mod tests {
             let (x, y, z) = (next(i32::MAX) - (1 << 30), next(i32::MAX) - (1 << 30), next(w));
             let long = ClipVertex { x: x.into(), y: y.into(), z: z.into(), w: w.into() };
             assert_eq!(Some(project_short([x, y, z, w])), project(&long), "{x} {y} {z} {w}");
+            assert_eq!(inverse_w_short(w), inverse_w(&long), "{w}");
         }
     }
 

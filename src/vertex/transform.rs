@@ -6,7 +6,7 @@
 //! are screen positions in units of 512 px from the screen's corner, and z / w is depth.
 
 use super::clip::{ClipVertex, Outcode};
-use super::project::{DepthScale, ScreenVertex, UniformDepth, project, project_short};
+use super::project::{DepthScale, ScreenVertex, UniformDepth, inverse_w, inverse_w_short, project, project_short};
 use super::viewport::Viewport;
 use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long, mul_wide};
 use crate::mesh::{Bounds, Mesh, Positions};
@@ -418,6 +418,16 @@ impl Transform {
     pub(crate) fn w(&self, positions: &Positions<'_>, index: usize) -> i64 {
         let [.., w] = &self.rows;
         w.apply(&self.numbers(positions, index), self.short)
+    }
+
+    /// Returns 1 / w of a mesh vertex, see [`inverse_w`].
+    #[inline(always)]
+    pub(crate) fn inverse_w(&self, positions: &Positions<'_>, index: usize) -> u32 {
+        if let (Positions::Quantized { points, .. }, true) = (positions, self.short) {
+            let [.., w] = &self.rows;
+            return inverse_w_short(w.apply_short(points.get(index).copied().unwrap_or_default()));
+        }
+        inverse_w(&ClipVertex { w: self.w(positions, index), ..ClipVertex::default() })
     }
 
     /// Returns the four numbers of a vertex that the rows are applied to.

@@ -174,13 +174,20 @@ impl<const P: usize, const N: usize> Perspective<P, N> {
     pub const fn new<const L: usize>(corrected: [i32; P], linear: [i32; L]) -> Self {
         const { assert!(P > 0 && P + L + 1 == N, "N is one more than all varyings, for 1 / w") };
         let mut all = [0; N];
+        // One by one: at `opt-level = "s"`, a loop would stay a loop, and go through memory.
         let mut k = 0;
+        macro_rules! put {
+            ($($more:ident)*) => { $(
+                let $more = k;
+                if $more < N {
+                    all[$more] = value::<P, L>(&corrected, &linear, $more);
+                }
+                k = $more + 1;
+            )* };
+        }
+        put!(a b c d e f g h);
         while k < N {
-            if k < P {
-                all[k] = corrected[k];
-            } else if k < P + L {
-                all[k] = linear[k - P];
-            }
+            all[k] = value::<P, L>(&corrected, &linear, k);
             k += 1;
         }
         Self(all)
@@ -198,6 +205,18 @@ impl<const P: usize, const N: usize> Perspective<P, N> {
     #[must_use]
     pub fn linear(&self) -> &[i32] {
         self.0.get(P..N - 1).unwrap_or_default()
+    }
+}
+
+/// Returns value `k` of the perspective-correct values and the linear ones; 0 beyond them.
+#[inline(always)]
+const fn value<const P: usize, const L: usize>(corrected: &[i32; P], linear: &[i32; L], k: usize) -> i32 {
+    if k < P {
+        corrected[k]
+    } else if k - P < L {
+        linear[k - P]
+    } else {
+        0
     }
 }
 

@@ -1,0 +1,250 @@
+//! Small triangles with a texture, under light or not, against perspective-correct coordinates and light in double
+//! precision; and the same pixels however they are drawn.
+
+mod reference;
+mod support;
+
+use reference::rng::Rng;
+use support::accuracy;
+use zstrip::embedded_graphics_core::geometry::Size;
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::frame::FramebufferRenderer;
+use zstrip::light::Unlit;
+use zstrip::math::{Projective, Scalar};
+use zstrip::mesh::{Mesh, MeshData, Positions};
+use zstrip::prelude::*;
+use zstrip::shader::Textured;
+use zstrip::span::{DepthState, Shader};
+use zstrip::target::Framebuffer;
+use zstrip::texture::{Clamp, Image, Mirror, Rgb565Texel, Texture, Tile};
+
+/// Width and height of the screen.
+const SIDE: usize = 128;
+/// Sides of the texture.
+const COLUMNS: usize = 128;
+const ROWS: usize = 256;
+
+/// Texels that are their own numbers; the background is none of them.
+static NUMBERS: [[u16; COLUMNS]; ROWS] = {
+    let mut texels = [[0; COLUMNS]; ROWS];
+    let mut k = 0;
+    while k < COLUMNS * ROWS {
+        texels[k / COLUMNS][k % COLUMNS] = k as u16;
+        k += 1;
+    }
+    texels
+};
+static TILE: Tile<'static, COLUMNS, ROWS> = Tile::new(&NUMBERS);
+static WHITE: Tile<'static, 1, 1> = Tile::new(&[[0xFFFF]]);
+const BACKGROUND: u16 = 0xFFFF;
+
+/// A corner: its place on the screen in px, w, coordinates in 16.16 and its colour.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    at: [f64; 2],
+    position: [Scalar; 4],
+    w: f64,
+    uv: [i32; 2],
+    color: [u8; 3],
+}
+
+/// Returns a triangle of up to `size` / 256 px, exactly on the grid of 1/256 px, whose w differs by up to `spread`
+/// percent.
+fn triangle(rng: &mut Rng, size: i32, spread: i32, reach: i32) -> [Corner; 3] {
+    let middle = [rng.between(0, 256 * SIDE as i32), rng.between(0, 256 * SIDE as i32)];
+    let grid = [1, 1, 128, 256][rng.between(0, 3) as usize];
+    let (w, origin) = (rng.between(400, 1000), [rng.between(-70_000, 70_000), rng.between(-70_000, 70_000)]);
+    [(); 3].map(|()| {
+        // 1 / 64 of the cube per pixel, 4 units of 16.16 per 1/256 px; w in quarters.
+        let at = middle.map(|c| (c + rng.between(-size / 2, size / 2)) / grid * grid);
+        let w = w + w * rng.between(0, spread) / 100;
+        let [x, y] = [4 * at[0] - 65_536, 65_536 - 4 * at[1]];
+        let position = [x / 4 * w, y / 4 * w, 0, w << 14].map(Scalar::from_bits);
+        let uv = origin.map(|c| c + rng.between(-reach, reach));
+        let color = [0; 3].map(|_: u8| rng.between(0, 255) as u8);
+        Corner { at: at.map(|c| f64::from(c) / 256.0), position, w: f64::from(w) / 4.0, uv, color }
+    })
+}
+
+/// Shares of three corners at a pixel's centre: on the screen, and in space.
+fn shares(corners: &[Corner; 3], x: usize, y: usize) -> [[f64; 3]; 2] {
+    let p = [x as f64 + 0.5, y as f64 + 0.5];
+    let cross = |a: [f64; 2], b: [f64; 2]| (a[0] - p[0]) * (b[1] - p[1]) - (b[0] - p[0]) * (a[1] - p[1]);
+    let on_screen = [0, 1, 2].map(|k| cross(corners[(k + 1) % 3].at, corners[(k + 2) % 3].at));
+    let in_space = [0, 1, 2].map(|k| on_screen[k] / corners[k].w);
+    [on_screen, in_space].map(|weights| weights.map(|weight| weight / weights.iter().sum::<f64>()))
+}
+
+/// A way to draw a frame.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// In strips of some rows, with that many words of records.
+    Strips { rows: usize, records: usize },
+    /// Into a framebuffer whose rows do not lie one after the other.
+    Rows { records: usize },
+}
+
+const WAYS: [Way; 5] = [
+    Way::Strips { rows: SIDE, records: 500 },
+    Way::Strips { rows: SIDE, records: 0 },
+    Way::Strips { rows: 8, records: 500 },
+    Way::Strips { rows: 8, records: 0 },
+    Way::Rows { records: 500 },
+];
+
+/// Rows that are no slice of one another.
+struct Apart(Vec<Vec<u16>>);
+
+impl Framebuffer for Apart {
+    type Format = Rgb565;
+
+    fn row(&mut self, y: u32) -> &mut [u16] {
+        &mut self.0[y as usize]
+    }
+}
+
+fn picture(way: Way, corners: &[Corner; 3], shader: &impl Shader<Rgb565>) -> Vec<u16> {
+    let (positions, uvs) = (corners.map(|c| c.position), corners.map(|c| c.uv.map(Scalar::from_bits)));
+    let colors = corners.map(|c| c.color);
+    let data = MeshData::new(Positions::Homogeneous(&positions));
+    let mesh = Mesh::new(MeshData { uvs: Some(&uvs), colors: Some(&colors), ..data }).expect("a mesh");
+    let state = State { cull: Cull::None, depth: DepthState::LESS, ..State::default() };
+    let (size, white) = (Size::new(SIDE as u32, SIDE as u32), Rgb888::new(255, 255, 255));
+    match way {
+        Way::Strips { rows, records } => {
+            let (mut strip, mut depth, mut words) = (vec![0; SIDE * rows], vec![0; SIDE * rows], vec![0; records]);
+            let renderer = Renderer::<Rgb565>::new(size).expect("a size").with_depth(&mut depth).expect("depths");
+            let mut renderer = renderer.with_records(&mut words);
+            let (mut frame, mut pixels) = (renderer.begin(white), Vec::new());
+            while let Some(strip) = frame
+                .next_strip(&mut strip, |scene| scene.draw_with(state, &mesh, &Projective::IDENTITY, shader))
+                .expect("the same scene each time")
+            {
+                pixels.extend_from_slice(strip.pixels());
+            }
+            pixels
+        }
+        Way::Rows { records } => {
+            let mut rows = Apart(vec![vec![BACKGROUND; SIDE]; SIDE]);
+            let (mut depth, mut words) = (vec![0; SIDE * SIDE], vec![0; records]);
+            let renderer = FramebufferRenderer::new(size).expect("a size").with_depth(&mut depth).expect("depths");
+            let draw = |scene: &mut zstrip::Scene<'_, _>| {
+                scene.draw_with(state, &mesh, &Projective::IDENTITY, shader);
+            };
+            renderer.with_records(&mut words).frame_over(&mut rows, draw).expect("the same scene each time");
+            rows.0.concat()
+        }
+    }
+}
+
+/// Returns the picture of a triangle, which is the same in all ways.
+fn same_in_all_ways(case: &str, corners: &[Corner; 3], shader: &impl Shader<Rgb565>) -> Vec<u16> {
+    let first = picture(WAYS[0], corners, shader);
+    for way in &WAYS[1..] {
+        assert!(picture(*way, corners, shader) == first, "{case}: {way:?} {corners:?}");
+    }
+    first
+}
+
+/// Sizes of triangles in 1/256 px, on both sides of the border between small and large ones.
+const SIZES: [i32; 6] = [300, 900, 2500, 6300, 6700, 15_400];
+
+#[test]
+fn texels_of_small_triangles_are_within_a_sixteenth() {
+    let seed = 12;
+    let mut rng = Rng::new(seed);
+    let (mut worst, mut seen) = (0_f64, 0);
+    for case in 0..3000 {
+        let (size, spread) = (SIZES[case % 6], [0, 2, 10, 60][case / 6 % 4]);
+        // Up to 1/8, 1/2 or 3/2 of the texture.
+        let corners = triangle(&mut rng, size, spread, [4096, 16_384, 49_152][case / 24 % 3]);
+        let name = format!("seed {seed}, case {case}");
+        let pixels = if case % 5 == 0 {
+            same_in_all_ways(&name, &corners, &Textured::new(&TILE).step::<1>())
+        } else {
+            picture(WAYS[case % 2], &corners, &Textured::new(&TILE).step::<1>())
+        };
+        for (k, pixel) in pixels.into_iter().enumerate().filter(|(_, pixel)| *pixel != BACKGROUND) {
+            let [_, shares] = shares(&corners, k % SIDE, k / SIDE);
+            let texel = [usize::from(pixel) % COLUMNS, usize::from(pixel) / COLUMNS];
+            for (axis, sides) in [COLUMNS as f64, ROWS as f64].into_iter().enumerate() {
+                let exact: f64 = (0..3).map(|k| shares[k] * f64::from(corners[k].uv[axis])).sum::<f64>() / 65_536.0;
+                // The distance of the exact place from the texel that is shown, in texels.
+                let from_middle = (exact * sides - texel[axis] as f64 - 0.5).rem_euclid(sides);
+                let off = from_middle.min(sides - from_middle) - 0.5;
+                worst = worst.max(off);
+                assert!(off < 1.0, "{name}: {off} texels at {k}, {corners:?}");
+            }
+            seen += 1;
+        }
+    }
+    println!("seed {seed}: {seen} px");
+    accuracy::check("coordinate in a texture of 128 × 256 texels, small triangles", worst);
+    assert!(seen > 100_000, "{seen} px");
+}
+
+#[test]
+fn light_on_small_triangles_is_within_a_level_of_the_format() {
+    let seed = 13;
+    let mut rng = Rng::new(seed);
+    let (mut worst, mut seen) = (0_f64, 0);
+    for case in 0..1500 {
+        let mut corners = triangle(&mut rng, SIZES[case % 6], 5, 100);
+        if case % 3 == 0 {
+            // Grey light takes a shorter way.
+            for corner in &mut corners {
+                corner.color = [corner.color[0]; 3];
+            }
+        }
+        let name = format!("seed {seed}, case {case}");
+        let shader = Textured::new(&WHITE).lit(Unlit::vertex_colors());
+        let black = picture(WAYS[0], &corners, &Textured::new(&Tile::new(&[[0]])));
+        let pixels = if case % 5 == 0 {
+            same_in_all_ways(&name, &corners, &shader)
+        } else {
+            picture(WAYS[case % 2], &corners, &shader)
+        };
+        for (k, pixel) in pixels.into_iter().enumerate().filter(|(k, _)| black[*k] == 0) {
+            let [shares, _] = shares(&corners, k % SIDE, k / SIDE);
+            let found = [f64::from(pixel >> 11), f64::from(pixel >> 5 & 63), f64::from(pixel & 31)];
+            for (channel, step) in [8.0, 4.0, 8.0].into_iter().enumerate() {
+                let exact: f64 = (0..3).map(|k| shares[k] * f64::from(corners[k].color[channel])).sum();
+                // Surplus bits are cut, which takes up to one level.
+                let over = found[channel] - exact / step;
+                worst = worst.max(over).max(-over - 1.0);
+                assert!((-2.0..1.0).contains(&over), "{name}: {over} levels at {k}, {corners:?}");
+            }
+            seen += 1;
+        }
+    }
+    println!("seed {seed}: {seen} px");
+    accuracy::check("light on a texture in RGB565, before bits are cut", worst);
+    assert!(seen > 50_000, "{seen} px");
+}
+
+/// Textures of other formats and other rules take the same way.
+#[test]
+fn other_textures_are_the_same_in_all_ways() {
+    let bytes: Vec<u8> = (0..2 * 24 * 20).map(|k| (k * 37 % 251) as u8).collect();
+    let image = Image::new(&bytes, Size::new(24, 20), Rgb565Texel).expect("an image");
+    let seed = 14;
+    let mut rng = Rng::new(seed);
+    for case in 0..120 {
+        let corners = triangle(&mut rng, SIZES[case % 6], 5, 30_000);
+        let name = format!("seed {seed}, case {case}");
+        let clamped = Textured::new(&image).wrap(Clamp);
+        let drawn = same_in_all_ways(&name, &corners, &clamped);
+        // A wrapped texture shows the texels of the exact place, or of its neighbours at their border.
+        let mut off = 0;
+        for (k, pixel) in drawn.iter().enumerate().filter(|(_, pixel)| **pixel != BACKGROUND) {
+            let [_, shares] = shares(&corners, k % SIDE, k / SIDE);
+            let place = |axis: usize, side: f64| {
+                let c: f64 = (0..3).map(|k| shares[k] * f64::from(corners[k].uv[axis])).sum::<f64>() / 65_536.0;
+                ((c * side) as i64).clamp(0, side as i64 - 1) as u32
+            };
+            off += u32::from(image.rgb565(place(0, 24.0), place(1, 20.0)) != *pixel);
+        }
+        assert!(off * 8 <= drawn.iter().filter(|pixel| **pixel != BACKGROUND).count() as u32 + 8, "{name}: {off} px");
+        same_in_all_ways(&name, &corners, &Textured::new(&image).wrap(Mirror).lit(Unlit::vertex_colors()));
+    }
+}
