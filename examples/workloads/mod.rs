@@ -249,12 +249,12 @@ impl<P: PixelFormat> Shader<P> for FaceColors {
         Shader::<P>::fragment(&self.0, fragment)
     }
 
-    #[inline]
+    #[inline(always)]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         Shader::<P>::span(&self.0, span, test);
     }
 
-    #[inline]
+    #[inline(always)]
     fn small<D: DepthTest>(
         &self,
         triangle: SmallTriangle<'_, '_, P, D>,
