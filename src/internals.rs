@@ -3,5 +3,5 @@
 
 pub use crate::raster::{Line, PixelRect, spans, square};
 pub use crate::vertex::clip::{ClipVertex, DepthSlab, Outcode, clip_triangle, weighted};
-pub use crate::vertex::project::{project, signed_area};
-pub use crate::vertex::transform::{Projected, ScreenMatrix, Transform, projected};
+pub use crate::vertex::project::{Projected, project, projected, signed_area};
+pub use crate::vertex::transform::{ScreenMatrix, Transform};

@@ -1,7 +1,7 @@
 //! Stages 3 to 7 of [the pipeline](crate#the-pipeline): a mesh's triangles come in, and go out as triangles on the
 //! screen, drawn or recorded. This code is compiled once, for all shaders: a [`Program`] is what it knows of them.
 
-use super::painter::turn_corners;
+use super::painter::{turn, turn_corners, turn_vertices};
 use super::scan::{Scan, ScanEvent, ScanTo, ScreenTriangle, may_reach, place};
 use super::scene::{Draw, Scene};
 use super::state::Culling;
@@ -57,13 +57,14 @@ pub(super) trait Program<F: Framebuffer> {
     /// Stage 7, faces: returns the shader's word for a triangle.
     fn face(&self, triangle: &ScreenTriangle) -> u32;
 
-    /// Draws a triangle of the mesh, or a triangle of the fan that it was clipped to, and turns its vertices: stages 7
-    /// to 11.
+    /// Draws a triangle of the mesh, or a triangle of the fan that it was clipped to: stages 8 to 11. Its highest corner
+    /// is the first.
     fn draw(
         &self,
         scene: &mut Scene<'_, F>,
         clip: &PixelRect,
-        triangle: &mut ScreenTriangle,
+        triangle: &ScreenTriangle,
+        face: u32,
         fan: Option<[&FanCorner; 3]>,
     );
 
@@ -210,8 +211,21 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
         if self.scene.is_recording() {
             self.record(triangle, triangle.corners);
         } else {
-            self.program.draw(self.scene, &self.clip, triangle, None);
+            self.draw_triangle(triangle, None);
         }
+    }
+
+    /// Shades the face of a triangle, stage 7, and draws the triangle with its highest corner first. Turns its vertices,
+    /// and its corners or those of the fan.
+    #[inline(never)]
+    fn draw_triangle(&mut self, triangle: &mut ScreenTriangle, mut fan: Option<[&FanCorner; 3]>) {
+        let face = self.program.face(triangle);
+        let turns = turn_vertices(&mut triangle.v);
+        match &mut fan {
+            Some(fan) => turn(fan, turns),
+            None => turn(&mut triangle.corners, turns),
+        }
+        self.program.draw(self.scene, &self.clip, triangle, face, fan);
     }
 
     /// Stage 6, recording: puts a triangle into the list of the strip that it begins in, with its face's word.
@@ -272,7 +286,7 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
                     }
                     self.record(triangle, indices);
                 } else {
-                    self.program.draw(self.scene, &self.clip, triangle, Some(fan));
+                    self.draw_triangle(triangle, Some(fan));
                 }
             }
             // The first corner stays. The last corner becomes the second one of the next triangle.

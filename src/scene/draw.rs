@@ -59,7 +59,6 @@ impl<F: Framebuffer> Scene<'_, F> {
             let stage = VertexStage { mesh: draw.mesh, shader, transform: &transform };
             let program = MeshProgram { stage, state: draw.state, hooks: &hooks.raster };
             self.assemble_by(draw, &program, &transform, hooks.clamped_slabs);
-            self.end_draw();
         }
     }
 
@@ -85,5 +84,6 @@ impl<F: Framebuffer> Scene<'_, F> {
                 assembly.triangles(0..draw.mesh.triangle_count());
             }
         }
+        self.end_draw();
     }
 }

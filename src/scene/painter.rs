@@ -12,7 +12,8 @@ use crate::span::{
     interpolate, set_up_shader, subslice,
 };
 use crate::target::{Framebuffer, PackedCorners, turns as turns_of};
-use crate::vertex::{MAX_IN_REGISTERS, PackedVertex, Projected, ScreenVertex, Varyings, VertexShader, signed_area};
+use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, VertexShader, pack, signed_area};
+use core::ops::Range;
 
 /// Draws the triangles of a draw call, with its state and its shader.
 pub(super) struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
@@ -59,7 +60,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle, unless its area is 0. Its highest corner is the first. `large` says that it is known not to be
     /// small.
-    #[inline(always)]
+    #[inline(never)]
     pub(super) fn turned(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32, large: bool) {
         if large || (self.hooks.small)(self, v, varyings, flat) == SmallResult::Large {
             self.large(v, varyings, flat);
@@ -68,7 +69,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle in the way of large ones, unless its area is 0. Its highest corner is the first.
     #[inline(never)]
-    fn large(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
+    pub(super) fn large(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area == 0 {
             return;
@@ -98,20 +99,23 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
         let packed = PackedCorners { varyings: &packed, vertices: &[], corners: [0, 1, 2] };
         let (shader, bias) = (self.shader, self.bias_steps());
-        let mut result = SmallResult::Outside;
-        let mut rows = SmallRows::new(self.screen, self.clip, self.state, bias);
-        rows.begin([a[1], b[1], c[1]]);
-        while let Some(mut target) = rows.next(self.target)
-            && result != SmallResult::Large
+        let rows = SmallRows::new(self.screen, self.clip, self.state, bias);
+        let Range { start: mut y, end } = rows.of(v);
+        while y < end
+            && let Some(mut target) = rows.place(self.target, Some(y))
         {
+            y = target.rows.end;
             let triangle = SmallTriangle { target: &mut target, v: [a, b, c], test };
-            result = if S::PACKS_SMALL {
+            let result = if S::PACKS_SMALL {
                 shader.small_packed(triangle, &packed)
             } else {
                 shader.small(triangle, varyings, flat)
             };
+            if result == SmallResult::Large {
+                return SmallResult::Large;
+            }
         }
-        result
+        SmallResult::Drawn
     }
 
     /// Returns the depth bias, and how it is computed, if the state may have one.
@@ -135,10 +139,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             interpolate(self.shader, &gradients, v, self.screen, varyings, primitive);
         }
         primitive.dz_dx = depth.dx;
-        if let Some(bias) = self.hooks.bias {
-            let [a, b, c] = v.each_ref().map(|v| v.z);
-            let steps = bias(self.state.bias, a.min(b).min(c)..a.max(b).max(c), depth.dx, depth.dy);
-            depth.base = depth.base.wrapping_add((steps as u32) << 16);
+        if let Some(bias) = self.bias_steps() {
+            add_bias(bias, v, depth);
         }
         set_up_shader(self.shader, [v[0].x, v[0].y], varyings, area.unsigned_abs(), primitive);
     }
@@ -255,6 +257,14 @@ fn turns([a, b, c]: &[ScreenVertex; 3]) -> u32 {
     turns_of([word(a), word(b), word(c)])
 }
 
+/// Adds a bias to the depths of a triangle with these vertices.
+#[inline(never)]
+fn add_bias((steps, bias): (BiasSteps, DepthBias), v: &[ScreenVertex; 3], depth: &mut PlaneEquation) {
+    let [a, b, c] = v.each_ref().map(|v| v.z);
+    let steps = steps(bias, a.min(b).min(c)..a.max(b).max(c), depth.dx, depth.dy);
+    depth.base = depth.base.wrapping_add((steps as u32) << 16);
+}
+
 /// Turns the corners of a triangle with these vertices, so that the highest one comes first.
 #[inline(never)]
 pub(super) fn turn_corners(v: &[ScreenVertex; 3], corners: &mut [u16; 3]) {
@@ -263,18 +273,10 @@ pub(super) fn turn_corners(v: &[ScreenVertex; 3], corners: &mut [u16; 3]) {
 
 /// Turns the vertices of a triangle, so that the highest one comes first. Returns the number of those before it.
 #[inline(never)]
-fn turn_vertices(v: &mut [ScreenVertex; 3]) -> u32 {
+pub(super) fn turn_vertices(v: &mut [ScreenVertex; 3]) -> u32 {
     let turns = turns(v);
     turn(v, turns);
     turns
-}
-
-/// Packs vertices on the screen.
-#[inline(never)]
-fn pack(v: &[ScreenVertex; 3], words: &mut [[u32; 2]; 3]) {
-    for (words, v) in words.iter_mut().zip(v) {
-        *words = PackedVertex::new(&Projected::OnScreen(*v)).words();
-    }
 }
 
 /// Most words of a vertex that small triangles are drawn from.
@@ -294,7 +296,7 @@ fn pack_varyings<S: VertexShader>(varyings: &[S::Varyings; 3], packed: &mut [u32
 
 /// Turns three things, so that number `turns` comes first.
 #[inline(always)]
-fn turn<T>([a, b, c]: &mut [T; 3], turns: u32) {
+pub(super) fn turn<T>([a, b, c]: &mut [T; 3], turns: u32) {
     for _ in 0..turns {
         core::mem::swap(a, b);
         core::mem::swap(b, c);

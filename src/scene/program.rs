@@ -66,19 +66,21 @@ impl<F: Framebuffer, S: Shader<F::Format>> MeshProgram<'_, F, S> {
         shader.face(&Face::new(mesh, number, corners, self.state.side(area)))
     }
 
-    /// Returns the varyings at the corners of a triangle, rounded as the records round them.
+    /// Computes the varyings at the corners of a triangle, rounded as the records round them.
     #[inline(never)]
     fn varyings(
         &self,
         scene: &Scene<'_, F>,
-        [i, j, k]: [u16; 3],
+        corners: [u16; 3],
         fan: Option<[&FanCorner; 3]>,
         to: &mut [S::Varyings; 3],
     ) {
-        *to = match fan {
-            Some(fan) => fan.map(|corner| self.stage.rounded([i, j, k], &corner.weights, corner.inverse_w)),
-            None => [self.stage.kept(scene, i), self.stage.kept(scene, j), self.stage.kept(scene, k)],
-        };
+        for (k, to) in to.iter_mut().enumerate() {
+            *to = match fan.and_then(|fan| fan.get(k).copied()) {
+                Some(corner) => self.stage.rounded(corners, &corner.weights, corner.inverse_w),
+                None => self.stage.kept(scene, corners.get(k).copied().unwrap_or_default()),
+            };
+        }
     }
 }
 
@@ -146,14 +148,14 @@ impl<F: Framebuffer, S: Shader<F::Format>> Program<F> for MeshProgram<'_, F, S> 
         &self,
         scene: &mut Scene<'_, F>,
         clip: &PixelRect,
-        triangle: &mut ScreenTriangle,
+        triangle: &ScreenTriangle,
+        face: u32,
         fan: Option<[&FanCorner; 3]>,
     ) {
-        let face = self.face(triangle);
         let mut varyings = [S::Varyings::ZERO; 3];
         self.varyings(scene, triangle.corners, fan, &mut varyings);
         let mut painter = scene.painter(clip, self.state, self.hooks, self.stage.shader);
-        painter.triangle(&mut triangle.v, &mut varyings, face);
+        painter.turned(&triangle.v, &varyings, face, false);
     }
 
     fn draw_waiting(&self, scene: &mut Scene<'_, F>) {

@@ -83,7 +83,12 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
             load_outlined::<S>(triangles, record, &mut self.varyings);
         }
         let Self { state, hooks, shader, .. } = *self;
-        Painter { target, screen, clip, state, hooks, shader }.turned(v, &self.varyings, record.face, refused);
+        let mut painter = Painter { target, screen, clip, state, hooks, shader };
+        if fits::<F, S>() {
+            painter.turned(v, &self.varyings, record.face, refused);
+        } else {
+            painter.large(v, &self.varyings, record.face);
+        }
     }
 }
 
@@ -96,7 +101,9 @@ pub(super) const fn fits<F: Framebuffer, S: Shader<F::Format>>() -> bool {
 /// Reads the varyings of a recorded triangle, out of line.
 #[inline(never)]
 fn load_outlined<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, to: &mut [S::Varyings; 3]) {
-    load::<S>(triangles, record, to);
+    for (to, index) in to.iter_mut().zip(&record.corners) {
+        triangles.varyings::<S>(*index, to);
+    }
 }
 
 /// Reads the varyings of a recorded triangle. In place, because arrays of varyings would be copied when they are
@@ -134,7 +141,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         }
         let fits = drawer.fits();
         loop {
-            let mut place = if fits { rows.all(target) } else { None };
+            let mut place = if fits { rows.place(target, None) } else { None };
             let tried = place.is_some();
             let draw = |triangles: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]| match &mut place {
                 Some(place) => drawer.small(place, triangles, record, v),

@@ -3,9 +3,9 @@
 
 use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
-use crate::raster::{PixelRect, first_centre, pixel_rect};
+use crate::raster::{PixelRect, first_centre};
 use crate::target::{Records, Room, Stats, StripRows, Triangles, positions_at};
-use crate::vertex::{ClipVertex, Outcode, PackedVertex, ScreenVertex, signed_area, small};
+use crate::vertex::{ClipVertex, Outcode, PackedVertex, ScreenVertex, pack, signed_area, small};
 use core::ops::Range;
 
 /// A pass over the triangles of a mesh: its position, and the triangle that it stopped at.
@@ -116,21 +116,18 @@ impl ScreenTriangle {
     pub(super) fn passes_culling(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
         let [a, b, c] = &self.v;
         self.area = signed_area(a, b, c);
-        let rect = pixel_rect(&self.v);
-        let within = rect.intersection(clip);
-        self.row = within.y.start;
-        let found = !within.is_empty();
         let count = if self.area == 0 {
             &mut stats.degenerate
         } else if culling.leaves_out((self.area >> 32) as i32) {
             &mut stats.back_facing
-        } else if rect.is_empty() {
-            &mut stats.empty
-        } else if !found {
-            &mut stats.outside
         } else {
-            stats.drawn = stats.drawn.wrapping_add(1);
-            return true;
+            let mut words = [[0; 2]; 3];
+            pack(&self.v, &mut words);
+            let mut test = BoxTest::new(clip);
+            let row = test.first_row(words.each_ref());
+            test.finish(stats, 1);
+            self.row = row.unwrap_or_default();
+            return row.is_some();
         };
         *count = count.wrapping_add(1);
         false

@@ -6,6 +6,7 @@ use crate::color::PixelFormat;
 use crate::raster::{PixelRect, first_centre};
 use crate::span::{BiasSteps, DepthBias, SmallTarget};
 use crate::target::Framebuffer;
+use crate::vertex::ScreenVertex;
 use core::ops::Range;
 
 /// A pixel of a framebuffer.
@@ -18,8 +19,6 @@ pub(super) struct SmallRows<'p> {
     clip: &'p PixelRect,
     clockwise_fronts: bool,
     bias: Option<(BiasSteps, DepthBias)>,
-    /// The rows that are left.
-    rows: Range<i32>,
 }
 
 impl<'p> SmallRows<'p> {
@@ -30,57 +29,35 @@ impl<'p> SmallRows<'p> {
         state: &State,
         bias: Option<(BiasSteps, DepthBias)>,
     ) -> Self {
-        Self { screen, clip, clockwise_fronts: matches!(state.front, Winding::Clockwise), bias, rows: 0..0 }
+        Self { screen, clip, clockwise_fronts: matches!(state.front, Winding::Clockwise), bias }
     }
 
-    /// Begins with the first row that a triangle whose vertices have these second words can have pixels in. Its highest
-    /// vertex is the first.
+    /// Returns the rows that a triangle with these vertices may have pixels in. Its highest vertex is the first.
     #[inline(never)]
-    pub(super) fn begin(&mut self, [a, b, c]: [u32; 3]) {
-        let row = |word: u32| first_centre(word as i32 >> 8);
-        self.rows = row(a).max(self.clip.y.start)..row(b).max(row(c)).min(self.clip.y.end);
+    pub(super) fn of(&self, [a, b, c]: &[ScreenVertex; 3]) -> Range<i32> {
+        let (start, end) = (first_centre(a.y), first_centre(b.y.max(c.y)));
+        start.max(self.clip.y.start)..end.min(self.clip.y.end)
     }
 
-    /// Returns all rows, if they lie one after the other.
+    /// Returns all rows, if they lie one after the other; otherwise the given one, if there is one.
     #[inline(never)]
-    pub(super) fn all<'t, F: Framebuffer>(&self, target: &'t mut Target<'_, F>) -> Option<SmallTarget<'t, Raw<F>>> {
-        let (width, rows) = (usize::from(self.screen.0), &target.rows);
-        let color = target.framebuffer.rows(rows.start as u32, width)?;
-        if color.len() < width.wrapping_mul((rows.end - rows.start) as usize) {
-            return None;
-        }
-        Some(self.target(color, target.depth, rows.start, self.clip.y.clone()))
-    }
-
-    /// Returns the next place.
-    #[inline(never)]
-    pub(super) fn next<'t, F: Framebuffer>(
-        &mut self,
-        target: &'t mut Target<'_, F>,
-    ) -> Option<SmallTarget<'t, Raw<F>>> {
-        let y = self.rows.next()?;
-        let (width, first) = (usize::from(self.screen.0), target.rows.start);
-        if target
-            .framebuffer
-            .rows(first as u32, width)
-            .is_some_and(|rows| rows.len() >= width.wrapping_mul((target.rows.end - first) as usize))
-        {
-            self.rows.end = y;
-            return self.all(target);
-        }
-        let at = width.wrapping_mul((y - first) as usize);
-        let rows = y.max(self.clip.y.start)..(y + 1).min(self.clip.y.end);
-        Some(self.target(target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, rows))
-    }
-
-    fn target<'t, R>(
+    pub(super) fn place<'t, F: Framebuffer>(
         &self,
-        color: &'t mut [R],
-        depth: &'t mut [u16],
-        first: i32,
-        rows: Range<i32>,
-    ) -> SmallTarget<'t, R> {
-        let Self { screen, clip, clockwise_fronts, bias, .. } = *self;
-        SmallTarget { color, depth, first, columns: clip.x.clone(), rows, screen, clockwise_fronts, bias }
+        target: &'t mut Target<'_, F>,
+        row: Option<i32>,
+    ) -> Option<SmallTarget<'t, Raw<F>>> {
+        let (width, first) = (usize::from(self.screen.0), target.rows.start);
+        let length = width.wrapping_mul((target.rows.end - first) as usize);
+        let together = target.framebuffer.rows(first as u32, width).is_some_and(|rows| rows.len() >= length);
+        let (color, depth, first, rows) = if together {
+            let color = target.framebuffer.rows(first as u32, width).unwrap_or_default();
+            (color, &mut *target.depth, first, self.clip.y.clone())
+        } else {
+            let y = row?;
+            let at = width.wrapping_mul((y - first) as usize);
+            (target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, y..y + 1)
+        };
+        let Self { screen, clip, clockwise_fronts, bias } = *self;
+        Some(SmallTarget { color, depth, first, columns: clip.x.clone(), rows, screen, clockwise_fronts, bias })
     }
 }

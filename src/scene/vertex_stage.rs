@@ -21,7 +21,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
     #[inline(never)]
     pub(super) fn shade_all(&self, places: &mut [[u32; 2]], varyings: &mut [u32]) {
         match self.transform.short_points(&self.mesh.data().positions) {
-            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => project_all(self.transform, points, places),
+            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => self.transform.project_all(points, places),
             _ => self.project_each(places),
         }
         if S::WORDS > 0 {
@@ -44,12 +44,11 @@ impl<S: VertexShader> VertexStage<'_, S> {
     /// Transforms, projects and snaps a vertex, or finds its outcode.
     #[inline(always)]
     fn project(&self, index: usize) -> PackedVertex {
-        let projected = if S::DISPLACES {
-            self.transform.project_clip_vertex(&self.transformed(index))
+        let packed = if S::DISPLACES {
+            PackedVertex::new(&self.transform.project_clip_vertex(&self.transformed(index)))
         } else {
-            self.transform.project_vertex(&self.mesh.data().positions, index)
+            self.transform.project_packed(&self.mesh.data().positions, index)
         };
-        let packed = PackedVertex::new(&projected);
         if S::CLIP_DISTANCES > 0 && self.distances(index).iter().any(|distance| *distance < 0) {
             // The vertex counts as off the screen, because of a distance and not of a plane that outcodes know.
             return PackedVertex::new(&Projected::NeedsClip(Outcode(packed.outcode())));
@@ -131,9 +130,11 @@ impl<S: VertexShader> VertexStage<'_, S> {
     /// Returns the varyings at a corner that the clipper made, before they are packed.
     #[inline(never)]
     pub(super) fn weighted(&self, corners: [u16; 3], weights: &[i32; 3], inverse_w: u32) -> S::Varyings {
-        let vertex = |index: u16| self.shader.vertex(&VertexRef::new(self.mesh, usize::from(index)));
-        let [i, j, k] = corners;
-        let mut varyings: S::Varyings = weighted(weights, &[vertex(i), vertex(j), vertex(k)]);
+        let mut vertices = [S::Varyings::ZERO; 3];
+        for (vertex, index) in vertices.iter_mut().zip(&corners) {
+            *vertex = self.shader.vertex(&VertexRef::new(self.mesh, usize::from(*index)));
+        }
+        let mut varyings: S::Varyings = weighted(weights, &vertices);
         if S::Varyings::PERSPECTIVE > 0 {
             varyings.set_inverse_w(inverse_w);
         }
@@ -160,14 +161,4 @@ fn rounded<S: VertexShader>(varyings: &S::Varyings) -> S::Varyings {
     let words = words.get_mut(..S::WORDS).unwrap_or_default();
     S::store(varyings, words);
     S::load(words)
-}
-
-/// Stage 2, vertices, of a whole mesh by the short path: projects all positions.
-#[inline(never)]
-fn project_all(transform: &Transform, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
-    for (place, point) in places.iter_mut().zip(points) {
-        // `black_box` makes the compiler read the transform again per vertex: there are too few registers to hold all
-        // of it.
-        *place = PackedVertex::new(&core::hint::black_box(transform).project_quantized(*point).0).words();
-    }
 }

@@ -495,7 +495,7 @@ impl<'a> Records<'a> {
 
     /// Empties the records, for a strip that is drawn directly.
     pub(crate) fn clear(&mut self) {
-        *self.layout = Layout::default();
+        self.begin_band(0);
     }
 
     fn get(&self, at: usize) -> u32 {
@@ -509,6 +509,7 @@ impl<'a> Records<'a> {
     }
 
     /// Empties the records and starts empty lists for a number of strips.
+    #[inline(never)]
     pub(crate) fn begin_band(&mut self, strips: usize) {
         *self.layout = Layout { front: strips, lists: strips, ..Layout::default() };
         match self.words.get_mut(..strips) {
@@ -607,7 +608,7 @@ impl<'a> Records<'a> {
     }
 
     /// Returns the first word of a vertex's position and the first word of its varyings.
-    #[inline]
+    #[inline(never)]
     fn words_of(&self, index: usize) -> (usize, usize) {
         let Layout { vertices, count, stride, .. } = *self.layout;
         if index < count {
@@ -652,7 +653,7 @@ impl<'a> Records<'a> {
 
     /// Records a triangle whose topmost strip, in this band, is `strip`.
     pub(crate) fn push_triangle(&mut self, corners: [u16; 3], face: u32, strip: usize) {
-        let mut triangles = self.parts();
+        let mut triangles = self.triangles();
         let number = triangles.count;
         if triangles.push(corners, face) {
             triangles.append(strip, number);
@@ -665,11 +666,6 @@ impl<'a> Records<'a> {
     /// Takes the words apart into slices, for a pass over many triangles that adds no vertices.
     #[inline(never)]
     pub(crate) fn triangles(&mut self) -> Triangles<'_> {
-        self.parts()
-    }
-
-    #[inline(always)]
-    fn parts(&mut self) -> Triangles<'_> {
         let Self { words, layout } = self;
         let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
         let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();

@@ -215,7 +215,7 @@ impl<'p> Clipping<'p> {
     #[inline(never)]
     pub(crate) fn clip(&mut self, codes: Outcode, slab: DepthSlab) {
         // A triangle with a vertex at the eye itself is invisible: it is edge-on, and has no direction to be cut in.
-        if self.polygon.iter().any(|corner| corner.vertex == ClipVertex::default()) {
+        if self.corners().any(|corner| corner.vertex == ClipVertex::default()) {
             self.polygon.clear();
         }
         for plane in 0..PLANES {
@@ -223,8 +223,10 @@ impl<'p> Clipping<'p> {
                 self.cut(plane, slab.is_inside(plane), |corner| distance(plane, &corner.vertex));
             }
         }
-        for corner in self.polygon.iter_mut() {
-            slab.clamp(&mut corner.vertex);
+        for k in 0..self.len() {
+            if let Some(corner) = self.polygon.get_mut(k) {
+                slab.clamp(&mut corner.vertex);
+            }
         }
     }
 
@@ -240,7 +242,7 @@ impl<'p> Clipping<'p> {
     pub(super) fn cut(&mut self, plane: usize, inside: bool, distance: impl Fn(&ClipCorner) -> i64) {
         let Some(mut from) = self.polygon.back().copied() else { return };
         let mut df = distance(&from);
-        for _ in 0..self.polygon.storage_len() {
+        for _ in 0..self.len() {
             let Some(to) = self.polygon.pop_front() else { return };
             let dt = distance(&to);
             if (df >= 0) != (dt >= 0) {
@@ -251,7 +253,7 @@ impl<'p> Clipping<'p> {
             }
             (from, df) = (to, dt);
         }
-        if self.polygon.storage_len() < 3 {
+        if self.len() < 3 {
             self.polygon.clear();
         }
     }
@@ -266,7 +268,19 @@ impl<'p> Clipping<'p> {
 
     /// Returns the corners of the clipped polygon, in order.
     pub(crate) fn corners(&self) -> impl Iterator<Item = &ClipCorner> {
-        self.polygon.iter()
+        // The queue's own iterator goes over two slices, with a loop for each.
+        (0..self.len()).map_while(|k| self.corner(k))
+    }
+
+    /// Returns the number of corners.
+    #[inline(never)]
+    fn len(&self) -> usize {
+        self.polygon.storage_len()
+    }
+
+    #[inline(never)]
+    fn corner(&self, k: usize) -> Option<&ClipCorner> {
+        self.polygon.get(k)
     }
 }
 

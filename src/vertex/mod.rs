@@ -23,12 +23,12 @@ pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSl
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
-pub(crate) use packed::PackedVertex;
+pub(crate) use packed::{PackedVertex, pack};
 pub use painters_order::{SortError, SortReport, SortScratch, painters_order};
 pub use project::{DepthScale, ScreenVertex};
-pub(crate) use project::{inverse_w, project, signed_area, small};
+pub(crate) use project::{Projected, inverse_w, project, signed_area, small};
 pub use shader::{Face, Side, VertexRef, VertexShader};
-pub(crate) use transform::{Projected, ScreenMatrix, Transform};
+pub(crate) use transform::{ScreenMatrix, Transform};
 pub(crate) use varyings::{MAX_IN_REGISTERS, PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64};
 pub use varyings::{Perspective, Varyings};
 pub use viewport::{Viewport, ViewportError};

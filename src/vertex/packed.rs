@@ -1,8 +1,7 @@
 //! Positions of vertices on the screen, packed into two words: the form in which they are kept from the vertex stage
 //! on.
 
-use super::project::ScreenVertex;
-use super::transform::Projected;
+use super::project::{Projected, ScreenVertex};
 
 /// A position of a vertex on the screen, in two words: x in the upper 24 bits of the first, y in those of the second;
 /// below x the high byte of z, below y the low byte.
@@ -87,5 +86,13 @@ impl PackedVertex {
     #[inline(always)]
     pub(crate) const fn z(&self) -> i32 {
         ((self.0[0] & 0xFF) << 8 | (self.0[1] & 0xFF)) as i32
+    }
+}
+
+/// Packs vertices on the screen.
+#[inline(never)]
+pub(crate) fn pack(v: &[ScreenVertex; 3], words: &mut [[u32; 2]; 3]) {
+    for (words, v) in words.iter_mut().zip(v) {
+        *words = PackedVertex::new(&Projected::OnScreen(*v)).words();
     }
 }

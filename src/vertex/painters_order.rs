@@ -6,8 +6,8 @@
 //! hidden surface problem". All tests are made on the screen: projection maps planes to planes, and puts the eye at
 //! depth minus infinity.
 
-use super::project::ScreenVertex;
-use super::transform::{Projected, Transform};
+use super::project::{Projected, ScreenVertex};
+use super::transform::Transform;
 use super::viewport::Viewport;
 use crate::math::Projective;
 use crate::mesh::Mesh;

@@ -1,7 +1,7 @@
 //! Clip space → screen: vertices in clip space come in, are divided by w and snapped to 1/256 px, and go out as
 //! [`ScreenVertex`].
 
-use super::clip::ClipVertex;
+use super::clip::{ClipVertex, Outcode};
 use crate::math::{Divisor, SMALL_CORE, Scalar, byte_zeros, leading_zeros_long, mul_high, reciprocal};
 use core::num::NonZeroU32;
 use embedded_graphics_core::geometry::Point;
@@ -29,6 +29,22 @@ impl ScreenVertex {
     pub const fn pixel(&self) -> Point {
         Point::new(self.x >> 8, self.y >> 8)
     }
+}
+
+/// Result of projecting a vertex.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Projected {
+    /// The vertex is on the screen, or at least within the guard band.
+    OnScreen(ScreenVertex),
+    /// The vertex is outside of the planes in this outcode.
+    NeedsClip(Outcode),
+}
+
+/// Returns the outcode of a vertex in clip space, or projects and snaps it, if the outcode is empty.
+pub fn projected(vertex: &ClipVertex) -> Projected {
+    let code = Outcode::of(vertex);
+    let placed = if code.0 == 0 { project(vertex) } else { None };
+    placed.map_or(Projected::NeedsClip(code), Projected::OnScreen)
 }
 
 /// Returns twice the signed area of a triangle. It is negative for a front face (counter-clockwise with y up), because

@@ -6,7 +6,10 @@
 //! are screen positions in units of 512 px from the screen's corner, and z / w is depth.
 
 use super::clip::{ClipVertex, Outcode};
-use super::project::{DepthScale, ScreenVertex, UniformDepth, inverse_w, inverse_w_short, project, project_short};
+use super::packed::PackedVertex;
+use super::project::{
+    DepthScale, Projected, ScreenVertex, UniformDepth, inverse_w, inverse_w_short, project, project_short, projected,
+};
 use super::viewport::Viewport;
 use crate::math::{Projective, SMALL_CORE, Vec3, leading_zeros_long, mul_wide};
 use crate::mesh::{Bounds, Mesh, Positions};
@@ -48,22 +51,6 @@ struct Row {
     high: [i32; 4],
     low: [i32; 4],
     translation: i64,
-}
-
-/// Result of projecting a vertex.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Projected {
-    /// The vertex is on the screen, or at least within the guard band.
-    OnScreen(ScreenVertex),
-    /// The vertex is outside of the planes in this outcode.
-    NeedsClip(Outcode),
-}
-
-/// Returns the outcode of a vertex in clip space, or projects and snaps it, if the outcode is empty.
-pub fn projected(vertex: &ClipVertex) -> Projected {
-    let code = Outcode::of(vertex);
-    let placed = if code.0 == 0 { project(vertex) } else { None };
-    placed.map_or(Projected::NeedsClip(code), Projected::OnScreen)
 }
 
 /// Returns `value / 2^shift`, rounded to nearest; a negative shift multiplies. The result is 0 for shifts above 62.
@@ -454,6 +441,36 @@ impl Transform {
             };
         }
         self.project_clip_vertex(&self.vertex(positions, index))
+    }
+
+    /// Projects a vertex of a mesh as [`project_vertex`](Self::project_vertex) does, and packs the result. Shares the loop
+    /// of [`project_all`](Self::project_all).
+    #[inline(never)]
+    pub(crate) fn project_packed(&self, positions: &Positions<'_>, index: usize) -> PackedVertex {
+        let (Positions::Quantized { points, .. }, true) = (positions, self.short) else {
+            return PackedVertex::new(&self.project_clip_vertex(&self.vertex(positions, index)));
+        };
+        let mut place = [PackedVertex::NONE_WORDS];
+        self.project_all(points.get(index..).unwrap_or_default(), &mut place);
+        let [place] = place.map(PackedVertex::of);
+        match &self.uniform {
+            Some(uniform) if place.is_on_screen() => {
+                let [_, _, z, _] = &self.rows;
+                let depth = uniform.depth(z.apply(&self.numbers(positions, index), true) << 25);
+                PackedVertex::new(&Projected::OnScreen(ScreenVertex { z: depth, ..place.screen() }))
+            }
+            _ => place,
+        }
+    }
+
+    /// Projects the positions of a mesh by the short path, with perspective depth, to one place each.
+    #[inline(never)]
+    pub(crate) fn project_all(&self, points: &[[i16; 3]], places: &mut [[u32; 2]]) {
+        for (place, point) in places.iter_mut().zip(points) {
+            // `black_box` makes the compiler read the transform again per vertex: there are too few registers to hold
+            // all of it.
+            *place = PackedVertex::new(&core::hint::black_box(self).project_quantized(*point).0).words();
+        }
     }
 
     /// Returns the positions of a mesh, if [`project_vertex`](Self::project_vertex) does nothing more with them than
