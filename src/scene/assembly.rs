@@ -8,7 +8,7 @@ use super::state::Culling;
 use crate::math::Projective;
 use crate::mesh::BoundsNode;
 use crate::raster::PixelRect;
-use crate::target::Framebuffer;
+use crate::target::{Framebuffer, Records};
 use crate::vertex::{
     ClipCorner, ClipVertex, Clipping, DepthSlab, Outcode, PackedVertex, Projected, Transform, inverse_w,
 };
@@ -30,8 +30,12 @@ const UNSTORED: u16 = u16::MAX;
 
 /// The parts of a draw that its shader takes part in.
 pub(super) trait Program<F: Framebuffer> {
-    /// Stage 2, vertices: shades all vertices of a draw that keeps them.
-    fn shade_all(&self, scene: &mut Scene<'_, F>);
+    /// Stage 2, vertices: projects all vertices of a draw that keeps them.
+    fn project_all(&self, scene: &mut Scene<'_, F>);
+
+    /// Stage 2, vertices: computes the varyings at the corners of triangles recorded from `first` on, where they are
+    /// not in the records yet.
+    fn shade_corners(&self, records: &mut Records<'_>, first: u16);
 
     /// Stage 2, vertices: shades one vertex, and keeps the result if the draw keeps its vertices.
     fn shade(&self, scene: &mut Scene<'_, F>, index: usize) -> PackedVertex;
@@ -57,8 +61,8 @@ pub(super) trait Program<F: Framebuffer> {
     /// Stage 7, faces: returns the shader's word for a triangle.
     fn face(&self, triangle: &ScreenTriangle) -> u32;
 
-    /// Draws a triangle of the mesh, or a triangle of the fan that it was clipped to: stages 8 to 11. Its highest corner
-    /// is the first.
+    /// Draws a triangle of the mesh, or a triangle of the fan that it was clipped to: stages 8 to 11. Its highest
+    /// corner is the first.
     fn draw(
         &self,
         scene: &mut Scene<'_, F>,
@@ -129,9 +133,12 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
             if records.triangle_count() != first {
                 // Stage 7, faces.
                 self.program.shade_faces(records.triangles_from(first));
-                match scan.to {
-                    ScanTo::Records => place(records, first, strips, band.start, &self.clip, stats),
-                    ScanTo::Drawing => self.program.draw_waiting(self.scene),
+                if scan.to == ScanTo::Records {
+                    place(records, first, strips, band.start, &self.clip, stats);
+                }
+                self.program.shade_corners(records, first);
+                if scan.to == ScanTo::Drawing {
+                    self.program.draw_waiting(self.scene);
                 }
             }
             if event == ScanEvent::Done {
@@ -215,8 +222,8 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
         }
     }
 
-    /// Shades the face of a triangle, stage 7, and draws the triangle with its highest corner first. Turns its vertices,
-    /// and its corners or those of the fan.
+    /// Shades the face of a triangle, stage 7, and draws the triangle with its highest corner first. Turns its
+    /// vertices, and its corners or those of the fan.
     #[inline(never)]
     fn draw_triangle(&mut self, triangle: &mut ScreenTriangle, mut fan: Option<[&FanCorner; 3]>) {
         let face = self.program.face(triangle);
@@ -233,7 +240,9 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
         turn_corners(&triangle.v, &mut corners);
         let face = self.program.face(triangle);
         let strip = self.scene.strips.of((triangle.row - self.scene.band.start) as u32);
+        let number = self.scene.records.triangle_count();
         self.scene.records.push_triangle(corners, face, strip);
+        self.program.shade_corners(&mut self.scene.records, number);
     }
 
     /// Returns the vertex stage's result for a vertex: from the records, if it is there.

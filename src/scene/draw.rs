@@ -78,8 +78,9 @@ impl<F: Framebuffer> Scene<'_, F> {
             // Stages 2 to 7, per part of the mesh that may be visible. Vertices are shaded when triangles ask for them.
             Some(nodes) => assembly.hierarchy(nodes, draw.mvp),
             _ => {
-                // Stage 2, vertices: all at once, if their results are kept.
-                program.shade_all(assembly.scene);
+                // Stage 2, vertices: the positions of all at once, if the results are kept. Varyings are computed when
+                // a visible triangle asks for them.
+                program.project_all(assembly.scene);
                 // Stages 3 to 7, triangle by triangle: assembly, clipping, culling, recording, faces.
                 assembly.triangles(0..draw.mesh.triangle_count());
             }

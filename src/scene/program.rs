@@ -9,7 +9,7 @@ use super::state::State;
 use super::vertex_stage::VertexStage;
 use crate::raster::PixelRect;
 use crate::span::Shader;
-use crate::target::Framebuffer;
+use crate::target::{Framebuffer, Records};
 use crate::vertex::{
     CLIPPED_CORNERS, ClipVertex, Clipping, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face, Outcode,
     PackedVertex, Transform, Varyings,
@@ -85,11 +85,17 @@ impl<F: Framebuffer, S: Shader<F::Format>> MeshProgram<'_, F, S> {
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Program<F> for MeshProgram<'_, F, S> {
-    fn shade_all(&self, scene: &mut Scene<'_, F>) {
+    fn project_all(&self, scene: &mut Scene<'_, F>) {
         if F::RECORDS {
-            let (places, varyings) = scene.records.vertices_mut();
+            let places = scene.records.positions_mut();
             scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
-            self.stage.shade_all(places, varyings);
+            self.stage.project_all(places);
+        }
+    }
+
+    fn shade_corners(&self, records: &mut Records<'_>, first: u16) {
+        if F::RECORDS && S::WORDS > 0 {
+            self.stage.store_each(records.unshaded(first));
         }
     }
 

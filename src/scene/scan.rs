@@ -507,7 +507,7 @@ mod tests {
             let mut records = Records::new(&mut words, &mut layout);
             records.begin_band(STRIPS);
             records.begin_draw(7, positions.len(), 2);
-            records.vertices_mut().0.copy_from_slice(&positions);
+            records.positions_mut().copy_from_slice(&positions);
             let strips = StripRows::new(16, true);
             let mut scan = Scan::new(&mesh, 0..COUNT, state.culling(), ScanTo::Records);
             let (mut stats, mut unplaced) = (Stats::default(), Vec::new());

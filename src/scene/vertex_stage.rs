@@ -3,7 +3,7 @@
 
 use super::scene::Scene;
 use crate::mesh::Mesh;
-use crate::target::Framebuffer;
+use crate::target::{Framebuffer, Unshaded};
 use crate::vertex::{
     ClipCorner, ClipVertex, MAX_DISTANCES, Outcode, PackedVertex, Projected, Transform, Varyings, VertexRef,
     VertexShader, inverse_w, weighted,
@@ -17,15 +17,12 @@ pub(super) struct VertexStage<'s, S> {
 }
 
 impl<S: VertexShader> VertexStage<'_, S> {
-    /// Shades all vertices of a draw: projects them to `places`, and packs their varyings.
+    /// Projects all vertices of a draw.
     #[inline(never)]
-    pub(super) fn shade_all(&self, places: &mut [[u32; 2]], varyings: &mut [u32]) {
+    pub(super) fn project_all(&self, places: &mut [[u32; 2]]) {
         match self.transform.short_points(&self.mesh.data().positions) {
             Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => self.transform.project_all(points, places),
             _ => self.project_each(places),
-        }
-        if S::WORDS > 0 {
-            self.store_each(varyings);
         }
     }
 
@@ -63,14 +60,16 @@ impl<S: VertexShader> VertexStage<'_, S> {
         }
     }
 
-    /// Packs the varyings of all vertices.
+    /// Packs the varyings of vertices that have none yet.
     #[inline(never)]
-    fn store_each(&self, mut words: &mut [u32]) {
-        let mut index = 0;
-        while let Some((some, rest)) = words.split_at_mut_checked(S::WORDS) {
-            S::store(&self.varyings(index), some);
-            (index, words) = (index + 1, rest);
-        }
+    pub(super) fn store_each(&self, vertices: Unshaded<'_>) {
+        vertices.each(S::WORDS, |index, words| self.store(index, words));
+    }
+
+    /// Packs the varyings of a vertex.
+    #[inline(never)]
+    fn store(&self, index: usize, words: &mut [u32]) {
+        S::store(&self.varyings(index), words);
     }
 
     /// Returns a vertex in clip space.
@@ -121,7 +120,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
 
     /// Returns the varyings of a vertex, rounded as the records round them.
     pub(super) fn kept<F: Framebuffer>(&self, scene: &Scene<'_, F>, index: u16) -> S::Varyings {
-        if scene.keeps_vertices() {
+        if scene.keeps_vertices() && scene.records.has_varyings(index) {
             return scene.records.varyings::<S>(index);
         }
         rounded::<S>(&self.vertex(usize::from(index)))

@@ -19,8 +19,8 @@ use core::marker::PhantomData;
 /// A toon shader: a texture in three tones of light, whose transparent texels are left out. The pipeline calls its
 /// functions in this order:
 ///
-/// 1. [`VertexShader::vertex`], once per vertex while records are used, otherwise at most once per corner of a
-///    triangle. It returns the varyings: here, texture coordinates that are
+/// 1. [`VertexShader::vertex`], once per vertex of visible triangles while records are used, otherwise at most once per
+///    corner of a triangle. It returns the varyings: here, texture coordinates that are
 ///    [perspective-correct](crate::vertex::Perspective), and one varying that is linear on the screen.
 /// 2. [`VertexShader::face`], once per visible triangle, for a word that is constant on it. It is not used here.
 /// 3. [`setup`](Self::setup), once per triangle and strip, for data that all fragments of the triangle share. Here,

@@ -8,8 +8,9 @@
 //! │ lists │ header │ vertices │ header │ vertices    │ →             ←  │  2   │  1   │  0   │
 //! └───────┴────────┴──────────┴────────┴─────────────┴───────────── ─ ─ ┴──────┴──────┴──────┘
 //! ```
-//! A draw's vertices are the positions of all of them, two words each, and then the varyings of all of them. Vertices
-//! that the clipper adds come after these, each with its position and its varyings together.
+//! A draw's vertices are marks, a bit each, then the positions of all of them, two words each, and then the varyings of
+//! all of them. A mark says that the vertex has its varyings: they are computed when a visible triangle asks for them.
+//! Vertices that the clipper adds come after these, each with its position and its varyings together.
 //!
 //! The word of a strip in `lists` holds the first and the last of its triangles, which are linked through their
 //! records in drawing order. A triangle is in one list at a time. It is recorded into the list of the topmost strip
@@ -45,9 +46,12 @@ pub const fn records_len(
     varying_words: usize,
     triangles: usize,
 ) -> usize {
+    // A bit per vertex, in whole words for each draw.
+    let marks = if varying_words > 0 { vertices.div_ceil(32).saturating_add(draws) } else { 0 };
     let vertices = VERTEX_WORDS.saturating_add(varying_words).saturating_mul(vertices);
     strips
         .saturating_add(HEADER.saturating_mul(draws))
+        .saturating_add(marks)
         .saturating_add(vertices)
         .saturating_add(TRIANGLE.saturating_mul(triangles))
 }
@@ -129,6 +133,34 @@ impl<'r> PackedCorners<'r> {
     #[inline(never)]
     fn added<const N: usize>(&self, index: u16) -> Option<&'r [u32; N]> {
         self.vertices.get((N + VERTEX_WORDS) * usize::from(index) + VERTEX_WORDS..)?.first_chunk()
+    }
+}
+
+/// The words of triangles whose vertices may have no varyings yet, their marks, and the words of all varyings.
+pub(crate) struct Unshaded<'r> {
+    triangles: &'r [u32],
+    marks: &'r mut [u32],
+    varyings: &'r mut [u32],
+}
+
+impl Unshaded<'_> {
+    /// Hands each vertex that has no varyings yet to `store`, with their `words` words.
+    #[inline(always)]
+    pub(crate) fn each(self, words: usize, mut store: impl FnMut(usize, &mut [u32])) {
+        let Self { mut triangles, marks, varyings } = self;
+        while let Some(([a, b, _], rest)) = triangles.split_first_chunk() {
+            triangles = rest;
+            for index in corners_of(*a, *b) {
+                let (index, bit) = (usize::from(index), 1 << (index & 31));
+                let Some(mark) = marks.get_mut(index >> 5) else { continue };
+                if *mark & bit == 0 {
+                    *mark |= bit;
+                    if let Some(words) = varyings.get_mut(words * index..).and_then(|rest| rest.get_mut(..words)) {
+                        store(index, words);
+                    }
+                }
+            }
+        }
     }
 }
 
@@ -470,6 +502,8 @@ pub(crate) struct Layout {
     /// The current draw: position of its header, and of its vertices; number of vertices of the mesh, and of those
     /// that the clipper added; words per vertex.
     header: usize,
+    /// First word of the marks of the current draw's vertices: a bit is set if the vertex has its varyings.
+    marks: usize,
     vertices: usize,
     count: usize,
     added: u16,
@@ -531,18 +565,22 @@ impl<'a> Records<'a> {
     /// Reserves words for the vertices of a draw, all unshaded. Returns `false` if there are too few.
     fn reserve(&mut self, vertices: usize, stride: usize) -> bool {
         let start = self.layout.front;
+        let marks = if stride > VERTEX_WORDS { vertices.div_ceil(32) } else { 0 };
         // At most 2¹⁶ · 255, which `usize` may not hold.
-        let needs = vertices.saturating_mul(stride);
+        let needs = vertices.saturating_mul(stride).saturating_add(marks);
         if self.free() < needs {
             return false;
         }
-        self.layout.vertices = start;
+        self.layout.marks = start;
+        if let Some(marks) = self.words.get_mut(start..start + marks) {
+            clear_words(marks, 0);
+        }
+        self.layout.vertices = start + marks;
         self.layout.count = vertices;
         self.layout.added = 0;
         self.layout.stride = stride;
         self.layout.front = start + needs;
-        let (positions, _) = self.vertices_mut();
-        positions.fill(PackedVertex::NONE.0);
+        self.positions_mut().fill(PackedVertex::NONE.0);
         true
     }
 
@@ -597,14 +635,11 @@ impl<'a> Records<'a> {
         self.positions().get(index).map_or(PackedVertex::NONE, |words| PackedVertex(*words))
     }
 
-    /// Returns the positions of all vertices, and the words of their varyings.
-    pub(crate) fn vertices_mut(&mut self) -> (&mut [[u32; 2]], &mut [u32]) {
+    /// Returns the positions of all vertices of the current draw, to be changed.
+    pub(crate) fn positions_mut(&mut self) -> &mut [[u32; 2]] {
         let start = self.layout.vertices;
-        let words = self.words.get_mut(start..start + self.layout.count * self.layout.stride).unwrap_or_default();
-        let Some((positions, varyings)) = words.split_at_mut_checked(2 * self.layout.count) else {
-            return Default::default();
-        };
-        (bytemuck::try_cast_slice_mut(positions).unwrap_or_default(), varyings)
+        let words = self.words.get_mut(start..start + VERTEX_WORDS * self.layout.count).unwrap_or_default();
+        bytemuck::try_cast_slice_mut(words).unwrap_or_default()
     }
 
     /// Returns the first word of a vertex's position and the first word of its varyings.
@@ -619,6 +654,24 @@ impl<'a> Records<'a> {
         }
     }
 
+    /// Takes apart what the varyings of recorded triangles are computed from, for the triangles from a number on.
+    pub(crate) fn unshaded(&mut self, first: u16) -> Unshaded<'_> {
+        let (start, end) = (self.triangle_at(self.layout.triangles), self.triangle_at(first));
+        let Layout { marks, vertices, count, stride, front, .. } = *self.layout;
+        let (used, rest) = self.words.split_at_mut_checked(front).unwrap_or_default();
+        let range = start.wrapping_add(TRIANGLE).wrapping_sub(front)..end.wrapping_add(TRIANGLE).wrapping_sub(front);
+        let triangles = rest.get(range).unwrap_or_default();
+        let words = used.get_mut(marks..vertices + count * stride).unwrap_or_default();
+        let (marks, words) = words.split_at_mut_checked(vertices - marks).unwrap_or_default();
+        Unshaded { triangles, marks, varyings: words.get_mut(VERTEX_WORDS * count..).unwrap_or_default() }
+    }
+
+    /// Returns whether a vertex of the mesh has its varyings.
+    pub(crate) fn has_varyings(&self, index: u16) -> bool {
+        let word = self.layout.marks + usize::from(index >> 5);
+        word < self.layout.vertices && self.get(word) >> (index & 31) & 1 != 0
+    }
+
     /// Stores a vertex of the current draw, for whose vertices there is room.
     #[inline(never)]
     pub(crate) fn store_vertex<S: VertexShader>(&mut self, index: usize, packed: PackedVertex, varyings: &S::Varyings) {
@@ -627,6 +680,13 @@ impl<'a> Records<'a> {
         self.set(position, a);
         self.set(position + 1, b);
         S::store(varyings, self.words.get_mut(rest..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default());
+        // Those that the clipper added are not asked for by their marks.
+        let Layout { marks, vertices, .. } = *self.layout;
+        if S::WORDS > 0
+            && let Some(mark) = self.words.get_mut(marks..vertices).and_then(|marks| marks.get_mut(index / 32))
+        {
+            *mark |= 1 << (index & 31);
+        }
     }
 
     /// Returns the varyings of a vertex of the current draw.

@@ -186,7 +186,8 @@ fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
 /// The programmable vertex stage: computes the values that are interpolated over triangles, and the word that is
 /// constant on each.
 ///
-/// While records are used, each vertex is shaded at most once per draw. Without records, it is shaded as often as it is
+/// While records are used, each vertex of a visible triangle is shaded once per draw, and the others are not shaded; a
+/// triangle that has to be clipped asks for its vertices again. Without records, a vertex is shaded as often as it is
 /// needed.
 pub trait VertexShader {
     /// Type of the values that are interpolated.

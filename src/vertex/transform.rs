@@ -443,8 +443,8 @@ impl Transform {
         self.project_clip_vertex(&self.vertex(positions, index))
     }
 
-    /// Projects a vertex of a mesh as [`project_vertex`](Self::project_vertex) does, and packs the result. Shares the loop
-    /// of [`project_all`](Self::project_all).
+    /// Projects a vertex of a mesh as [`project_vertex`](Self::project_vertex) does, and packs the result. Shares the
+    /// loop of [`project_all`](Self::project_all).
     #[inline(never)]
     pub(crate) fn project_packed(&self, positions: &Positions<'_>, index: usize) -> PackedVertex {
         let (Positions::Quantized { points, .. }, true) = (positions, self.short) else {
