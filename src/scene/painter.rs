@@ -93,6 +93,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let mut words = [[0; 2]; 3];
         pack(v, &mut words);
         let [a, b, c] = words.each_ref();
+        const { assert!(!S::PACKS_SMALL || S::WORDS <= MOST_PACKED) };
         let mut packed = [0; 3 * MOST_PACKED];
         if S::PACKS_SMALL {
             pack_varyings::<S>(varyings, &mut packed);
@@ -285,7 +286,6 @@ const MOST_PACKED: usize = 4;
 /// Packs varyings, as the records do.
 #[inline(never)]
 fn pack_varyings<S: VertexShader>(varyings: &[S::Varyings; 3], packed: &mut [u32; 3 * MOST_PACKED]) {
-    const { assert!(S::WORDS <= MOST_PACKED) };
     for (k, varyings) in varyings.iter().enumerate() {
         S::store(
             varyings,
