@@ -10,12 +10,18 @@
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
+#[path = "firmware/count.rs"]
+mod count;
+#[cfg(target_os = "none")]
 mod firmware;
+#[path = "workloads/hash.rs"]
+mod hash;
 #[cfg(target_os = "none")]
 #[path = "firmware/ticks.rs"]
 mod ticks;
 mod workloads;
 
+use hash::Hash;
 use workloads::{HEIGHT, WIDTH, Workload};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
 use zstrip::frame::RamBudget;
@@ -36,19 +42,6 @@ const NAMED: [(&str, Workload); 13] = [
     ("w10", Workload::FlatSpot),
 ];
 
-/// FNV-1a over pixels.
-struct Hash(u32);
-
-impl Hash {
-    const NEW: Self = Self(0x811C_9DC5);
-
-    fn add(&mut self, pixels: &[u16]) {
-        for &pixel in pixels {
-            self.0 = (self.0 ^ u32::from(pixel)).wrapping_mul(0x0100_0193);
-        }
-    }
-}
-
 /// Rows of a strip, and words of records.
 const SIZES: (usize, usize) = if cfg!(ram = "records") {
     let budget = RamBudget::new::<Rgb565>(WIDTH as u32, 16);
@@ -65,8 +58,7 @@ const FRONT_FACES: usize = 458;
 #[cfg(target_os = "none")]
 mod counting {
     use super::firmware::stack;
-    use super::{Hash, NAMED, SIZES, WIDTH, Workload, ticks, workloads};
-    use core::arch::asm;
+    use super::{Hash, NAMED, SIZES, WIDTH, Workload, count, workloads};
     use core::hint::black_box;
     use semihosting::println;
 
@@ -95,10 +87,8 @@ mod counting {
         if cfg!(any(ram = "records", ram = "bare")) {
             return report_ram(memory);
         }
-        #[cfg(target_arch = "arm")]
-        match cortex_m::Peripherals::take() {
-            Some(mut peripherals) => ticks::start(&mut peripherals.SYST),
-            None => return,
+        if !count::start() {
+            return;
         }
         for rows in [240, 16, 4, 1] {
             for (name, workload) in NAMED {
@@ -111,46 +101,17 @@ mod counting {
                 };
                 if counted {
                     let width = workload.width();
-                    let ticks = count(workload, lend(memory, width, rows));
+                    let ticks = count::ticks_of(|| {
+                        workloads::draw(workload, lend(memory, width, rows), |strip| {
+                            black_box(strip);
+                        })
+                    });
                     let mut hash = Hash::NEW;
                     workloads::draw(workload, lend(memory, width, rows), |strip| hash.add(strip));
                     println!("{name} {rows} {ticks} {:08x}", hash.0);
                 }
             }
         }
-    }
-
-    /// The instructions that a counting plugin looks for.
-    #[cfg(target_arch = "arm")]
-    macro_rules! marker {
-        (begin) => {
-            "mov r10, r10"
-        };
-        (end) => {
-            "mov r11, r11"
-        };
-    }
-    #[cfg(target_arch = "riscv32")]
-    macro_rules! marker {
-        ($which:ident) => {
-            "nop"
-        };
-    }
-
-    /// Ticks of a frame.
-    #[inline(never)]
-    fn count(workload: Workload, buffers: workloads::Buffers<'_>) -> u32 {
-        let start = ticks::now();
-        // SAFETY: copies a register to itself.
-        unsafe { asm!(marker!(begin)) };
-        let stats = workloads::draw(workload, buffers, |strip| {
-            black_box(strip);
-        });
-        // SAFETY: as above.
-        unsafe { asm!(marker!(end)) };
-        let end = ticks::now();
-        black_box(stats);
-        end.wrapping_sub(start)
     }
 
     fn report_ram(memory: &mut Memory) {

@@ -9,6 +9,7 @@
 #![allow(dead_code)] // each program uses its part
 #![allow(long_running_const_eval)] // 30,000 vertices are made
 
+pub mod price;
 #[cfg(not(target_os = "none"))]
 pub mod reference;
 pub mod spot;

@@ -127,16 +127,16 @@ pub static TEXELS_565: [[u16; TEXELS]; TEXELS] = {
     texels
 };
 
-static TEXTURE: Tile<'static, TEXELS, TEXELS> = Tile::new(&TEXELS_565);
+pub(super) static TEXTURE: Tile<'static, TEXELS, TEXELS> = Tile::new(&TEXELS_565);
 
-static TEXTURED: Mesh<'static> = Mesh::constant(MeshData {
+pub(super) static TEXTURED: Mesh<'static> = Mesh::constant(MeshData {
     indices: Some(&INDICES),
     normals: Some(&of_vertices(&NORMALS)),
     uvs: Some(&UVS),
     ..MeshData::new(quantities(&of_vertices(&POINTS), [0.0; 3], HALF))
 });
 
-static PLAIN: Mesh<'static> = Mesh::constant(MeshData {
+pub(super) static PLAIN: Mesh<'static> = Mesh::constant(MeshData {
     indices: Some(&WELDED_INDICES),
     face_normals: Some(&FACE_NORMALS),
     ..MeshData::new(quantities(&POINTS, [0.0; 3], HALF))
@@ -154,16 +154,16 @@ const MODEL: Affine = {
     Affine::from_rows(vector(x), vector(y), vector(z), vector([0.0, SHIFT, -DISTANCE]))
 };
 
-const SCREEN: Size = Size::new(SIDE as u32, SIDE as u32);
+pub(super) const SCREEN: Size = Size::new(SIDE as u32, SIDE as u32);
 
-const MATRIX: Projective = {
+pub(super) const MATRIX: Projective = {
     match Projective::perspective(Angle16::from_degrees(45), SCREEN, Scalar::ONE, Scalar::from_bits(16 << 16)) {
         Ok(camera) => camera.compose_affine(&MODEL),
         Err(_) => panic!("not a camera"),
     }
 };
 
-const fn under_light(color: [u8; 3]) -> Sunlit {
+pub(super) const fn under_light(color: [u8; 3]) -> Sunlit {
     let [ambient, diffuse] = [nearest(AMBIENT * 255.0) as u8, nearest(DIFFUSE * 255.0) as u8];
     Sun::from_channels(vector(LIGHT), [diffuse; 3], [ambient; 3]).on(&Matte::from_channels(color), &MODEL)
 }
