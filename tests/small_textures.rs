@@ -13,7 +13,7 @@ use zstrip::light::Unlit;
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::prelude::*;
-use zstrip::shader::Textured;
+use zstrip::shader::{Blend, Replace, Textured};
 use zstrip::span::{DepthState, Shader};
 use zstrip::target::Framebuffer;
 use zstrip::texture::{Clamp, Image, Mirror, Rgb565Texel, Texture, Tile};
@@ -159,10 +159,14 @@ fn texels_of_small_triangles_are_within_a_sixteenth() {
         // Up to 1/8, 1/2 or 3/2 of the texture.
         let corners = triangle(&mut rng, size, spread, [4096, 16_384, 49_152][case / 24 % 3]);
         let name = format!("seed {seed}, case {case}");
-        let pixels = if case % 5 == 0 {
-            same_in_all_ways(&name, &corners, &Textured::new(&TILE).step::<1>())
-        } else {
-            picture(WAYS[case % 2], &corners, &Textured::new(&TILE).step::<1>())
+        // By itself, or with a shader around it.
+        let (plain, blended) =
+            (Textured::new(&TILE).step::<1>(), Blend::new(Textured::new(&TILE).step::<1>(), Replace));
+        let pixels = match case % 10 {
+            0 => same_in_all_ways(&name, &corners, &plain),
+            5 => same_in_all_ways(&name, &corners, &blended),
+            1 | 2 => picture(WAYS[case / 10 % 2], &corners, &blended),
+            _ => picture(WAYS[case % 2], &corners, &plain),
         };
         for (k, pixel) in pixels.into_iter().enumerate().filter(|(_, pixel)| *pixel != BACKGROUND) {
             let [_, shares] = shares(&corners, k % SIDE, k / SIDE);
@@ -199,10 +203,12 @@ fn light_on_small_triangles_is_within_a_level_of_the_format() {
         let name = format!("seed {seed}, case {case}");
         let shader = Textured::new(&WHITE).lit(Unlit::vertex_colors());
         let black = picture(WAYS[0], &corners, &Textured::new(&Tile::new(&[[0]])));
-        let pixels = if case % 5 == 0 {
-            same_in_all_ways(&name, &corners, &shader)
-        } else {
-            picture(WAYS[case % 2], &corners, &shader)
+        let blended = Blend::new(shader, Replace);
+        let pixels = match case % 10 {
+            0 => same_in_all_ways(&name, &corners, &shader),
+            5 => same_in_all_ways(&name, &corners, &blended),
+            1 | 2 => picture(WAYS[case / 10 % 2], &corners, &blended),
+            _ => picture(WAYS[case % 2], &corners, &shader),
         };
         for (k, pixel) in pixels.into_iter().enumerate().filter(|(k, _)| black[*k] == 0) {
             let [shares, _] = shares(&corners, k % SIDE, k / SIDE);

@@ -15,7 +15,7 @@ use zstrip::shader::{Blend, Flat, Gouraud, Opacity, Textured};
 use zstrip::span::{
     DepthBias, DepthState, DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup,
 };
-use zstrip::target::Stats;
+use zstrip::target::{PackedCorners, Stats};
 use zstrip::vertex::{VertexShader, Wrapper};
 
 /// The workloads with prices.
@@ -138,6 +138,17 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for PassedOn<'_, S> {
         flat: u32,
     ) -> SmallResult {
         self.0.small(triangle, corners, flat)
+    }
+
+    const PACKS_SMALL: bool = S::PACKS_SMALL;
+
+    #[inline]
+    fn small_packed<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &PackedCorners<'_>,
+    ) -> SmallResult {
+        self.0.small_packed(triangle, corners)
     }
 }
 

@@ -140,6 +140,15 @@ impl ShortPlanes {
         let minor = |p: i32, q: i32| c.wrapping_mul(p).wrapping_sub(b.wrapping_mul(q));
         (minor(self.b.1, self.c.1), minor(self.b.0, self.c.0).wrapping_neg())
     }
+
+    /// Returns the change from the first corner to the first pixel of a plane with these gradients below 2²⁸, modulo
+    /// 2³². It is too small by less than 128 units.
+    #[inline(always)]
+    pub(crate) fn offset(&self, dx: i32, dy: i32) -> i32 {
+        let (x, y) = self.to;
+        let part = ((dx >> 6) * (x & 0xFF) + (dy >> 6) * (y & 0xFF)) >> 2;
+        dx.wrapping_mul(x >> 8).wrapping_add(dy.wrapping_mul(y >> 8)).wrapping_add(part)
+    }
 }
 
 #[cfg(test)]

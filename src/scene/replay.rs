@@ -93,9 +93,10 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
 }
 
 /// Returns whether triangles of a shader may be small. With more varyings, or perspective-correct ones, those take far
-/// longer than the rest of a triangle does, unless the shader has a way of its own.
+/// longer than the rest of a triangle does, unless the shader is tolerant or has a way of its own.
 pub(super) const fn fits<F: Framebuffer, S: Shader<F::Format>>() -> bool {
-    S::PACKS_SMALL || S::Varyings::LEN <= MAX_IN_REGISTERS && S::Varyings::PERSPECTIVE == 0
+    let is_planar = S::IS_TOLERANT && S::Varyings::PERSPECTIVE > 0 && size_of::<S::Setup>() == 0;
+    S::PACKS_SMALL || is_planar || S::Varyings::LEN <= MAX_IN_REGISTERS && S::Varyings::PERSPECTIVE == 0
 }
 
 /// Reads the varyings of a recorded triangle, out of line.

@@ -125,8 +125,16 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
     }
 }
 
-impl<T, W, F, L, const N: usize> VertexShader for Textured<'_, T, W, F, L, N> {
+impl<T: Texture, W, F, L, const N: usize> VertexShader for Textured<'_, T, W, F, L, N> {
     type Varyings = Perspective<2, 3>;
+    const IS_TOLERANT: bool = true;
+
+    /// Returns 1/16 texel, or 1/32 if each pixel is divided.
+    #[inline]
+    fn tolerance(&self) -> u32 {
+        let sides = self.levels.first().map_or(Size::zero(), Texture::size);
+        (if N == 1 { 2048_u32 } else { 4096 }).checked_div(sides.width.max(sides.height)).unwrap_or(0)
+    }
 
     #[inline]
     fn vertex(&self, corner: &VertexRef<'_>) -> Perspective<2, 3> {
@@ -271,8 +279,14 @@ pub struct LitTexture<'a, T, S, W = Repeat, F = Nearest, L = OneLevel, const N: 
 /// Texture coordinates 16.16; red, green and blue of the surface, 8.16, linear on the screen.
 type LitVaryings = Perspective<2, 6>;
 
-impl<T, S: Surface, W, F, L, const N: usize> VertexShader for LitTexture<'_, T, S, W, F, L, N> {
+impl<T: Texture, S: Surface, W, F, L, const N: usize> VertexShader for LitTexture<'_, T, S, W, F, L, N> {
     type Varyings = LitVaryings;
+    const IS_TOLERANT: bool = true;
+
+    #[inline]
+    fn tolerance(&self) -> u32 {
+        self.texture.tolerance()
+    }
 
     /// u, v, the colour of the surface in 10 bits per channel, 1 / w.
     const WORDS: usize = 4;

@@ -10,6 +10,7 @@ mod luma;
 mod naive;
 mod packed;
 mod perspective;
+mod planar;
 mod shader;
 mod small;
 mod solid;

@@ -2,6 +2,7 @@
 
 use super::depth::{DepthDyn, DepthState, DepthTest};
 use super::perspective::{correct_at, longest_log_step, straight_log_step};
+use super::planar::PlanarBrush;
 use super::small::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
@@ -162,7 +163,8 @@ pub trait Shader<P: PixelFormat>: VertexShader {
     /// Set if small triangles are drawn from packed varyings, by [`small_packed`](Self::small_packed).
     const PACKS_SMALL: bool = false;
 
-    /// Draws a triangle, if it is small, from the words that [`store`](VertexShader::store) packed at its corners.
+    /// Draws a triangle, if it is small, from the words that [`store`](VertexShader::store) packed at its corners. A
+    /// shader whose spans are another shader's may pass the call on to that shader.
     #[inline(always)]
     fn small_packed<D: DepthTest>(
         &self,
@@ -396,8 +398,12 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
         flat: u32,
     ) -> SmallResult {
         let (screen, clockwise_fronts) = (self.target.screen, self.target.clockwise_fronts);
-        let brush = ShaderBrush { shader, corners, flat, v: self.v, screen, clockwise_fronts, format: PhantomData };
-        self.draw(&brush)
+        let (v, format) = (self.v, PhantomData);
+        if S::Varyings::PERSPECTIVE > 0 {
+            self.draw(&PlanarBrush { shader, corners, flat, clockwise_fronts, format })
+        } else {
+            self.draw(&ShaderBrush { shader, corners, flat, v, screen, clockwise_fronts, format })
+        }
     }
 }
 

@@ -124,10 +124,7 @@ type Plane = [u32; 3];
 fn coordinate(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
     let (n, m) = planes.numerators(b, c);
     let (dx, dy) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 15)?;
-    let (x, y) = planes.to;
-    let part = ((dx >> 6) * (x & 0xFF) + (dy >> 6) * (y & 0xFF)) >> 2;
-    let whole = dx.wrapping_mul(x >> 8).wrapping_add(dy.wrapping_mul(y >> 8));
-    Some([((a as u32) << 8).wrapping_add_signed(part).wrapping_add_signed(whole), dx as u32, dy as u32])
+    Some([((a as u32) << 8).wrapping_add_signed(planes.offset(dx, dy)), dx as u32, dy as u32])
 }
 
 /// Computes the plane of a channel of light, from 9.7 at the corners.

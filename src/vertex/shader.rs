@@ -211,6 +211,18 @@ pub trait VertexShader {
     /// Number of cull distances per vertex. A triangle is left out if one of them is negative at all of its corners.
     const CULL_DISTANCES: usize = 0;
 
+    /// Set if perspective-correct varyings may be planes on the screen, on small triangles where perspective moves none
+    /// of them by more than [`tolerance`](Self::tolerance). That saves all divisions there. Shaders whose
+    /// [`Setup`](crate::span::Shader::Setup) is not empty take no part.
+    const IS_TOLERANT: bool = false;
+
+    /// Returns by how much perspective may move perspective-correct varyings on small triangles, in units of the
+    /// varyings: for texture coordinates, a fraction of a texel.
+    #[inline]
+    fn tolerance(&self) -> u32 {
+        0
+    }
+
     /// Returns the varyings at a vertex.
     fn vertex(&self, vertex: &VertexRef<'_>) -> Self::Varyings;
 

@@ -53,6 +53,12 @@ impl<W: Wrapper> VertexShader for W {
     const DISPLACES: bool = W::Inner::DISPLACES;
     const CLIP_DISTANCES: usize = W::Inner::CLIP_DISTANCES;
     const CULL_DISTANCES: usize = W::Inner::CULL_DISTANCES;
+    const IS_TOLERANT: bool = W::Inner::IS_TOLERANT;
+
+    #[inline]
+    fn tolerance(&self) -> u32 {
+        self.inner().tolerance()
+    }
 
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> Self::Varyings {
