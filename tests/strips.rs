@@ -403,7 +403,8 @@ fn frame_is_the_same_at_every_capacity_about_the_overflow_points() {
     let meshes = [&scenes::polygons::GRID, &scenes::polygons::STRIP, &scenes::polygons::FAN, &scenes::polygons::QUADS];
     let vertices = meshes.iter().map(|m| m.vertex_count()).sum();
     let stated = records_len(10, 4, vertices, 1, ample.drawn as usize);
-    assert_eq!(stated, whole, "records_len says what is needed");
+    // Each draw rounds its bits up to whole words; that is stated for the worst sizes.
+    assert!((whole..whole + 4).contains(&stated), "records_len says {stated}, but {whole} words are needed");
 }
 
 #[test]

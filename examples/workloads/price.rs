@@ -15,8 +15,8 @@ use zstrip::shader::{Blend, Flat, Gouraud, Opacity, Textured};
 use zstrip::span::{
     DepthBias, DepthState, DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup,
 };
-use zstrip::target::{PackedCorners, Stats};
-use zstrip::vertex::{VertexShader, Wrapper};
+use zstrip::target::Stats;
+use zstrip::vertex::{PackedCorners, VertexShader, Wrapper};
 
 /// The workloads with prices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -11,8 +11,8 @@ use crate::span::{
     BiasSteps, DepthBias, DepthState, DepthTest, Primitive, Shader, SmallResult, SmallTriangle, Span, SpanOf,
     interpolate, set_up_shader, subslice,
 };
-use crate::target::{Framebuffer, PackedCorners, turns as turns_of};
-use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, VertexShader, pack, signed_area};
+use crate::target::{Framebuffer, turns as turns_of};
+use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, ScreenVertex, Varyings, VertexShader, pack, signed_area};
 use core::ops::Range;
 
 /// Draws the triangles of a draw call, with its state and its shader.

@@ -5,8 +5,10 @@ use super::state::State;
 use crate::math::Projective;
 use crate::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions};
 use crate::raster::PixelRect;
-use crate::target::{Framebuffer, Records, Stats, StripRows, VERTEX_WORDS};
-use crate::vertex::{DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, Varyings, VertexShader, Viewport};
+use crate::target::{Framebuffer, Records, Stats, StripRows};
+use crate::vertex::{
+    DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, VERTEX_WORDS, Varyings, VertexShader, Viewport,
+};
 use core::ops::Range;
 use embedded_graphics_core::geometry::Size;
 

@@ -7,9 +7,8 @@ use crate::span::{
     DepthTest, Fragment, Light, Primitive, STEP, Shader, SmallResult, SmallTriangle, SpanOf, TexelBrush, TexelSource,
     TriangleSetup, UvStepper, draw_fragments, texture_span,
 };
-use crate::target::PackedCorners;
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
-use crate::vertex::{Perspective, VertexRef, VertexShader};
+use crate::vertex::{PackedCorners, Perspective, VertexRef, VertexShader};
 use core::marker::PhantomData;
 use embedded_graphics_core::geometry::Size;
 

@@ -15,10 +15,8 @@ pub use draw_target::Overlay;
 pub(crate) use draw_target::OverlayTarget;
 pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};
 pub use packer::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
-pub(crate) use records::{
-    Layout, Records, Room, TriangleRecord, Triangles, Unshaded, VERTEX_WORDS, positions_at, turns,
-};
-pub use records::{PackedCorners, records_len};
+pub use records::records_len;
+pub(crate) use records::{Layout, Records, Room, TriangleRecord, Triangles, Unshaded, positions_at, turns};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
 pub(crate) use strip_rows::{StripRows, whole_rows};

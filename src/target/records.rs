@@ -19,7 +19,9 @@
 
 use crate::color::clear_words;
 use crate::span::SmallResult;
-use crate::vertex::{MAX_IN_REGISTERS, PackedVertex, ScreenVertex, Varyings, VertexShader};
+use crate::vertex::{
+    MAX_IN_REGISTERS, PackedCorners, PackedVertex, ScreenVertex, VERTEX_WORDS, Varyings, VertexShader,
+};
 
 /// Number that stands for no triangle.
 const NONE: u16 = u16::MAX;
@@ -27,9 +29,6 @@ const NONE: u16 = u16::MAX;
 const HEADER: usize = 4;
 /// Words of a triangle: two vertices; the third and the link; the word of its face.
 const TRIANGLE: usize = 3;
-/// Words of a vertex beside its varyings.
-pub(crate) const VERTEX_WORDS: usize = 2;
-
 /// Returns the words of records that a scene needs at most when nothing is clipped. `draws` is the number of draw
 /// calls, `vertices` and `triangles` are those of all draws together, of triangles only the visible ones.
 /// `varying_words` is the number of words of varyings per vertex
@@ -46,8 +45,8 @@ pub const fn records_len(
     varying_words: usize,
     triangles: usize,
 ) -> usize {
-    // A bit per vertex, in whole words for each draw.
-    let marks = if varying_words > 0 { vertices.div_ceil(32).saturating_add(draws) } else { 0 };
+    // A bit per vertex, in whole words for each draw: Σ ⌈v / 32⌉.
+    let marks = if varying_words > 0 { vertices.saturating_add(draws.saturating_mul(31)) / 32 } else { 0 };
     let vertices = VERTEX_WORDS.saturating_add(varying_words).saturating_mul(vertices);
     strips
         .saturating_add(HEADER.saturating_mul(draws))
@@ -99,40 +98,6 @@ pub(crate) const fn turns([a, b, c]: [i32; 3]) -> u32 {
         2
     } else {
         0
-    }
-}
-
-/// The packed varyings of a triangle's corners.
-#[derive(Clone, Copy, Debug)]
-pub struct PackedCorners<'r> {
-    /// Words of varyings, those of one vertex after the other.
-    pub(crate) varyings: &'r [u32],
-    /// Words of all vertices, among them those that the clipper added.
-    pub(crate) vertices: &'r [u32],
-    /// Numbers of the corners.
-    pub(crate) corners: [u16; 3],
-}
-
-impl<'r> PackedCorners<'r> {
-    /// Returns the words of each corner, `N` each.
-    #[inline(always)]
-    pub(crate) fn words<const N: usize>(&self) -> Option<[&'r [u32; N]; 3]> {
-        let [i, j, k] = self.corners;
-        Some([self.corner(i)?, self.corner(j)?, self.corner(k)?])
-    }
-
-    #[inline(always)]
-    fn corner<const N: usize>(&self, index: u16) -> Option<&'r [u32; N]> {
-        match self.varyings.get(N * usize::from(index)..).and_then(<[u32]>::first_chunk) {
-            Some(words) => Some(words),
-            None => self.added(index),
-        }
-    }
-
-    /// Returns the words of a corner that the clipper added.
-    #[inline(never)]
-    fn added<const N: usize>(&self, index: u16) -> Option<&'r [u32; N]> {
-        self.vertices.get((N + VERTEX_WORDS) * usize::from(index) + VERTEX_WORDS..)?.first_chunk()
     }
 }
 

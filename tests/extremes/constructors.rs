@@ -219,7 +219,8 @@ fn no_length_is_short_because_a_product_wrapped() {
         assert_eq!(budget.total(), budget.color.saturating_add(budget.depth), "{width} x {rows}");
     }
     assert_eq!(RamBudget::new::<Rgb888>(1, 1).with_record_words(usize::MAX).records, usize::MAX);
-    assert_eq!(records_len(1, 2, 3, 4, 5), 1 + 4 * 2 + (2 + 4) * 3 + 3 * 5);
+    assert_eq!(records_len(1, 2, 3, 4, 5), 1 + 4 * 2 + 2 + (2 + 4) * 3 + 3 * 5);
+    assert_eq!(records_len(1, 2, 3, 0, 5), 1 + 4 * 2 + 2 * 3 + 3 * 5);
 }
 
 #[test]
@@ -230,7 +231,9 @@ fn buffers_and_budgets_take_all_sizes() {
         let n: [usize; 5] = core::array::from_fn(|_| rng.pick(&SIZES));
         let words = table.case("records_len", n, || records_len(n[0], n[1], n[2], n[3], n[4]));
         let [strips, draws, vertices, varyings, triangles] = n.map(|n| n as u128);
-        let exact = (strips + 4 * draws + 3 * triangles).saturating_add((2 + varyings).saturating_mul(vertices));
+        let marks = if varyings > 0 { (vertices + 31 * draws) / 32 } else { 0 };
+        let exact =
+            (strips + 4 * draws + 3 * triangles + marks).saturating_add((2 + varyings).saturating_mul(vertices));
         assert_eq!(words, Some(usize::try_from(exact).unwrap_or(usize::MAX)), "{n:?}");
         table.case("RamBudget", (size, n), || {
             let budget =

@@ -1,0 +1,38 @@
+//! The packed varyings of a triangle's corners, in the words where the vertex stage left them.
+
+/// Words of a vertex's position in the records, which come before its varyings.
+pub(crate) const VERTEX_WORDS: usize = 2;
+
+/// The packed varyings of a triangle's corners.
+#[derive(Clone, Copy, Debug)]
+pub struct PackedCorners<'r> {
+    /// Words of varyings, those of one vertex after the other.
+    pub(crate) varyings: &'r [u32],
+    /// Words of all vertices, among them those that the clipper added.
+    pub(crate) vertices: &'r [u32],
+    /// Numbers of the corners.
+    pub(crate) corners: [u16; 3],
+}
+
+impl<'r> PackedCorners<'r> {
+    /// Returns the words of each corner, `N` each.
+    #[inline(always)]
+    pub(crate) fn words<const N: usize>(&self) -> Option<[&'r [u32; N]; 3]> {
+        let [i, j, k] = self.corners;
+        Some([self.corner(i)?, self.corner(j)?, self.corner(k)?])
+    }
+
+    #[inline(always)]
+    fn corner<const N: usize>(&self, index: u16) -> Option<&'r [u32; N]> {
+        match self.varyings.get(N * usize::from(index)..).and_then(<[u32]>::first_chunk) {
+            Some(words) => Some(words),
+            None => self.added(index),
+        }
+    }
+
+    /// Returns the words of a corner that the clipper added.
+    #[inline(never)]
+    fn added<const N: usize>(&self, index: u16) -> Option<&'r [u32; N]> {
+        self.vertices.get((N + VERTEX_WORDS) * usize::from(index) + VERTEX_WORDS..)?.first_chunk()
+    }
+}
