@@ -16,7 +16,7 @@ use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topol
 use zstrip::scene::{Cull, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 use zstrip::shader::{Blend, BlendMode, DepthOnly, Flat, Gouraud, Surface, Textured};
 use zstrip::span::{Corrected, DepthTest, Fragment, Primitive, Shader, Span, SpanOf, TriangleSetup};
-use zstrip::target::{Depthless, Framebuffer, PackedFormat, Packer, PackerError};
+use zstrip::target::{Depthless, Framebuffer, PackedFormat, Packer, PackerError, Strip, WithDepth, WithRecords};
 use zstrip::texture::{
     Bilinear, Clamp, Filter, Gray8Texel, Image, Mirror, Nearest, Repeat, Texture, Tile, WithAlpha, Wrap,
 };
@@ -68,9 +68,15 @@ fn draw_some_with<F: Framebuffer, S: Shader<F::Format>>(scene: &mut Scene<'_, F>
     scene.draw_lines_with(BOTH_SIDES, &lines, &Projective::IDENTITY, shader, &Smooth::px(2));
 }
 
-/// Draws frames of a mesh and of smooth lines with a shader. The other primitives are the same for all shaders and
-/// formats but for the loops over pixels.
-fn meshes_with<P: PixelFormat, S: Shader<P>>(table: &mut Table, name: &'static str, shader: &S) {
+/// The strips of a frame with a depth buffer and records.
+type RecordedStrip<'s, P> = Strip<'s, P, WithDepth, WithRecords>;
+
+/// Draws frames with each number of records and each strip height.
+fn recorded<P: PixelFormat>(
+    table: &mut Table,
+    name: &'static str,
+    draw: &mut dyn FnMut(&mut Scene<'_, RecordedStrip<'_, P>>),
+) {
     for records in [0, 30, 1000] {
         for rows in [1, 16] {
             table.case(name, (records, rows), || {
@@ -80,29 +86,28 @@ fn meshes_with<P: PixelFormat, S: Shader<P>>(table: &mut Table, name: &'static s
                 let renderer = renderer.with_depth(&mut depth).expect("a strip");
                 let mut renderer = renderer.with_records(&mut records);
                 let mut frame = renderer.begin(Rgb888::BLACK);
-                while let Ok(Some(_)) = frame.next_strip(&mut color, |scene| draw_some_with(scene, shader)) {}
+                while let Ok(Some(_)) = frame.next_strip(&mut color, &mut *draw) {}
             });
         }
     }
 }
 
-/// Draws frames of all kinds of primitives with a shader, with and without records.
+/// Draws frames of a mesh and of smooth lines with a shader. The other primitives are the same for all shaders and
+/// formats but for the loops over pixels.
+fn meshes_with<P: PixelFormat, S: Shader<P>>(table: &mut Table, name: &'static str, shader: &S) {
+    recorded::<P>(table, name, &mut |scene| draw_some_with(scene, shader));
+}
+
+/// Draws frames of all kinds of primitives with a shader: with records, and by a renderer without records and depths.
 fn frames_with<P: PixelFormat, S: Shader<P>>(table: &mut Table, name: &'static str, shader: &S) {
-    for records in [0, 30, 1000] {
-        for rows in [1, 16] {
-            table.case(name, (records, rows), || {
-                let mut color = vec![P::pack([0; 3]); 24 * rows];
-                let (mut depth, mut records) = (vec![0; 24 * rows], vec![0; records]);
-                let renderer = Renderer::<P>::new(Size::new(24, 16)).expect("a screen");
-                let renderer = renderer.with_depth(&mut depth).expect("a strip");
-                let mut renderer = renderer.with_records(&mut records);
-                let mut frame = renderer.begin(Rgb888::BLACK);
-                while let Ok(Some(_)) = frame.next_strip(&mut color, |scene| draw_with(scene, shader)) {}
-                let mut renderer = Renderer::<P>::new(Size::new(24, 16)).expect("a screen");
-                let mut frame = renderer.begin(Rgb888::BLACK);
-                while let Ok(Some(_)) = frame.next_strip(&mut color, |scene| draw_with(scene, shader)) {}
-            });
-        }
+    recorded::<P>(table, name, &mut |scene| draw_with(scene, shader));
+    for rows in [1, 16] {
+        table.case(name, rows, || {
+            let mut color = vec![P::pack([0; 3]); 24 * rows];
+            let mut renderer = Renderer::<P>::new(Size::new(24, 16)).expect("a screen");
+            let mut frame = renderer.begin(Rgb888::BLACK);
+            while let Ok(Some(_)) = frame.next_strip(&mut color, |scene| draw_with(scene, shader)) {}
+        });
     }
 }
 
