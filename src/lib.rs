@@ -63,8 +63,8 @@
 //! | 2 | vertices | vertex numbers | packed vertices: place on the screen, or outcode; varyings | `scene/vertex_stage.rs`, `vertex/{transform, project, shader}.rs` | record, direct |
 //! | 3 | primitive assembly | indices | triangles on the screen, or triangles to be clipped | `scene/scan.rs`, `mesh/mesh.rs` | record, direct |
 //! | 4 | clipping | a triangle with outcodes | a fan of triangles on the screen | `scene/assembly.rs`, `vertex/{clip, clip_distance}.rs` | record, direct |
-//! | 5 | culling | a triangle on the screen | nothing, if it shows the wrong side or covers no pixel | `scene/scan.rs` | record, direct |
-//! | 6 | recording | a triangle on the screen | three words in the list of the first strip it touches | `target/records.rs` | record |
+//! | 5 | culling | a triangle on the screen | nothing, if it shows the wrong side or covers no pixel | `scene/{cull, scan}.rs` | record, direct |
+//! | 6 | recording | a triangle on the screen | three words in the list of the first strip it touches | `target/{records, triangles}.rs` | record |
 //! | 7 | faces | a triangle of the mesh | one word for all of its fragments, such as a lit colour | `scene/program.rs`, `vertex/shader.rs` | record, direct |
 //! | 8 | set-up | a triangle on the screen, its varyings | plane equations of depth and varyings | `scene/painter.rs`, `span/small.rs`, `raster/gradient.rs` | replay, direct |
 //! | 9 | spans | three edges | runs of pixels, row by row | `scene/painter.rs`, `span/small.rs`, `raster/{triangle, edge, small}.rs` | replay, direct |

@@ -5,6 +5,7 @@
 
 mod assembly;
 mod canvas;
+mod cull;
 mod draw;
 mod hooks;
 mod lines;

@@ -2,8 +2,9 @@
 //! compiled once for all shaders, and what a shader adds to a program are its own stages.
 
 use super::assembly::{Assembly, ClampedSlabs, FanCorner, Program};
+use super::cull::PendingFace;
 use super::painter::RasterHooks;
-use super::scan::{PendingFace, ScreenTriangle};
+use super::scan::ScreenTriangle;
 use super::scene::Scene;
 use super::state::State;
 use super::vertex_stage::VertexStage;

@@ -1,11 +1,12 @@
 //! Stages 3, 5 and 6 of [the pipeline](crate#the-pipeline): assembles a mesh's triangles one after the other, culls the
 //! ones that cannot be visible, and records the others. This code is compiled once, for all shaders.
 
+use super::cull::{CullPass, PendingFace, Stop};
 use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
 use crate::raster::{PixelRect, first_centre};
-use crate::target::{Records, Room, Stats, StripRows, Triangles, positions_at};
-use crate::vertex::{ClipVertex, Outcode, PackedVertex, ScreenVertex, pack, signed_area, small};
+use crate::target::{Records, Stats, StripRows, Triangles};
+use crate::vertex::{ClipVertex, Outcode, PackedVertex, ScreenVertex, pack, signed_area};
 use core::ops::Range;
 
 /// A pass over the triangles of a mesh: its position, and the triangle that it stopped at.
@@ -28,24 +29,6 @@ pub(super) enum ScanTo {
     Records,
     /// Leave as many as there is room for in the records, to be drawn at once.
     Drawing,
-}
-
-/// Placeholder for a recorded triangle's face word, until `shade_faces` fills it. The upper bits hold the number of the
-/// mesh's next triangle, and the lowest bit the sign of this triangle's area.
-#[derive(Clone, Copy)]
-pub(super) struct PendingFace(pub(super) u32);
-
-impl PendingFace {
-    #[inline]
-    const fn new(next: usize, area: i32) -> Self {
-        Self((next as u32) << 1 | area as u32 >> 31)
-    }
-
-    /// Returns the triangle's number, and an area with the sign of the triangle's area.
-    #[inline]
-    pub(super) const fn parts(self) -> (usize, i64) {
-        ((self.0 as usize >> 1).wrapping_sub(1), if self.0 & 1 == 0 { 1 } else { -1 })
-    }
 }
 
 /// A triangle of the mesh on the screen: the one that a scan stopped at, or a triangle of a fan.
@@ -132,19 +115,6 @@ impl ScreenTriangle {
         *count = count.wrapping_add(1);
         false
     }
-}
-
-/// Returns the edge vectors b − a and c − a, x and y of each in 24.8, from words of
-/// [`PackedVertex`](crate::vertex::PackedVertex)s. `None` unless all components fit 16 bits.
-///
-/// # Format
-/// A vertex off the screen has x = -2²³, and its difference from any other x is not small.
-#[inline(always)]
-fn small_sides(a: &[u32; 2], b: &[u32; 2], c: &[u32; 2]) -> Option<[i32; 4]> {
-    let (ax, ay) = (a[0] as i32 >> 8, a[1] as i32 >> 8);
-    let side = |p: u32, from: i32| (p as i32 >> 8) - from;
-    let [bx, by, cx, cy] = [side(b[0], ax), side(b[1], ay), side(c[0], ax), side(c[1], ay)];
-    if small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
 }
 
 /// A rectangle without pixels.
@@ -313,113 +283,6 @@ impl<'m> Scan<'m> {
         stats.back_facing = stats.back_facing.wrapping_add(count.wrapping_sub(degenerate).wrapping_sub(recorded));
         stop
     }
-}
-
-/// Reasons why a pass over triangles stops at one.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Stop {
-    /// The triangle is large, or not all of its vertices are on the screen.
-    Large,
-    /// There is no room for it.
-    Full,
-}
-
-/// Triangles are on their way through the first part of culling. Each loop is a function of its own, with few values,
-/// so that all of them are in registers.
-struct CullPass<'p, 'r> {
-    culling: Culling,
-    room: Room<'p>,
-    positions: &'r [[u32; 2]],
-    degenerate: u32,
-    /// The triangle that the pass stops at.
-    corners: [u16; 3],
-}
-
-impl CullPass<'_, '_> {
-    /// Passes over an indexed list.
-    #[inline(never)]
-    fn list(&mut self, list: &mut &[u16], number: &mut usize) -> Option<Stop> {
-        let Self { culling, positions, .. } = *self;
-        let mut room = self.room.take();
-        let (mut rest, mut next) = (*list, *number);
-        let stop = loop {
-            let Some((corners, after)) = rest.split_first_chunk() else { break None };
-            if let Some(stop) = cull_one(
-                culling,
-                &mut room,
-                &mut self.degenerate,
-                next + 1,
-                *corners,
-                positions_at(positions, *corners),
-            ) {
-                let [i, j, k] = *corners;
-                self.corners = [i, j, k];
-                break Some(stop);
-            }
-            (rest, next) = (after, next + 1);
-        };
-        (*list, *number, self.room) = (rest, next, room);
-        stop
-    }
-
-    /// Passes over a list without indices.
-    #[inline(never)]
-    fn row(&mut self, number: &mut usize, end: usize) -> Option<Stop> {
-        let Self { culling, positions, .. } = *self;
-        let mut room = self.room.take();
-        let mut next = *number;
-        let mut rest = positions.get(3 * next..3 * end).unwrap_or_default();
-        let stop = loop {
-            let Some(([a, b, c], after)) = rest.split_first_chunk() else { break None };
-            let first = (3 * next) as u16;
-            let corners = [first, first.wrapping_add(1), first.wrapping_add(2)];
-            if let Some(stop) = cull_one(culling, &mut room, &mut self.degenerate, next + 1, corners, [a, b, c]) {
-                self.corners = corners;
-                break Some(stop);
-            }
-            (rest, next) = (after, next + 1);
-        };
-        (*number, self.room) = (next, room);
-        stop
-    }
-
-    /// Passes over triangles of any topology.
-    #[inline(never)]
-    fn any(&mut self, mesh: &Mesh<'_>, number: &mut usize, end: usize) -> Option<Stop> {
-        while *number < end {
-            // A list of one triangle.
-            let corners = mesh.any_triangle(*number)?;
-            let stop = self.list(&mut corners.as_slice(), number);
-            if stop.is_some() {
-                return stop;
-            }
-        }
-        None
-    }
-}
-
-/// Culls one triangle by its winding, or puts it into the records. `next` is the number of the triangle after it.
-#[inline(always)]
-fn cull_one(
-    culling: Culling,
-    room: &mut Room<'_>,
-    degenerate: &mut u32,
-    next: usize,
-    corners: [u16; 3],
-    [a, b, c]: [&[u32; 2]; 3],
-) -> Option<Stop> {
-    let Some([bx, by, cx, cy]) = small_sides(a, b, c) else { return Some(Stop::Large) };
-    let area = bx * cy - cx * by;
-    if area == 0 {
-        // Or none of the vertices is on the screen.
-        if (a[0] as i32) < PackedVertex::LEAST_X {
-            return Some(Stop::Large);
-        }
-        *degenerate += 1;
-    } else if !culling.leaves_out(area) && !room.push(corners, PendingFace::new(next, area).0) {
-        return Some(Stop::Full);
-    }
-    None
 }
 
 /// Stage 5, the second part of culling, and stage 6, recording: leaves out those of the triangles recorded from `first`

@@ -4,19 +4,23 @@
 mod choice;
 mod draw_target;
 mod framebuffer;
+mod layout;
 mod packer;
 mod records;
 mod sink;
 mod stats;
 mod strip_rows;
+mod triangles;
 
 pub use choice::{DepthChoice, RecordsChoice, WithDepth, WithRecords, WithoutDepth, WithoutRecords};
 pub use draw_target::Overlay;
 pub(crate) use draw_target::OverlayTarget;
 pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};
+pub(crate) use layout::Layout;
 pub use packer::{DitheredDisplay, PackedFormat, Packer, PackerError, Pages, Rows, RowsLowFirst};
+pub(crate) use records::Records;
 pub use records::records_len;
-pub(crate) use records::{Layout, Records, Room, TriangleRecord, Triangles, Unshaded, positions_at, turns};
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
 pub(crate) use strip_rows::{StripRows, whole_rows};
+pub(crate) use triangles::{Room, TriangleRecord, Triangles, Unshaded, positions_at, turns};

@@ -1,0 +1,145 @@
+//! The first part of stage 5 of [the pipeline](crate#the-pipeline), culling: triangles of a mesh come in as numbers of
+//! vertices on the screen; those that are small and do not show the wrong side are put into the records.
+
+use super::state::Culling;
+use crate::mesh::Mesh;
+use crate::target::{Room, positions_at};
+use crate::vertex::{PackedVertex, small};
+
+/// Placeholder for a recorded triangle's face word, until `shade_faces` fills it. The upper bits hold the number of the
+/// mesh's next triangle, and the lowest bit the sign of this triangle's area.
+#[derive(Clone, Copy)]
+pub(super) struct PendingFace(pub(super) u32);
+
+impl PendingFace {
+    #[inline]
+    pub(super) const fn new(next: usize, area: i32) -> Self {
+        Self((next as u32) << 1 | area as u32 >> 31)
+    }
+
+    /// Returns the triangle's number, and an area with the sign of the triangle's area.
+    #[inline]
+    pub(super) const fn parts(self) -> (usize, i64) {
+        ((self.0 as usize >> 1).wrapping_sub(1), if self.0 & 1 == 0 { 1 } else { -1 })
+    }
+}
+
+/// Returns the edge vectors b − a and c − a, x and y of each in 24.8, from words of
+/// [`PackedVertex`](crate::vertex::PackedVertex)s. `None` unless all components fit 16 bits.
+///
+/// # Format
+/// A vertex off the screen has x = -2²³, and its difference from any other x is not small.
+#[inline(always)]
+fn small_sides(a: &[u32; 2], b: &[u32; 2], c: &[u32; 2]) -> Option<[i32; 4]> {
+    let (ax, ay) = (a[0] as i32 >> 8, a[1] as i32 >> 8);
+    let side = |p: u32, from: i32| (p as i32 >> 8) - from;
+    let [bx, by, cx, cy] = [side(b[0], ax), side(b[1], ay), side(c[0], ax), side(c[1], ay)];
+    if small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
+}
+
+/// Reasons why a pass over triangles stops at one.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Stop {
+    /// The triangle is large, or not all of its vertices are on the screen.
+    Large,
+    /// There is no room for it.
+    Full,
+}
+
+/// Triangles are on their way through the first part of culling. Each loop is a function of its own, with few values,
+/// so that all of them are in registers.
+pub(super) struct CullPass<'p, 'r> {
+    pub(super) culling: Culling,
+    pub(super) room: Room<'p>,
+    pub(super) positions: &'r [[u32; 2]],
+    pub(super) degenerate: u32,
+    /// The triangle that the pass stops at.
+    pub(super) corners: [u16; 3],
+}
+
+impl CullPass<'_, '_> {
+    /// Passes over an indexed list.
+    #[inline(never)]
+    pub(super) fn list(&mut self, list: &mut &[u16], number: &mut usize) -> Option<Stop> {
+        let Self { culling, positions, .. } = *self;
+        let mut room = self.room.take();
+        let (mut rest, mut next) = (*list, *number);
+        let stop = loop {
+            let Some((corners, after)) = rest.split_first_chunk() else { break None };
+            if let Some(stop) = cull_one(
+                culling,
+                &mut room,
+                &mut self.degenerate,
+                next + 1,
+                *corners,
+                positions_at(positions, *corners),
+            ) {
+                let [i, j, k] = *corners;
+                self.corners = [i, j, k];
+                break Some(stop);
+            }
+            (rest, next) = (after, next + 1);
+        };
+        (*list, *number, self.room) = (rest, next, room);
+        stop
+    }
+
+    /// Passes over a list without indices.
+    #[inline(never)]
+    pub(super) fn row(&mut self, number: &mut usize, end: usize) -> Option<Stop> {
+        let Self { culling, positions, .. } = *self;
+        let mut room = self.room.take();
+        let mut next = *number;
+        let mut rest = positions.get(3 * next..3 * end).unwrap_or_default();
+        let stop = loop {
+            let Some(([a, b, c], after)) = rest.split_first_chunk() else { break None };
+            let first = (3 * next) as u16;
+            let corners = [first, first.wrapping_add(1), first.wrapping_add(2)];
+            if let Some(stop) = cull_one(culling, &mut room, &mut self.degenerate, next + 1, corners, [a, b, c]) {
+                self.corners = corners;
+                break Some(stop);
+            }
+            (rest, next) = (after, next + 1);
+        };
+        (*number, self.room) = (next, room);
+        stop
+    }
+
+    /// Passes over triangles of any topology.
+    #[inline(never)]
+    pub(super) fn any(&mut self, mesh: &Mesh<'_>, number: &mut usize, end: usize) -> Option<Stop> {
+        while *number < end {
+            // A list of one triangle.
+            let corners = mesh.any_triangle(*number)?;
+            let stop = self.list(&mut corners.as_slice(), number);
+            if stop.is_some() {
+                return stop;
+            }
+        }
+        None
+    }
+}
+
+/// Culls one triangle by its winding, or puts it into the records. `next` is the number of the triangle after it.
+#[inline(always)]
+fn cull_one(
+    culling: Culling,
+    room: &mut Room<'_>,
+    degenerate: &mut u32,
+    next: usize,
+    corners: [u16; 3],
+    [a, b, c]: [&[u32; 2]; 3],
+) -> Option<Stop> {
+    let Some([bx, by, cx, cy]) = small_sides(a, b, c) else { return Some(Stop::Large) };
+    let area = bx * cy - cx * by;
+    if area == 0 {
+        // Or none of the vertices is on the screen.
+        if (a[0] as i32) < PackedVertex::LEAST_X {
+            return Some(Stop::Large);
+        }
+        *degenerate += 1;
+    } else if !culling.leaves_out(area) && !room.push(corners, PendingFace::new(next, area).0) {
+        return Some(Stop::Full);
+    }
+    None
+}
