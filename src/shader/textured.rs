@@ -299,7 +299,8 @@ impl<T: Texture, S: Surface, W, F, L, const N: usize> VertexShader for LitTextur
     #[inline]
     fn store(varyings: &LitVaryings, words: &mut [u32]) {
         if let ([u, v, r, g, b, w], [a, b_, c, d]) = (varyings.as_ref(), words) {
-            let ten = |c: i32| (c >> 14) as u32 & 0x3FF;
+            // Surfaces stay within 255.0; the varyings of a canvas are its caller's.
+            let ten = |c: i32| (c.clamp(0, 255 << 16) >> 14) as u32;
             [*a, *b_, *c, *d] = [*u as u32, *v as u32, ten(*r) << 20 | ten(*g) << 10 | ten(*b), *w as u32];
         }
     }
