@@ -13,10 +13,11 @@ use zstrip::light::Unlit;
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::prelude::*;
-use zstrip::shader::{Blend, Replace, Textured};
+use zstrip::shader::{Blend, Gouraud, Replace, Textured};
 use zstrip::span::{DepthState, Shader};
 use zstrip::target::Framebuffer;
 use zstrip::texture::{Clamp, Image, Mirror, Rgb565Texel, Texture, Tile};
+use zstrip::vertex::Perspective;
 
 /// Width and height of the screen.
 const SIDE: usize = 128;
@@ -226,6 +227,106 @@ fn light_on_small_triangles_is_within_a_level_of_the_format() {
     println!("seed {seed}: {seen} px");
     accuracy::check("light on a texture in RGB565, before bits are cut", worst);
     assert!(seen > 50_000, "{seen} px");
+}
+
+/// Light changes by whole ranges within a pixel there, and the first pixel of the bounding box is far away.
+#[test]
+fn light_on_slivers_is_that_of_their_corners_in_any_strips() {
+    let seed = 15;
+    let mut rng = Rng::new(seed);
+    let shader = Textured::new(&WHITE).lit(Unlit::vertex_colors());
+    let mut seen = 0;
+    for case in 0..4000 {
+        let name = format!("seed {seed}, case {case}");
+        // From the top right to the bottom left, and two corners that are up to 1/8 px apart.
+        let at = [rng.between(60, 100), rng.between(4, 90)].map(|c| c * 256 + rng.between(0, 255));
+        let end = [at[0] - rng.between(256, 58 * 256), at[1] + rng.between(256, 24 * 256)];
+        let other = end.map(|c| c + rng.between(-32, 32));
+        let mut k = 0;
+        let corners = [at, end, other].map(|at| {
+            let color = [0; 3].map(|_: u8| [0, 255, rng.between(0, 255) as u8][(rng.between(0, 2) + k) as usize % 3]);
+            k += 1;
+            let position = [4 * at[0] - 65_536, 65_536 - 4 * at[1], 0, 1 << 16].map(Scalar::from_bits);
+            Corner { at: at.map(|c| f64::from(c) / 256.0), position, w: 1.0, uv: [0; 2], color }
+        });
+        // The colours of a texture's light, or without a texture.
+        let drawn = |way| match case / 2 % 2 {
+            0 => picture(way, &corners, &shader),
+            _ => picture(way, &corners, &Gouraud::vertex_colors()),
+        };
+        let first = drawn(WAYS[case % 2]);
+        for way in [Way::Strips { rows: 8, records: 500 }, Way::Strips { rows: 5, records: 0 }] {
+            assert!(drawn(way) == first, "{name}: {way:?} {corners:?}");
+        }
+        let black = picture(WAYS[0], &corners, &Textured::new(&Tile::new(&[[0]])));
+        for (k, pixel) in first.into_iter().enumerate().filter(|(k, _)| black[*k] == 0) {
+            let [shares, _] = shares(&corners, k % SIDE, k / SIDE);
+            let found = [f64::from(pixel >> 11), f64::from(pixel >> 5 & 63), f64::from(pixel & 31)];
+            for (channel, step) in [8.0, 4.0, 8.0].into_iter().enumerate() {
+                let exact: f64 = (0..3).map(|k| shares[k] * f64::from(corners[k].color[channel])).sum();
+                let over = found[channel] - exact / step;
+                assert!((-1.25..0.25).contains(&over), "{name}: {over} levels at {k}, {corners:?}");
+            }
+            seen += 1;
+        }
+    }
+    assert!(seen > 2000, "{seen} px");
+}
+
+/// A left edge along which u is 0 begins with the first column of the texture, not with the last one.
+#[test]
+fn edges_do_not_show_texels_of_the_other_side() {
+    let seed = 16;
+    let mut rng = Rng::new(seed);
+    static HALVES: [[u16; 64]; 1] = {
+        let mut texels = [[1; 64]; 1];
+        let mut k = 32;
+        while k < 64 {
+            texels[0][k] = 2;
+            k += 1;
+        }
+        texels
+    };
+    let tile = Tile::new(&HALVES);
+    let (mut other, mut seen) = (0, 0);
+    for case in 0..3000 {
+        let corners = [0, 1, 2].map(|k: usize| {
+            // Centres of pixels: many others lie on the edge.
+            let at = [rng.between(1, 55), rng.between(1, 24)].map(|c| c * 256 + 128);
+            let position = [4 * at[0] - 65_536, 65_536 - 4 * at[1], 0, 1 << 16].map(Scalar::from_bits);
+            let uv = [if k == case % 3 { 26_000 } else { 0 }, 0];
+            Corner { at: at.map(|c| f64::from(c) / 256.0), position, w: 1.0, uv, color: [0; 3] }
+        });
+        for pixel in picture(WAYS[case % 2], &corners, &Textured::new(&tile)) {
+            (other, seen) = (other + u32::from(pixel == 2), seen + u32::from(pixel == 1));
+        }
+    }
+    println!("seed {seed}: {other} of {seen} px");
+    assert!(other == 0 && seen > 100_000, "{other} of {seen} px");
+}
+
+/// A canvas takes varyings from its caller.
+#[test]
+fn light_beyond_its_range_is_full_light_or_none_on_a_canvas() {
+    let shader = Textured::new(&WHITE).lit(Unlit::vertex_colors());
+    let size = Size::new(SIDE as u32, SIDE as u32);
+    for (light, expected) in
+        [(255 << 16, 0xFFFF), (256 << 16, 0xFFFF), (1 << 30, 0xFFFF), (0, 0), (-1, 0), (-1 << 30, 0)]
+    {
+        // A small triangle and a large one.
+        for reach in [20, 100] {
+            let mut pixels = vec![0; SIDE * SIDE];
+            let mut renderer = Renderer::<Rgb565>::new(size).expect("a size");
+            let mut frame = renderer.begin(Rgb888::new(0, 0, 255));
+            let strip = frame.next_strip(&mut pixels, |scene| {
+                let corners = [(0, 0), (0, reach), (reach, 0)].map(|(x, y)| zstrip::ScreenPoint::center(x, y));
+                let varyings = Perspective::new([0; 2], [light; 3]);
+                scene.canvas().polygon_with(&corners.map(|corner| (corner, varyings)), &shader, 0);
+            });
+            let strip = strip.expect("a strip").expect("a strip");
+            assert_eq!(strip.pixels()[SIDE + 1], expected, "{light} on {reach} px");
+        }
+    }
 }
 
 /// Textures of other formats and other rules take the same way.

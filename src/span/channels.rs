@@ -48,7 +48,8 @@ impl<'c, P: PixelFormat> ChannelBrush<'c, P> {
 /// Differences are below 2¹¹, so numerators are below 2¹¹ · 60 · 2⁸ · 2 < 2²⁶, of which 2⁵ times fit. Changes are 2¹³ n
 /// / area, rounded: off by at most 1/2 unit and, since a unit of the high word is at most one of 8.8 before it is
 /// shifted, by 2⁻⁸ of one more. Over 60 columns and 25 rows, and with the cut of the start, that makes 44 units, 0.17
-/// of 255. A pixel of the triangle has channels in 0.5..=254.5 but for that: they do not run into each other.
+/// of 255. A pixel of the triangle has channels in 0.5..=254.5 but for that: they do not run into each other. Changes
+/// have to be below 2¹⁶: then the start is below 2³¹ before it is cut, and right although green has red above it.
 #[inline(always)]
 fn channel([a, b, c]: [i32; 3], planes: &ShortPlanes, down: u32, half: i32) -> [u32; 3] {
     let (n, m) = planes.numerators(b.wrapping_sub(a), c.wrapping_sub(a));
@@ -79,6 +80,10 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ChannelBrush<'_, P> {
         let [g, g_dx, g_dy] = channel(values(1), planes, down, half);
         let (at, dx, dy) = (pair(r, g), pair(r_dx, g_dx), pair(r_dy, g_dy));
         let [b, b_dx, b_dy] = channel(values(2), planes, down, half);
+        let bits = |change: u32| change ^ (change as i32 >> 31) as u32;
+        if (bits(r_dx) | bits(r_dy) | bits(g_dx) | bits(g_dy)) >> 16 != 0 {
+            return None;
+        }
         Some(ChannelRows { at: [at, b << 16], dx: [dx, b_dx << 16], dy: [dy, b_dy << 16] })
     }
 }

@@ -85,7 +85,9 @@ impl<V: Varyings> Planes<V> {
             }
             let (n, m) = short.numerators(b >> cut, c >> cut);
             let Some((x, y)) = gradients(n, m, short.reciprocal, short.shift as i32 - 15) else { return false };
-            (*at, *dx, *dy, *finer) = (short.offset(x, y), x, y, 8 - cut as i32);
+            // Half a unit is added, so that pixels on an edge do not show what is beyond it.
+            let start = short.offset(x, y).wrapping_add(1 << (8 - cut) >> 1);
+            (*at, *dx, *dy, *finer) = (start, x, y, 8 - cut as i32);
         }
         is_straight([*wa as u32, *wb as u32, *wc as u32], most, tolerance)
     }

@@ -111,6 +111,9 @@ impl<'s, P: PixelFormat, S: TexelSource<P>, const N: usize> TexelBrush<'s, S, P,
     }
 }
 
+/// Half a unit of 16.16, in 8.24.
+const HALF: u32 = 128;
+
 /// A plane: its value at the first pixel, and its changes to the right and down.
 type Plane = [u32; 3];
 
@@ -118,27 +121,30 @@ type Plane = [u32; 3];
 ///
 /// # Format
 /// Differences are at most 2¹⁶, so numerators are at most 2¹⁶ · 60 · 2⁸ · 2 < 2³¹. Changes are 2¹⁶ n / area, below 2²⁸:
-/// they are too small by at most two units, and the start by 128. Over 60 columns and 25 rows, that is below 2⁻¹⁵ of
-/// the texture, 1/128 texel of 256.
+/// they are too small by at most two units, and the start by 128, to which [`HALF`] is added. Over 60 columns and 25
+/// rows, that is below 2⁻¹⁶ of the texture, 1/256 texel of 256. Where pixels lie on an edge along which a coordinate is
+/// a whole number, hardly any shows a texel of the other side.
 #[inline(always)]
 fn coordinate(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
     let (n, m) = planes.numerators(b, c);
     let (dx, dy) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 15)?;
-    Some([((a as u32) << 8).wrapping_add_signed(planes.offset(dx, dy)), dx as u32, dy as u32])
+    let start = ((a as u32) << 8).wrapping_add(HALF);
+    Some([start.wrapping_add_signed(planes.offset(dx, dy)), dx as u32, dy as u32])
 }
 
 /// Computes the plane of a channel of light, from 9.7 at the corners.
 ///
 /// # Format
 /// Values are below 2¹⁵·¹, so numerators are below 2¹⁵·¹ · 60 · 2⁸ · 2 < 2³¹. Changes are 2⁸ n / area, rounded to
-/// nearest. Over 60 columns and 25 rows, and with the cut of the start, that is below 44 units, a third of a 255th:
-/// less than [`MARGIN`].
+/// nearest from 2²⁰ n / area: at most 2¹⁶. A steeper triangle, narrower than half a pixel, is drawn as large ones are.
+/// So the start is below 2³¹ before it is cut, and right although green has red above it. Over 60 columns and 25 rows,
+/// and with the cut of the start, errors are below 47 units, a third of a 255th: less than [`MARGIN`].
 #[inline(always)]
 fn channel(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
     let (n, m) = planes.numerators(b.wrapping_sub(a), c.wrapping_sub(a));
-    let (dx, dy) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 22)?;
-    let (dx, dy) = ((dx + 1) >> 1, (dy + 1) >> 1);
-    let offset = dx.wrapping_mul(planes.to.0).wrapping_add(dy.wrapping_mul(planes.to.1)) >> 8;
+    let (dx, dy) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 11)?;
+    let (dx, dy) = ((dx + (1 << 11)) >> 12, (dy + (1 << 11)) >> 12);
+    let offset = (dx * planes.to.0 + dy * planes.to.1) >> 8;
     Some([a.wrapping_add(offset) as u32, dx as u32, dy as u32])
 }
 
@@ -174,7 +180,8 @@ const fn bends_little(least: u32, most: u32, texels: u32, bits: u32) -> bool {
 /// a factor of 2, too much is moved in any case.
 #[inline(never)]
 fn is_straight(sides: Size, [du, dv]: [(i32, i32); 2], [a, b, c]: [u32; 3], bits: u32) -> bool {
-    let range = |(b, c): (i32, i32)| (b.max(c).max(0) - b.min(c).min(0)) as u32 >> 2;
+    // Rounded up: in a wide texture, one unit is a texel.
+    let range = |(b, c): (i32, i32)| (b.max(c).max(0) - b.min(c).min(0) + 3) as u32 >> 2;
     let texels = (range(du).wrapping_mul(sides.width) >> 6).max(range(dv).wrapping_mul(sides.height) >> 6);
     let most = (a & 63).max(b & 63).max(c & 63);
     let q = |word: u32| (word >> 6) >> (most - (word & 63)).min(31);
@@ -336,6 +343,21 @@ mod tests {
                 (clear + u32::from(is_clear), straight + u32::from(is), refused + u32::from(!is));
         }
         assert!(clear > 2000 && straight > clear && refused > 2000, "{clear}, {straight}, {refused}");
+    }
+
+    /// One unit of 16.16 is a texel of the widest textures.
+    #[test]
+    fn few_units_of_wide_textures_are_many_texels() {
+        let words = [1_i64 << 40, 1 << 40, 1 << 39].map(|w| inverse_w(&ClipVertex { w, ..ClipVertex::default() }));
+        for units in 1..40 {
+            for side in [4096, 65_535] {
+                let moved = f64::from(units) / 65_536.0 * f64::from(side) * (2f64.sqrt() - 1.0) / (2f64.sqrt() + 1.0);
+                for (bits, bound) in [(4, 1.0 / 16.0), (5, 1.0 / 32.0)] {
+                    let found = is_straight(Size::new(side, 1), [(0, units), (0, 0)], words, bits);
+                    assert!(!found || moved <= bound, "{units} units of {side} texels: {moved} texels");
+                }
+            }
+        }
     }
 
     /// A texel of 16 bits under light is the one that channels of 8 bits make, cut to 16 bits, or next to it.
