@@ -26,11 +26,19 @@ pub enum Positions<'a> {
     Homogeneous(&'a [[Scalar; 4]]),
 }
 
+#[cfg(test)]
+std::thread_local! {
+    /// Number of times that a test has looked up a position.
+    pub(crate) static LOOKED_UP: core::cell::Cell<u32> = const { core::cell::Cell::new(0) };
+}
+
 impl Positions<'_> {
     /// Returns the stored numbers of a position. It returns 0 past the end, and 0 as the w of positions that have
     /// none.
     #[inline(never)]
     pub(crate) fn numbers(&self, index: usize) -> [i32; 4] {
+        #[cfg(test)]
+        LOOKED_UP.set(LOOKED_UP.get() + 1);
         match self {
             Self::Quantized { points, .. } => {
                 let [x, y, z] = points.get(index).copied().unwrap_or_default();
@@ -535,6 +543,8 @@ impl<'a> Mesh<'a> {
     /// Returns the position of a vertex, rounded to 16.16 and saturated. `Homogeneous` positions lose their w.
     #[must_use]
     pub fn position(&self, vertex: usize) -> Vec3 {
+        #[cfg(test)]
+        LOOKED_UP.set(LOOKED_UP.get() + 1);
         match self.data.positions {
             Positions::Quantized { points, scale, offset } => {
                 let q = points.get(vertex).copied().unwrap_or_default();

@@ -11,5 +11,7 @@ mod order;
 pub use bounds::{Bounds, BoundsNode};
 pub use edges::{EdgesError, edges};
 pub use lines::{LineTopology, Lines, Points, Vertices};
+#[cfg(test)]
+pub(crate) use mesh::LOOKED_UP;
 pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
 pub use order::{sort_back_to_front, view_depth};

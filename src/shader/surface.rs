@@ -158,3 +158,67 @@ impl<const D: usize, const P: usize> LitMaterial<D, P> {
         [third(0), third(1), third(2)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::light::{DirectionalLight, Lighting, Material, PointLight, Viewer};
+    use crate::math::{Affine, Scalar, Vec3};
+    use crate::mesh::{LOOKED_UP, Mesh, MeshData, Positions};
+
+    const CORNERS: [Vec3; 3] = [Vec3::ZERO, Vec3::X, Vec3::Y];
+    const SUN: DirectionalLight = DirectionalLight { direction: Vec3::Z, color: Rgb888::new(200, 200, 200) };
+    const LAMP: PointLight =
+        PointLight { position: Vec3::Z, color: Rgb888::new(200, 200, 200), range: Scalar::from_bits(9 << 16) };
+    const AFAR: Viewer = Viewer::Toward(Vec3::Z);
+    const NEAR: Viewer = Viewer::At(Vec3::from_ints(0, 0, 3));
+
+    /// Returns how many positions the colour of a vertex takes, and that of a face: three of its own for the normal,
+    /// and three for its middle.
+    fn looked_up<const D: usize, const P: usize>(
+        directional: [DirectionalLight; D],
+        points: [PointLight; P],
+        viewer: Viewer,
+        material: Material,
+    ) -> [u32; 2] {
+        let mesh = Mesh::new(MeshData::new(Positions::Exact(&CORNERS))).expect("a mesh");
+        let lighting = Lighting { ambient: Rgb888::new(9, 9, 9), directional, points, viewer };
+        let lit = lighting.on(material, &Affine::IDENTITY, mesh.bounds());
+        let count = |ask: &dyn Fn()| {
+            LOOKED_UP.set(0);
+            ask();
+            LOOKED_UP.get()
+        };
+        let face = Face::new(&mesh, 0, [0, 1, 2], Side::Front);
+        [
+            count(&|| {
+                lit.vertex(&VertexRef::new(&mesh, 1));
+            }),
+            count(&|| {
+                lit.face(&face);
+            }),
+        ]
+    }
+
+    #[test]
+    fn no_position_is_looked_up_that_no_light_needs() {
+        let white = Rgb888::new(255, 255, 255);
+        let (matte, glossy) = (Material::from(Material::matte(white)), Material::glossy(white, white, 20));
+        // Ambient light alone: not even a normal.
+        for viewer in [AFAR, NEAR] {
+            for material in [matte, glossy] {
+                assert_eq!(looked_up([], [], viewer, material), [0, 0], "{viewer:?} {material:?}");
+            }
+        }
+        // Far lights: the normal of the face.
+        assert_eq!(looked_up([SUN], [], AFAR, matte), [0, 3]);
+        assert_eq!(looked_up([SUN], [], AFAR, glossy), [0, 3]);
+        assert_eq!(looked_up([SUN], [], AFAR, glossy.two_sided()), [0, 3]);
+        assert_eq!(looked_up([SUN], [], NEAR, matte), [0, 3]);
+        // The place, too: for highlights that are seen from close by, for lamps, and to see which side a vertex shows.
+        assert_eq!(looked_up([SUN], [], NEAR, glossy), [1, 6]);
+        assert_eq!(looked_up([], [LAMP], AFAR, matte), [1, 6]);
+        assert_eq!(looked_up([SUN], [LAMP], NEAR, glossy), [1, 6]);
+        assert_eq!(looked_up([SUN], [], NEAR, matte.two_sided()), [1, 3]);
+    }
+}
