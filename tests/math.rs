@@ -178,6 +178,69 @@ fn look_at_puts_the_eye_at_the_origin_and_the_target_ahead() {
     assert!(worst <= 4.0);
 }
 
+/// The rows of a view in f64, for the numbers as they are.
+fn exact_view(eye: Vec3, target: Vec3, up: Vec3) -> [[f64; 3]; 3] {
+    let cross =
+        |a: [f64; 3], b: [f64; 3]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let unit = |v: [f64; 3]| v.map(|c| c / length(v));
+    let (e, t) = (to_f64(eye), to_f64(target));
+    let z = unit([0, 1, 2].map(|k| e[k] - t[k]));
+    let x = unit(cross(unit(to_f64(up)), z));
+    [x, cross(z, x), z]
+}
+
+/// `up` comes as close to the view direction as numbers of 16.16 can tell, and closer than a unit vector can.
+#[test]
+fn look_at_is_a_rotation_whatever_is_up() {
+    let (mut skewed, mut short, mut off) = (0.0_f64, 0.0_f64, 0.0_f64);
+    for seed in 0..20_000 {
+        let mut rng = Rng::new(seed);
+        let reach = (rng.unit() * 12.0).exp2();
+        let (eye, target) = (vector(&mut rng, reach), vector(&mut rng, reach));
+        let view = to_f64(eye - target);
+        // Long enough for its 16.16 to tell a thousandth of a degree.
+        if length(view) < 0.1 {
+            continue;
+        }
+        let degrees = if seed % 4 == 0 { rng.unit() * 180.0 } else { (rng.unit() * 1000_f64.ln()).exp() / 1000.0 };
+        let across = degrees.to_radians().tan().clamp(-10.0, 10.0) * length(view);
+        let side = exact_view(eye, target, vector(&mut rng, 1.0))[0].map(|c| c * across);
+        // Along the view or against it, and of any length.
+        let sign = rng.pick(&[-1.0, 1.0]) * 8000.0 / length(view) * (-10.0 * rng.unit()).exp2();
+        let up = Vec3::from_bits([0, 1, 2].map(|k| ((view[k] + side[k]) * sign / STEP).clamp(-2e9, 2e9) as i32));
+        let exact = exact_view(eye, target, up);
+        let Ok(found) = Affine::look_at(eye, target, up) else { panic!("seed {seed}: {eye:?} {target:?} {up:?}") };
+        let [x, y, z] = rows(&found).map(|[x, y, z, _]| [x, y, z]);
+        for (a, b) in [(x, y), (y, z), (z, x)] {
+            skewed = skewed.max((a[0] * b[0] + a[1] * b[1] + a[2] * b[2]).abs());
+            short = short.max((length(a) - 1.0).abs());
+        }
+        for (found, exact) in [x, y, z].as_flattened().iter().zip(exact.as_flattened()) {
+            off = off.max((found - exact).abs());
+        }
+    }
+    accuracy::check("view, product of two rows", skewed / STEP);
+    accuracy::check("view, length of a row", short / STEP);
+    accuracy::check("entry of a view", off / STEP);
+}
+
+/// Directions that are parallel by the numbers that were given, whatever their lengths are.
+#[test]
+fn look_at_tells_an_up_that_is_parallel_from_one_that_is_nearly_so() {
+    for seed in 0..2000 {
+        let mut rng = Rng::new(seed);
+        let [x, y, z] = [(); 3].map(|()| rng.between(-5000, 5000));
+        let (a, b) = (rng.between(1, 5000), rng.between(1, 5000) * rng.pick(&[-1, 1]));
+        let eye = vector(&mut rng, 50.0);
+        let view = Vec3::from_bits([x, y, z].map(|c| c * a));
+        let up = Vec3::from_bits([x, y, z].map(|c| c * b));
+        let parallel = Affine::look_at(eye + view, eye, up);
+        assert!(parallel.is_err(), "seed {seed}: {view:?} {up:?} {parallel:?}");
+        let beside = Affine::look_at(eye + view, eye, up + Vec3::from_bits([i32::from(y != 0 || z != 0), 0, 0]));
+        assert!([y, z] == [0; 2] || beside.is_ok_and(|view| skew(&view) < 11.0 * STEP), "seed {seed}: {beside:?}");
+    }
+}
+
 #[test]
 fn perspective_maps_near_to_0_and_far_to_1() {
     let mut worst = 0_f64;

@@ -105,11 +105,13 @@ fn affines(source: &mut Source<'_>, hash: &mut Hash) {
     hash.ints(&(a * p).to_bits());
     hash.ints(&a.transform_vector(p).to_bits());
     if let Ok(camera) = Affine::look_at(source.vector(), source.vector(), source.vector()) {
-        // Unit rows, within rounding; the second one is shorter where `up` is close to the view direction.
-        for (k, row) in camera.to_rows().iter().enumerate() {
-            let square: i64 = row[..3].iter().map(|c| i64::from(*c) * i64::from(*c)).sum();
-            let error = square - (1 << 32);
-            assert!(error < 1 << 20 && (k == 1 || error > -(1 << 20)), "{camera:?}");
+        // A rotation, within rounding: products of two rows within 2⁻¹⁴ of 0, lengths within 2⁻¹³ of 1.
+        let rows = camera.to_rows();
+        for (k, row) in rows.iter().enumerate() {
+            let next = &rows[(k + 1) % 3];
+            let product = |other: &[i32; 4]| (0..3).map(|c| i64::from(row[c]) * i64::from(other[c])).sum::<i64>();
+            let (skew, stretch) = (product(next), product(row) - (1 << 32));
+            assert!(skew.abs() <= 1 << 18 && stretch.abs() <= 1 << 20, "{camera:?}");
         }
         hash.ints(camera.to_rows().as_flattened());
     }

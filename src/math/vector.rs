@@ -107,7 +107,35 @@ impl Vec3 {
         let shift = widest.leading_zeros();
         let a = [(bits[0] as i64) << shift, (bits[1] as i64) << shift, (bits[2] as i64) << shift];
         // |a| ≤ 2³², so the squares are those of a / 4.
-        let b = [a[0] >> 2, a[1] >> 2, a[2] >> 2];
+        Self::of_length_1([a[0] >> 2, a[1] >> 2, a[2] >> 2])
+    }
+
+    /// Returns the vector of length 1 at right angles to two others, right-handed, each component within 2⁻¹⁵; `None`
+    /// if they are exactly parallel, or one of them is zero.
+    ///
+    /// # Format
+    /// Products are at most 2⁶², and not rounded; their differences are at most 2⁶³ - 2³¹. So it does not matter how
+    /// short the vectors are, nor how close to each other.
+    #[must_use]
+    pub(super) const fn across(self, other: Self) -> Option<Self> {
+        let (a, b) = (self.to_bits(), other.to_bits());
+        let n = [
+            exact_minor(a[1], b[2], a[2], b[1]),
+            exact_minor(a[2], b[0], a[0], b[2]),
+            exact_minor(a[0], b[1], a[1], b[0]),
+        ];
+        let widest = n[0].unsigned_abs() | n[1].unsigned_abs() | n[2].unsigned_abs();
+        if widest == 0 {
+            return None;
+        }
+        // The widest component takes 30 bits.
+        let zeros = widest.leading_zeros();
+        let (left, right) = (zeros.saturating_sub(34), 34_u32.saturating_sub(zeros));
+        Self::of_length_1([n[0] << left >> right, n[1] << left >> right, n[2] << left >> right])
+    }
+
+    /// Returns the vector of length 1 in the direction of components of at most 31 bits, one of which has 30.
+    const fn of_length_1(b: [i64; 3]) -> Option<Self> {
         let length = ((b[0] * b[0] + b[1] * b[1] + b[2] * b[2]) as u64).isqrt() as i64;
         if length == 0 {
             return None;
@@ -129,6 +157,11 @@ impl Vec3 {
 /// Returns `a b - c d` of 16.16 numbers. The products are halved, so that the difference fits 64 bits.
 const fn minor(a: i32, b: i32, c: i32, d: i32) -> Scalar {
     saturate((((a as i64 * b as i64) >> 1) - ((c as i64 * d as i64) >> 1)) >> 15)
+}
+
+/// Returns `a b - c d` exactly.
+const fn exact_minor(a: i32, b: i32, c: i32, d: i32) -> i64 {
+    a as i64 * b as i64 - c as i64 * d as i64
 }
 
 impl Add for Vec3 {
