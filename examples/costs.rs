@@ -1,248 +1,157 @@
-//! Measures a pixel: firmware that draws a screen-filling square with each material, blend mode and kind of fog, and
-//! counts ticks. `ci/costs` runs it and prints the table.
+//! Measures what drawing costs: firmware that counts frames, and a host's program that fits costs to the counts.
+//! `ci/costs` runs both.
 //!
-//! It prints, for each row, `name,ticks`: SysTick's ticks over a frame, between two instructions that mark it for a
-//! counting plugin. The first row draws nothing: it is the cost of clearing colours and depths.
+//! There are two kinds of firmware, as code that several materials share is not inlined: with `--cfg 'costs="pixels"'`
+//! it draws pixels, otherwise grids. It prints, for each frame, `name run ticks`: SysTick's ticks (instructions on
+//! RISC-V), between two instructions that mark the frame for a counting plugin.
 //!
-//! A new row is a line in [`rows::ROWS`].
+//! | name | run | |
+//! |---|---|---|
+//! | format`/`material | grid`/`rows of a strip | a grid of triangles, see `costs/grids.rs` |
+//! | format`/clear` | rows | an empty frame |
+//! | `w4` and so on, `empty`, `empty_spot` | rows | workloads of the benchmark |
+//! | `pixel` | number | a material on the whole screen, see `costs/pixels.rs` |
+//! | `format/`name, `packer/`name | `pixels` | see `costs/formats.rs` |
+//!
+//! On a host it takes files of these lines, with instructions and cycles in place of ticks:
+//!
+//! ```text
+//! cargo run --release --example costs -- FOLDER m0+ m4 rv32imc
+//! ```
+//! reads `FOLDER/m0+.counts` and so on, and writes `costs.csv` and tables into the folder.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
-mod firmware;
-
+#[path = "firmware/count.rs"]
+mod count;
 #[cfg(target_os = "none")]
-mod rows {
-    use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-    use zstrip::light::{DirectionalLight, Lighting, LitMaterial, Material, Matte, PointLight, Sun, Sunlit, Viewer};
-    use zstrip::math::{Affine, Projective, Scalar, Vec3};
-    use zstrip::mesh::{Mesh, MeshData, Positions, Topology};
-    use zstrip::shader::{
-        Add, AddAlpha, Alpha, AlphaTest, Blend, Flat, FogCurve, FogTable, Fogged, Gouraud, Matcap, Multiply, Opacity,
-        Phong, PhongNear, ScreenDoor, Textured,
-    };
-    use zstrip::span::{DepthState, Shader};
-    use zstrip::target::{Strip, WithDepth, WithRecords};
-    use zstrip::texture::{Bilinear, Clamp, Image, Mirror, PaletteTexel, Rgb888Texel, TexelFormat, Tile};
-    use zstrip::{Scene, State};
+mod firmware;
+#[cfg(not(target_os = "none"))]
+#[path = "costs/fit.rs"]
+mod fit;
+#[path = "costs/formats.rs"]
+mod formats;
+#[path = "costs/grids.rs"]
+mod grids;
+#[cfg_attr(not(target_os = "none"), allow(dead_code))] // it draws as firmware
+#[path = "costs/materials.rs"]
+mod materials;
+#[cfg_attr(not(target_os = "none"), allow(dead_code))]
+#[path = "costs/pixels.rs"]
+mod pixels;
+#[cfg(target_os = "none")]
+#[path = "firmware/ticks.rs"]
+mod ticks;
+#[cfg(not(target_os = "none"))]
+#[path = "costs/work.rs"]
+mod work;
+mod workloads;
 
-    type S<'s, 'a, 'p> = &'s mut Scene<'a, Strip<'p, Rgb565, WithDepth, WithRecords>>;
+use materials::Kind;
+use workloads::price::Priced;
 
-    /// Name of a row, and what is drawn for it.
-    pub type Row = (&'static str, fn(S<'_, '_, '_>));
-
-    pub const ROWS: &[Row] = &[
-        ("nothing", |_| {}),
-        ("`Flat`", |s| square(s, &flat())),
-        ("`Gouraud`", |s| square(s, &GOURAUD)),
-        ("`Matcap`", |s| square(s, &Matcap::<Rgb565, 64>::new(&BALL, &Affine::IDENTITY))),
-        ("`Textured`, nearest, repeated, w constant", |s| square(s, &Textured::new(&TILE))),
-        ("the same in perspective", |s| floor(s, &Textured::new(&TILE))),
-        ("mirrored", |s| floor(s, &Textured::new(&TILE).wrap(Mirror))),
-        ("clamped", |s| floor(s, &Textured::new(&TILE).wrap(Clamp))),
-        ("bilinear", |s| floor(s, &Textured::new(&TILE).filter(Bilinear))),
-        ("nearest, RGB888", |s| image(s, Rgb888Texel, |s, t| floor(s, &Textured::new(t)))),
-        ("bilinear, RGB888", |s| image(s, Rgb888Texel, |s, t| floor(s, &Textured::new(t).filter(Bilinear)))),
-        ("nearest, palette of 8 bits", |s| {
-            image(s, PaletteTexel::<8>(&[[200, 100, 50]; 256]), |s, t| floor(s, &Textured::new(t)));
-        }),
-        ("nearest, lit", |s| floor(s, &Textured::new(&TILE).lit(light()))),
-        ("bilinear, lit", |s| floor(s, &Textured::new(&TILE).filter(Bilinear).lit(light()))),
-        ("`Blend` of it, nearest, `Opacity`", |s| floor(s, &Blend::new(Textured::new(&TILE), Opacity(100)))),
-        ("`Phong`, 1 directional light, matte", |s| square(s, &far::<1>(0))),
-        ("the same, 2 directional lights", |s| square(s, &far::<2>(0))),
-        ("1 directional light, glossy, shininess 32", |s| square(s, &far::<1>(32))),
-        ("the same, shininess 255", |s| square(s, &far::<1>(255))),
-        ("`PhongNear`, 1 point light, matte", |s| square(s, &near(0, Viewer::Toward(Vec3::Z)))),
-        ("the same, glossy, shininess 32", |s| square(s, &near(32, Viewer::Toward(Vec3::Z)))),
-        ("the same, viewer near", |s| square(s, &near(32, Viewer::At(Vec3::from_ints(0, 0, 3))))),
-        ("`Blend` of `Flat`, `Opacity`", |s| glass(s, &Blend::new(flat(), Opacity(100)))),
-        ("`Blend` of `Gouraud`, `Opacity`", |s| glass(s, &Blend::new(GOURAUD, Opacity(100)))),
-        ("the same, `Alpha`", |s| glass(s, &Blend::new(GOURAUD, Alpha))),
-        ("the same, `Add`", |s| glass(s, &Blend::new(GOURAUD, Add))),
-        ("the same, `AddAlpha`", |s| glass(s, &Blend::new(GOURAUD, AddAlpha))),
-        ("the same, `Multiply`", |s| glass(s, &Blend::new(GOURAUD, Multiply))),
-        ("`AlphaTest` of `Gouraud`", |s| square(s, &AlphaTest::new(GOURAUD, 128))),
-        ("`ScreenDoor` of `Gouraud`, half of the pixels", |s| square(s, &ScreenDoor::new(GOURAUD, 8))),
-        ("`Fogged` `Flat`", |s| square(s, &Fogged::new(flat(), &MIST, Rgb888::new(200, 200, 200)))),
-        ("`Fogged` `Gouraud`", |s| square(s, &Fogged::new(GOURAUD, &MIST, Rgb888::new(200, 200, 200)))),
-    ];
-
-    const GOURAUD: Gouraud = Gouraud::vertex_colors();
-
-    fn flat() -> Flat {
-        Flat::unlit(Rgb888::new(200, 100, 50))
-    }
-
-    static CORNERS: [Vec3; 4] = [
-        Vec3::from_milli(-1000, -1000, 250),
-        Vec3::from_milli(1000, -1000, 250),
-        Vec3::from_milli(1000, 1000, 750),
-        Vec3::from_milli(-1000, 1000, 750),
-    ];
-    static SQUARE: Mesh<'static> = Mesh::constant(MeshData {
-        topology: Topology::Quads,
-        normals: Some(&[[-6553, -6553, 13_503], [6553, -6553, 13_503], [6553, 6553, 13_503], [-6553, 6553, 13_503]]),
-        colors: Some(&[[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]]),
-        ..MeshData::new(Positions::Exact(&CORNERS))
-    });
-
-    /// The same square, its upper side twice as far away.
-    static FLOOR: Mesh<'static> = {
-        const fn corner(x: i32, y: i32, w: i32) -> [Scalar; 4] {
-            let half = Scalar::from_bits(w << 15);
-            [Scalar::from_bits((x * w) << 16), Scalar::from_bits((y * w) << 16), half, Scalar::from_bits(w << 16)]
-        }
-        const CORNERS: [[Scalar; 4]; 4] = [corner(-1, -1, 1), corner(1, -1, 1), corner(1, 1, 2), corner(-1, 1, 2)];
-        const fn at(u: i32, v: i32) -> [Scalar; 2] {
-            [Scalar::from_bits(u << 16), Scalar::from_bits(v << 16)]
-        }
-        Mesh::constant(MeshData {
-            topology: Topology::Quads,
-            normals: Some(&[[0, 0, 16_384]; 4]),
-            uvs: Some(&[at(0, 4), at(4, 4), at(6, 0), at(-2, 0)]),
-            ..MeshData::new(Positions::Homogeneous(&CORNERS))
-        })
-    };
-
-    static TEXELS: [[u16; 64]; 64] = [[0x1234; 64]; 64];
-    static TILE: Tile<'static, 64, 64> = Tile::new(&TEXELS);
-    static BYTES: [u8; 3 * 64 * 64] = [77; 3 * 64 * 64];
-
-    fn floor(scene: S<'_, '_, '_>, shader: &impl Shader<Rgb565>) {
-        scene.draw(&FLOOR, &Projective::IDENTITY, shader);
-    }
-
-    /// Draws with a texture of 64 x 64 texels.
-    fn image<T: TexelFormat>(scene: S<'_, '_, '_>, format: T, draw: impl FnOnce(S<'_, '_, '_>, &Image<'_, T>)) {
-        let bytes = BYTES.get(..64 * 64 * T::BITS / 8).unwrap_or_default();
-        if let Ok(image) = Image::new(bytes, Size::new(64, 64), format) {
-            draw(scene, &image);
-        }
-    }
-
-    fn light() -> Sunlit {
-        let sun = Sun::new(Vec3::from_ints(1, 2, 4), Rgb888::new(220, 220, 200), Rgb888::new(30, 30, 30));
-        sun.on(&Matte::WHITE, &Affine::IDENTITY)
-    }
-
-    static BALL: [[u16; 64]; 64] = [[0x1234; 64]; 64];
-
-    static MIST: FogTable = match FogTable::perspective(
-        Scalar::ONE,
-        Scalar::from_bits(20 << 16),
-        FogCurve::Exponential { density: Scalar::from_bits(1 << 13) },
-    ) {
-        Ok(table) => table,
-        Err(_) => panic!("near and far"),
-    };
-
-    fn square(scene: S<'_, '_, '_>, shader: &impl Shader<Rgb565>) {
-        scene.draw(&SQUARE, &Projective::IDENTITY, shader);
-    }
-
-    /// Tested against depth, without leaving it.
-    fn glass(scene: S<'_, '_, '_>, shader: &impl Shader<Rgb565>) {
-        let state = State { depth: DepthState::TEST, ..State::DEFAULT };
-        scene.draw_with(state, &SQUARE, &Projective::IDENTITY, shader);
-    }
-
-    fn material(shininess: u8) -> Material {
-        Material::glossy(Rgb888::new(200, 100, 50), Rgb888::new(250, 250, 250), shininess)
-    }
-
-    const SUN: DirectionalLight =
-        DirectionalLight { direction: Vec3::from_ints(1, 2, 4), color: Rgb888::new(220, 220, 200) };
-
-    fn on<const D: usize, const P: usize>(lighting: Lighting<D, P>, shininess: u8) -> LitMaterial<D, P> {
-        lighting.on(&material(shininess), &Affine::IDENTITY, SQUARE.bounds())
-    }
-
-    fn far<const D: usize>(shininess: u8) -> Phong<D> {
-        let lighting = Lighting {
-            ambient: Rgb888::new(30, 30, 30),
-            directional: [SUN; D],
-            points: [],
-            viewer: Viewer::Toward(Vec3::Z),
-        };
-        Phong::new(on(lighting, shininess))
-    }
-
-    fn near(shininess: u8, viewer: Viewer) -> PhongNear<0, 1> {
-        let lamp = PointLight {
-            position: Vec3::from_ints(0, 0, 2),
-            color: [220, 220, 200],
-            range: Scalar::from_bits(5 << 16),
-        };
-        let lighting = Lighting { ambient: Rgb888::new(30, 30, 30), directional: [], points: [lamp], viewer };
-        PhongNear::new(on(lighting, shininess))
-    }
-}
+/// Workloads of the benchmark, and the materials whose costs foretell theirs.
+const WORKLOADS: [(&str, Priced, Option<Kind>); 6] = [
+    ("empty", Priced::Empty, None),
+    ("empty_spot", Priced::EmptySpot, None),
+    ("w4", Priced::W4, Some(Kind::Flat)),
+    ("w5", Priced::W5, Some(Kind::Gouraud)),
+    ("w9", Priced::W9, Some(Kind::LitTextured)),
+    ("w10", Priced::W10, Some(Kind::Flat)),
+];
 
 #[cfg(target_os = "none")]
 mod counting {
-    use super::rows::{ROWS, Row};
-    use core::arch::asm;
+    use super::grids::{self, GRIDS, HEIGHT, Memory, Parts, ROWS, WIDTH};
+    use super::materials::KINDS;
+    use super::workloads::Buffers;
+    use super::workloads::price::{self, By, Under};
+    use super::{WORKLOADS, count, formats, pixels};
     use core::hint::black_box;
-    use cortex_m::peripheral::syst::SystClkSource;
-    use cortex_m::peripheral::{Peripherals, SYST};
     use semihosting::println;
-    use zstrip::Renderer;
-    use zstrip::embedded_graphics_core::geometry::Size;
-    use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-    use zstrip::target::StripPixels;
+    use zstrip::bytemuck;
+    use zstrip::color::{Dithered, PixelFormat, Rgb565Be};
+    use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888};
 
-    const WIDTH: usize = 320;
-    const HEIGHT: usize = 240;
+    const PIXELS: usize = WIDTH * HEIGHT;
 
-    struct Memory {
-        color: [u16; WIDTH * HEIGHT],
-        depth: [u16; WIDTH * HEIGHT],
-        records: [u32; 256],
+    pub struct Static {
+        pub color: [u32; PIXELS],
+        pub depth: [u16; PIXELS],
+        pub records: [u32; 96 * 1024],
+        pub packed: [u8; PIXELS / 2],
     }
 
-    static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _] };
+    static mut BUFFERS: Static = Static { color: [0; _], depth: [0; _], records: [0; _], packed: [0; _] };
+    static mut PARTS: Parts = Parts::NEW;
 
-    pub fn run() {
-        let memory = &raw mut MEMORY;
-        // SAFETY: `run` is called once; this is the only reference.
-        let memory = unsafe { &mut *memory };
-        let Some(mut peripherals) = Peripherals::take() else {
-            return;
-        };
-        let timer = &mut peripherals.SYST;
-        timer.set_clock_source(SystClkSource::Core);
-        // Goes round once in 84 million instructions: more than a frame takes.
-        timer.set_reload(0x00FF_FFFF);
-        timer.enable_counter();
-        for row in ROWS {
-            timer.clear_current();
-            let ticks = count(memory, row);
-            println!("{},{ticks}", row.0);
+    /// Memory of a frame in strips of some rows.
+    pub fn lend<P: PixelFormat>(buffers: &mut Static, rows: usize) -> Memory<'_, P> {
+        let pixels = WIDTH * rows;
+        let color: &mut [u8] = bytemuck::cast_slice_mut(&mut buffers.color);
+        Memory {
+            color: bytemuck::cast_slice_mut(&mut color[..pixels * size_of::<P::Raw>()]),
+            depth: &mut buffers.depth[..pixels],
+            records: &mut buffers.records,
         }
     }
 
-    /// Ticks of a frame.
-    #[inline(never)]
-    fn count(memory: &mut Memory, row: &Row) -> u32 {
-        let Memory { color, depth, records } = memory;
-        let screen = Size::new(WIDTH as u32, HEIGHT as u32);
-        let Ok(renderer) = Renderer::<Rgb565>::new(screen).and_then(|renderer| renderer.with_depth(depth)) else {
-            return 0;
-        };
-        let mut renderer = renderer.with_records(records);
-        let sink = |strip: &StripPixels<'_, Rgb565>| {
-            black_box(strip.pixels());
-            Ok::<(), core::convert::Infallible>(())
-        };
-        let start = SYST::get_current();
-        // SAFETY: copies a register to itself.
-        unsafe { asm!("mov r10, r10") };
-        let stats = renderer.frame_to(sink, color, Rgb565::BLACK, |scene| row.1(scene)).unwrap_or_default();
-        // SAFETY: as above.
-        unsafe { asm!("mov r11, r11") };
-        let ticks = start.wrapping_sub(SYST::get_current()) & 0x00FF_FFFF;
-        black_box(stats);
-        ticks
+    /// Counts the grids of all materials in a format, in strips of these heights.
+    fn fit<P: PixelFormat>(name: &str, heights: &[usize], buffers: &mut Static, parts: &mut Parts) {
+        for rows in ROWS {
+            let ticks = count::ticks_of(|| {
+                let empty = grids::frame::<P>(lend(buffers, rows), &mut |strip| _ = black_box(strip), &mut |_| {});
+                black_box(empty)
+            });
+            println!("{name}/clear {rows} {ticks}");
+        }
+        for number in 0..GRIDS {
+            let grid = grids::grid(number);
+            let places = &grids::places(grid.draws())[..grid.draws()];
+            let mesh = parts.build(&grid).expect("a mesh");
+            for (material, kind) in KINDS {
+                for &rows in heights {
+                    let ticks = count::ticks_of(|| {
+                        kind.draw::<P>(lend(buffers, rows), &mut |strip| _ = black_box(strip), &mesh, places)
+                    });
+                    println!("{name}/{material} {number}/{rows} {ticks}");
+                }
+            }
+        }
+    }
+
+    pub fn run() {
+        let (buffers, parts) = (&raw mut BUFFERS, &raw mut PARTS);
+        // SAFETY: `run` is called once; these are the only references.
+        let (buffers, parts) = unsafe { (&mut *buffers, &mut *parts) };
+        if !count::start() {
+            return;
+        }
+        if cfg!(costs = "pixels") {
+            for (number, (_, draw)) in pixels::ROWS.iter().enumerate() {
+                let ticks = count::ticks_of(|| {
+                    grids::frame::<Rgb565>(lend(buffers, HEIGHT), &mut |strip| _ = black_box(strip), &mut |s| draw(s))
+                });
+                println!("pixel {number} {ticks}");
+            }
+            return formats::count(buffers);
+        }
+        fit::<Rgb565>("Rgb565", &ROWS, buffers, parts);
+        fit::<Rgb565Be>("Rgb565Be", &ROWS[..1], buffers, parts);
+        fit::<Rgb888>("Rgb888", &ROWS[..1], buffers, parts);
+        fit::<Gray8>("Gray8", &ROWS[..1], buffers, parts);
+        fit::<Dithered<Rgb565>>("Dithered<Rgb565>", &ROWS[..1], buffers, parts);
+        for (name, workload, _) in WORKLOADS {
+            for rows in ROWS {
+                let Memory { color, depth, records } = lend::<Rgb565>(buffers, rows);
+                let pixels = workload.width() * rows;
+                let frame = Buffers { color: &mut color[..pixels], depth: &mut depth[..pixels], records };
+                let ticks = count::ticks_of(|| {
+                    price::draw(workload, By::Usual, Under::Usual, frame, &mut |strip| _ = black_box(strip))
+                });
+                println!("{name} {rows} {ticks}");
+            }
+        }
     }
 }
 
@@ -251,5 +160,13 @@ use counting::run;
 
 #[cfg(not(target_os = "none"))]
 fn main() {
-    eprintln!("this example is firmware: ci/costs builds it");
+    let mut args = std::env::args().skip(1);
+    let Some(folder) = args.next() else {
+        eprintln!("usage: costs FOLDER CORE..., as ci/costs calls it");
+        std::process::exit(2);
+    };
+    if let Err(error) = fit::report(folder.as_ref(), &args.collect::<Vec<_>>()) {
+        eprintln!("{error}");
+        std::process::exit(1);
+    }
 }

@@ -1,21 +1,11 @@
-//! One scene in all pixel formats and ditherings, side by side in a picture; as firmware, what they cost.
+//! One scene in all pixel formats and ditherings, side by side in a picture.
 //!
 //! ```text
 //! cargo run --release --example formats -- --png formats.png
-//! ci/formats
 //! ```
-//! The firmware prints `name pixels ticks` for each run: SysTick's, one in five instructions under QEMU's `-icount`.
-#![cfg_attr(target_os = "none", no_std, no_main)]
 
-#[cfg(target_os = "none")]
-#[allow(dead_code)]
-mod firmware;
-#[cfg(not(target_os = "none"))]
 mod host;
 mod scenes;
-#[cfg(target_os = "none")]
-#[path = "firmware/ticks.rs"]
-mod ticks;
 
 use core::convert::Infallible;
 use scenes::Draw;
@@ -26,123 +16,7 @@ use zstrip::frame::Renderer;
 use zstrip::math::Angle16;
 use zstrip::target::{Packer, Rows, StripPixels};
 
-#[cfg(target_os = "none")]
-mod counting {
-    use super::*;
-    use core::hint::black_box;
-    use cortex_m::peripheral::Peripherals;
-    use scenes::Torus;
-    use semihosting::println;
-    use zstrip::color::{Bgr565Be, Rgb565Be};
-    use zstrip::math::{Projective, Scalar};
-    use zstrip::mesh::{Mesh, MeshData, Positions};
-    use zstrip::shader::Gouraud;
-    use zstrip::span::DepthState;
-    use zstrip::target::{PackedFormat, Pages, RowsLowFirst};
-    use zstrip::{Cull, State};
-
-    const SCREEN: Size = Size::new(320, 240);
-    const PIXELS: usize = 320 * 240;
-
-    struct Memory {
-        color: [u32; PIXELS],
-        depth: [u16; PIXELS],
-        records: [u32; 100],
-        packed: [u8; PIXELS / 2],
-    }
-
-    static mut MEMORY: Memory = Memory { color: [0; _], depth: [0; _], records: [0; _], packed: [0; _] };
-
-    /// Counts a run.
-    #[inline(never)]
-    fn count(name: &str, mut run: impl FnMut()) {
-        let start = ticks::now();
-        run();
-        let ticks = ticks::now().wrapping_sub(start);
-        println!("{name} {PIXELS} {ticks}");
-    }
-
-    /// Packs a strip of all pixels.
-    fn pack<F: PackedFormat>(name: &str, memory: &mut Memory, dither: Dither<F::Color>) {
-        let Memory { color, depth, records, packed } = memory;
-        let color: &mut [u8] = bytemuck::cast_slice_mut(color);
-        let color = &mut color[..PIXELS];
-        let renderer = Renderer::<Gray8>::new(SCREEN).expect("rows fit").with_depth(depth).expect("rows fit");
-        let mut renderer = renderer.with_records(records);
-        let mut packer = Packer::<F>::new(SCREEN, SCREEN.height, dither, packed).expect("strips fit");
-        let torus = Torus::gouraud(SCREEN, Angle16(0));
-        let mut frame = renderer.begin(Gray8::new(99));
-        while let Some(strip) = frame.next_strip(color, |scene| torus.draw(scene)).expect("the same scene") {
-            count(name, || {
-                black_box(packer.pack(&strip));
-            });
-        }
-    }
-
-    /// Draws a Gouraud shaded rectangle over the screen, with depth.
-    fn draw<P: PixelFormat>(name: &str, memory: &mut Memory, depth_state: DepthState) {
-        const EDGE: i32 = 1 << 16;
-        const fn corner(x: i32, y: i32) -> [Scalar; 4] {
-            [Scalar::from_bits(x), Scalar::from_bits(y), Scalar::from_bits(EDGE / 2), Scalar::from_bits(EDGE)]
-        }
-        static CORNERS: [[Scalar; 4]; 4] =
-            [corner(-EDGE, EDGE), corner(-EDGE, -EDGE), corner(EDGE, EDGE), corner(EDGE, -EDGE)];
-        let colors = [[255, 0, 30], [0, 99, 200], [60, 255, 0], [255, 255, 255]];
-        let data = MeshData::new(Positions::Homogeneous(&CORNERS));
-        let topology = zstrip::mesh::Topology::Strip;
-        let mesh = Mesh::new(MeshData { topology, colors: Some(&colors), ..data }).expect("a mesh");
-        let Memory { color, depth, records, .. } = memory;
-        let color = &mut bytemuck::cast_slice_mut(&mut color[..PIXELS])[..PIXELS];
-        let renderer = Renderer::<P>::new(SCREEN).expect("rows fit").with_depth(depth).expect("rows fit");
-        let mut renderer = renderer.with_records(records);
-        let state = State { cull: Cull::None, depth: depth_state, ..State::DEFAULT };
-        let mut frame = |name: &str, is_drawn: bool| {
-            count(name, || {
-                let sink = |strip: &StripPixels<'_, P>| {
-                    black_box(strip);
-                    Ok::<(), Infallible>(())
-                };
-                let stats = renderer.frame_to(sink, color, Rgb888::new(0, 0, 0), |scene| {
-                    if is_drawn {
-                        scene.draw_with(state, &mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
-                    }
-                });
-                black_box(stats).expect("the same scene");
-            });
-        };
-        frame("empty", false);
-        frame(name, true);
-    }
-
-    pub fn run() {
-        let memory = &raw mut MEMORY;
-        // SAFETY: `run` is called once; this is the only reference.
-        let memory = unsafe { &mut *memory };
-        let Some(mut peripherals) = Peripherals::take() else {
-            return;
-        };
-        ticks::start(&mut peripherals.SYST);
-        pack::<Pages>("Packer<Pages>", memory, Dither::BAYER_8);
-        pack::<Rows<BinaryColor>>("Packer<Rows<BinaryColor>>", memory, Dither::BAYER_8);
-        pack::<RowsLowFirst<BinaryColor>>("Packer<RowsLowFirst<BinaryColor>>", memory, Dither::BAYER_8);
-        pack::<Rows<Gray2>>("Packer<Rows<Gray2>>", memory, Dither::BAYER_8);
-        pack::<Rows<Gray4>>("Packer<Rows<Gray4>>", memory, Dither::BAYER_8);
-        draw::<Rgb565>("Rgb565", memory, DepthState::LESS);
-        draw::<Rgb565Be>("Rgb565Be", memory, DepthState::LESS);
-        draw::<Bgr565Be>("Bgr565Be", memory, DepthState::LESS);
-        draw::<Rgb332>("Rgb332", memory, DepthState::LESS);
-        draw::<Dithered<Rgb565>>("Dithered<Rgb565>", memory, DepthState::LESS);
-        draw::<Dithered<Rgb565Be>>("Dithered<Rgb565Be>", memory, DepthState::LESS);
-        draw::<Dithered<Rgb332>>("Dithered<Rgb332>", memory, DepthState::LESS);
-        draw::<Gray8>("Gray8", memory, DepthState::LESS);
-    }
-}
-
-#[cfg(target_os = "none")]
-use counting::run;
-
 /// Size of one picture, and of all beside each other.
-#[cfg(not(target_os = "none"))]
 mod sheet {
     use super::*;
     use scenes::Room;
@@ -232,7 +106,6 @@ mod sheet {
     }
 }
 
-#[cfg(not(target_os = "none"))]
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut args = std::env::args().skip(1);
     let path = match (args.next().as_deref(), args.next()) {

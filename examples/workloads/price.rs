@@ -210,12 +210,37 @@ pub fn draw(workload: Priced, by: By, under: Under, buffers: Buffers<'_>, sink: 
     }
 }
 
+/// Draws a frame of a workload by another shader.
+pub fn draw_by(
+    workload: Priced,
+    shader: &impl Shader<Rgb565>,
+    buffers: Buffers<'_>,
+    sink: &mut dyn FnMut(&[u16]),
+) -> Stats {
+    match workload {
+        Priced::W4 | Priced::W5 => torus(()).frame(shader, buffers, sink),
+        Priced::W6 => {
+            Subject { screen: SCREEN, mesh: tiny_mesh(), matrix: &IN_VIEW, shader: () }.frame(shader, buffers, sink)
+        }
+        Priced::W9 | Priced::ColoredW9 => cow(&spot::TEXTURED, ()).frame(shader, buffers, sink),
+        Priced::W10 => cow(&spot::PLAIN, ()).frame(shader, buffers, sink),
+        Priced::Empty | Priced::EmptySpot => draw(workload, By::Usual, Under::Usual, buffers, sink),
+    }
+}
+
 const fn torus<S>(shader: S) -> Subject<'static, S> {
     Subject { screen: SCREEN, mesh: &TORUS, matrix: &OF_TORUS, shader }
 }
 
 const fn cow<S>(mesh: &'static Mesh<'static>, shader: S) -> Subject<'static, S> {
     Subject { screen: spot::SCREEN, mesh, matrix: &spot::MATRIX, shader }
+}
+
+impl<S> Subject<'_, S> {
+    fn frame(&self, shader: &impl Shader<Rgb565>, buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16])) -> Stats {
+        let &Self { screen, mesh, matrix, .. } = self;
+        frame_on(screen, buffers, sink, &mut |scene| scene.draw(mesh, matrix, shader))
+    }
 }
 
 impl<S: Shader<Rgb565>> Subject<'_, S> {
@@ -238,7 +263,7 @@ impl<S: Shader<Rgb565>> Subject<'_, S> {
     ) -> Stats {
         let &Self { screen, mesh, matrix, .. } = self;
         match under {
-            Under::Usual => frame_on(screen, buffers, sink, &mut |scene| scene.draw(mesh, matrix, shader)),
+            Under::Usual => self.frame(shader, buffers, sink),
             Under::LessEqual => {
                 frame_on(screen, buffers, sink, &mut |scene| scene.draw_with(LESS_EQUAL, mesh, matrix, shader))
             }

@@ -1,0 +1,162 @@
+//! Counts what there is to do in a frame: by the library's own counters, and by a shader that counts its calls.
+
+use super::grids::{self, GRIDS, Memory, Parts, ROWS, WIDTH};
+use super::workloads::Buffers;
+use super::workloads::price::{self, Priced};
+use std::cell::Cell;
+use zstrip::color::PixelFormat;
+use zstrip::embedded_graphics_core::pixelcolor::Gray8;
+use zstrip::span::{DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup};
+use zstrip::vertex::{VertexRef, VertexShader, Wrapper};
+
+/// Things that cost, in the order of [`TERMS`].
+pub type Work = [f64; TERMS.len()];
+
+/// A draw; a vertex that is shaded; a triangle that is looked at; one that is drawn, small or large; a row of one; a
+/// pixel of one; a strip more that a triangle reaches into.
+pub const TERMS: [&str; 10] = [
+    "draw",
+    "vertex",
+    "triangle",
+    "small_drawn",
+    "small_row",
+    "small_pixel",
+    "large_drawn",
+    "large_row",
+    "large_pixel",
+    "strip",
+];
+const SMALL: usize = 3;
+pub const LARGE: usize = 6;
+pub const STRIP: usize = 9;
+
+/// Draws nothing, and counts triangles, rows and pixels.
+#[derive(Default)]
+struct Calls {
+    /// Of small and of large triangles.
+    counts: [[Cell<u32>; 3]; 2],
+    is_small: Cell<bool>,
+}
+
+impl Calls {
+    fn add(&self, what: usize, count: usize) {
+        let cell = &self.counts[usize::from(!self.is_small.get())][what];
+        cell.set(cell.get() + count as u32);
+    }
+}
+
+impl VertexShader for Calls {
+    type Varyings = [i32; 0];
+
+    fn vertex(&self, _: &VertexRef<'_>) -> [i32; 0] {
+        []
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for Calls {
+    type Setup = ();
+
+    fn setup(&self, _: &TriangleSetup<'_, [i32; 0]>) {
+        self.add(0, 1);
+    }
+
+    fn fragment(&self, _: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
+        None
+    }
+
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, _: D) {
+        self.add(1, 1);
+        self.add(2, span.color.len());
+    }
+}
+
+/// Tells the shader inside which triangles are small.
+struct Sized<'c>(&'c Calls);
+
+impl Wrapper for Sized<'_> {
+    type Inner = Calls;
+
+    fn inner(&self) -> &Calls {
+        self.0
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for Sized<'_> {
+    type Setup = ();
+
+    fn setup(&self, triangle: &TriangleSetup<'_, [i32; 0]>) {
+        Shader::<P>::setup(self.0, triangle);
+    }
+
+    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
+        Shader::<P>::fragment(self.0, fragment)
+    }
+
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        Shader::<P>::span(self.0, span, test);
+    }
+
+    fn small<D: DepthTest>(
+        &self,
+        triangle: SmallTriangle<'_, '_, P, D>,
+        corners: &[[i32; 0]; 3],
+        flat: u32,
+    ) -> SmallResult {
+        self.0.is_small.set(true);
+        let result = Shader::<P>::small(self.0, triangle, corners, flat);
+        self.0.is_small.set(false);
+        result
+    }
+}
+
+/// Returns the work of a frame: of its draws, and of what was counted. `first` is the number of triangles that are set
+/// up in a single strip.
+fn work(draws: usize, vertices: usize, triangles: usize, calls: &Calls, first: &mut Option<f64>) -> Work {
+    let mut work: Work = [0.0; _];
+    (work[0], work[1], work[2]) = (draws as f64, (vertices * draws) as f64, (triangles * draws) as f64);
+    for (at, counts) in [SMALL, LARGE].into_iter().zip(&calls.counts) {
+        for (k, count) in counts.iter().enumerate() {
+            work[at + k] = count.get().into();
+        }
+    }
+    // A triangle is set up once for each strip.
+    let all = work[SMALL] + work[LARGE];
+    let first = *first.get_or_insert(all);
+    (work[SMALL], work[LARGE]) = (work[SMALL] * first / all, work[LARGE] * first / all);
+    work[STRIP] = all - first;
+    work
+}
+
+/// Returns the work of each grid in strips of these rows.
+pub fn of_grids() -> [[Work; ROWS.len()]; GRIDS] {
+    let mut parts = Box::new(Parts::NEW);
+    std::array::from_fn(|number| {
+        let grid = grids::grid(number);
+        let places = &grids::places(grid.draws())[..grid.draws()];
+        let mesh = parts.build(&grid).expect("a mesh");
+        let mut first = None;
+        ROWS.map(|rows| {
+            let (mut color, mut depth) = (vec![0; WIDTH * rows], vec![0; WIDTH * rows]);
+            let mut records = vec![0; 96 * 1024];
+            let memory = Memory::<Gray8> { color: &mut color, depth: &mut depth, records: &mut records };
+            let calls = Calls::default();
+            let stats = grids::draw_by(memory, &mut |_| {}, &Sized(&calls), &mesh, places);
+            assert_eq!(stats.overflows + stats.clipped + stats.culled, 0, "grid {number}: {stats:?}");
+            work(grid.draws(), mesh.vertex_count(), mesh.triangle_count(), &calls, &mut first)
+        })
+    })
+}
+
+/// Returns the work of a workload of the benchmark in strips of these rows.
+pub fn of_workload(workload: Priced) -> [Work; ROWS.len()] {
+    let mut first = None;
+    ROWS.map(|rows| {
+        let pixels = workload.width() * rows;
+        let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; 96 * 1024]);
+        let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
+        let calls = Calls::default();
+        let stats = price::draw_by(workload, &Sized(&calls), buffers, &mut |_| {});
+        assert_eq!(stats.overflows, 0, "{workload:?}: {stats:?}");
+        work(1, stats.vertices as usize, stats.triangles as usize, &calls, &mut first)
+    })
+}
