@@ -5,7 +5,8 @@
 //!
 //! It prints, for each frame, `width height rows triangles room bytes ticks walks hash`: bytes of strip and records,
 //! SysTick's ticks over the frame without those that its sink takes for the hash of the picture, and how often the
-//! scene was walked. Frames of 0 triangles cost only clearing and handing out strips.
+//! scene was walked. Frames of 0 triangles cost only clearing and handing out strips. Where `room` is `size`, all
+//! records fit, and screens of six sizes show the torus of 512 triangles.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -135,7 +136,7 @@ mod counting {
     use zstrip::shader::Gouraud;
     use zstrip::target::{Stats, StripPixels, records_len};
 
-    const PIXELS: usize = 320 * 240;
+    const PIXELS: usize = 480 * 360;
 
     /// Those of the largest torus, should all of its triangles be visible.
     const WORDS: usize = records_len(64, 1, 1024, VARYING_WORDS, 2048);
@@ -154,6 +155,9 @@ mod counting {
     /// Width, height, and the heights of strips.
     const SCREENS: [(u16, u16, [u16; 7]); 2] =
         [(160, 128, [128, 64, 32, 16, 8, 4, 2]), (320, 240, [240, 120, 60, 30, 16, 8, 4])];
+
+    /// Screens of the torus of 512 triangles, all in the shape of 4 to 3.
+    const SIZES: [(u16, u16); 6] = [(96, 72), (128, 96), (160, 120), (240, 180), (320, 240), (480, 360)];
 
     /// The amounts of memory for records.
     #[derive(Clone, Copy)]
@@ -242,6 +246,11 @@ mod counting {
         }
     }
 
+    fn camera((width, height): (u16, u16)) -> Projective {
+        let (screen, far) = (Size::new(width.into(), height.into()), Scalar::from_bits(16 << 16));
+        Projective::perspective(Angle16::from_degrees(60), screen, Scalar::ONE, far).expect("near is before far")
+    }
+
     pub fn run() {
         let memory = &raw mut MEMORY;
         // SAFETY: `run` is called once; this is the only reference.
@@ -250,14 +259,7 @@ mod counting {
         ticks::start(&mut peripherals.SYST);
         for (width, height, heights) in SCREENS {
             let screen = (width, height);
-            let far = Scalar::from_bits(16 << 16);
-            let camera = Projective::perspective(
-                Angle16::from_degrees(60),
-                Size::new(screen.0.into(), screen.1.into()),
-                Scalar::ONE,
-                far,
-            );
-            let camera = &camera.expect("near is before far");
+            let camera = &camera(screen);
             for rows in heights {
                 Shot { screen, camera, mesh: None }.report(memory, rows, "none", 0);
             }
@@ -273,6 +275,17 @@ mod counting {
                         shot.report(memory, rows, name, room.words(strips, mesh, visible));
                     }
                 }
+            }
+        }
+        let [_, [mesh, _], _] = &TORI;
+        for screen in SIZES {
+            let camera = &camera(screen);
+            let shot = Shot { screen, camera, mesh: Some(mesh) };
+            let visible = shot.count(memory, screen.1, 0).stats.drawn as usize;
+            for rows in [screen.1, 16] {
+                let words = Room::All.words(usize::from(screen.1.div_ceil(rows)), mesh, visible);
+                shot.report(memory, rows, "size", words);
+                Shot { mesh: None, ..shot }.report(memory, rows, "size", 0);
             }
         }
     }
