@@ -136,7 +136,13 @@ impl<'t> BoxTest<'t> {
     /// Returns the first row that a triangle with these vertices can have a pixel in; `None` if it can have none in the
     /// rectangle.
     #[inline(never)]
-    pub(super) fn first_row(&mut self, [a, b, c]: [&[u32; 2]; 3]) -> Option<i32> {
+    pub(super) fn first_row(&mut self, v: [&[u32; 2]; 3]) -> Option<i32> {
+        self.first_row_inlined(v)
+    }
+
+    /// Returns the first row as [`first_row`](Self::first_row) does; inlined, for the loop over recorded triangles.
+    #[inline(always)]
+    fn first_row_inlined(&mut self, [a, b, c]: [&[u32; 2]; 3]) -> Option<i32> {
         // Packed words compare as their coordinates do. Results are those of `pixel_rect`.
         let word = |axis: usize| [a[axis] as i32, b[axis] as i32, c[axis] as i32];
         let range = |[a, b, c]: [i32; 3]| first_centre(a.min(b).min(c) >> 8)..first_centre(a.max(b).max(c) >> 8);
@@ -300,7 +306,7 @@ pub(super) fn place(
     let count = triangles.count() - first;
     let mut test = BoxTest::new(clip);
     let strips = *strips;
-    triangles.keep_each(first, |v| test.first_row(v).map(|row| strips.of((row - band) as u32)));
+    triangles.keep_each(first, |v| test.first_row_inlined(v).map(|row| strips.of((row - band) as u32)));
     test.finish(stats, count.into());
     triangles.finish();
 }

@@ -219,24 +219,16 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
 /// the others are relative to it, with that on the left first. The first row's centres are `p` below it. All in 24.8.
 #[inline(never)]
 fn covers_pixels([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
-    let (mut left, mut right) = (ShortEdge::outlined(x, bx, by, p), ShortEdge::outlined(x, cx, cy, p));
-    let mut y = p;
-    let (mut left_bends, mut right_bends) = (by < cy, cy < by);
-    for _ in 0..rows {
-        if left_bends && y >= by {
-            (left, left_bends) = (ShortEdge::outlined(x + bx, cx - bx, cy - by, y - by), false);
-        }
-        if right_bends && y >= cy {
-            (right, right_bends) = (ShortEdge::outlined(x + cx, bx - cx, by - cy, y - cy), false);
-        }
-        if left.column() < right.column() {
-            return true;
-        }
-        left.step();
-        right.step();
-        y += 256;
-    }
-    false
+    // Each row by itself: edges are exact, wherever they begin.
+    (0..rows as i32).any(|row| {
+        let y = p + 256 * row;
+        let edge = |is_first: bool, (ax, ay): (i32, i32), (bx, by): (i32, i32)| match is_first {
+            true => ShortEdge::outlined(x, ax, ay, y),
+            false => ShortEdge::outlined(x + ax, bx - ax, by - ay, y - ay),
+        };
+        let (left, right) = (edge(y < by, (bx, by), (cx, cy)), edge(y < cy, (cx, cy), (bx, by)));
+        left.column() < right.column()
+    })
 }
 
 /// Returns what a bias adds to the depths of a triangle with these depths, 16.16.
