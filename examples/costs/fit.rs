@@ -1,7 +1,7 @@
 //! Fits costs to counts by least squares, and writes them as a file and as tables.
 
 use super::grids::{GRIDS, HEIGHT, ROWS, WIDTH};
-use super::materials::KINDS;
+use super::materials::{KINDS, Kind};
 use super::work::{self, LARGE, STRIP, TERMS, Work};
 use super::{WORKLOADS, formats, pixels};
 use std::collections::HashMap;
@@ -28,6 +28,9 @@ impl Counts {
         self.0.get(&(name.to_owned(), run.to_owned())).and_then(|counts| counts[unit])
     }
 }
+
+/// The work of all grids, of materials without a texture and with one.
+type Works = [[[Work; ROWS.len()]; GRIDS]; 2];
 
 /// Costs of [`TERMS`], and the largest and the mean error of the fit, in percent.
 struct Fit {
@@ -112,7 +115,7 @@ pub fn report(folder: &Path, cores: &[String]) -> Result<(), String> {
     let mut tables = Tables(HashMap::new());
     let mut csv =
         vec![format!("core,unit,format,material,strips,{},worst_error_percent,mean_error_percent", TERMS.join(","))];
-    let works = work::of_grids();
+    let works = [false, true].map(work::of_grids);
     for (core, counts) in cores.iter().zip(&counts) {
         for (unit, unit_name) in ["instructions", "cycles"].into_iter().enumerate() {
             for format in FORMATS {
@@ -147,16 +150,16 @@ type Found<'f> = dyn FnMut(&str, &str, &[String], [f64; 2]) + 'f;
 
 /// Fits the costs of each material in a format, and hands them on. The first material is none, `clear`: its pixels are
 /// those of the screen, and it has no errors.
-fn fit_format(counts: &Counts, works: &[[Work; ROWS.len()]; GRIDS], unit: usize, format: &str, found: &mut Found<'_>) {
+fn fit_format(counts: &Counts, works: &Works, unit: usize, format: &str, found: &mut Found<'_>) {
     let clears = ROWS.map(|rows| counts.get(unit, &format!("{format}/clear"), &rows.to_string()));
     let [Some(one), Some(many)] = clears else { return };
     let strip = (many - one) / ((HEIGHT / ROWS[1]) as f64 - 1.0);
     let mut cells: [String; TERMS.len()] = Default::default();
     (cells[LARGE + 2], cells[STRIP]) = (format!("{:.2}", (one - strip) / PIXELS), number(strip));
     found("clear", "", &cells, [-1.0; 2]);
-    for (material, _) in KINDS {
+    for (material, kind) in KINDS {
         for (k, rows) in ROWS.into_iter().enumerate() {
-            if let Some(frames) = frames(counts, works, unit, format, material, k) {
+            if let Some(frames) = frames(counts, works, unit, format, (material, kind), k) {
                 let Fit { costs, worst, mean } = fit(&frames);
                 found(material, &(HEIGHT / rows).to_string(), &costs.map(number), [worst, mean]);
             }
@@ -165,20 +168,20 @@ fn fit_format(counts: &Counts, works: &[[Work; ROWS.len()]; GRIDS], unit: usize,
 }
 
 /// Makes the table of what the costs foretell of the benchmark's workloads.
-fn foretold(cores: &[String], counts: &[Counts], works: &[[Work; ROWS.len()]; GRIDS], tables: &mut Tables) {
+fn foretold(cores: &[String], counts: &[Counts], works: &Works, tables: &mut Tables) {
     let headings = ["core", "workload", "material", "strips", "foretold, M insns", "counted", "error"];
     for (core, counts) in cores.iter().zip(counts) {
         for (name, workload, kind) in WORKLOADS {
-            let Some((material, _)) = KINDS.iter().find(|(_, material)| Some(*material) == kind) else { continue };
+            let Some(&(material, kind)) = KINDS.iter().find(|(_, material)| Some(*material) == kind) else { continue };
             let empty = if workload.width() == WIDTH { "empty" } else { "empty_spot" };
             for ((k, rows), work) in ROWS.into_iter().enumerate().zip(work::of_workload(workload)) {
                 let run = rows.to_string();
                 let (Some(count), Some(empty)) = (counts.get(0, name, &run), counts.get(0, empty, &run)) else {
                     continue;
                 };
-                let Some(frames) = frames(counts, works, 0, "Rgb565", material, k) else { continue };
+                let Some(frames) = frames(counts, works, 0, "Rgb565", (material, kind), k) else { continue };
                 let (foretold, counted) = (dot(&work, &fit(&frames).costs), count - empty);
-                let mut cells = [core, &name.to_uppercase(), *material].map(str::to_owned).to_vec();
+                let mut cells = [core, &name.to_uppercase(), material].map(str::to_owned).to_vec();
                 cells.push((HEIGHT / rows).to_string());
                 cells.extend([foretold, counted].map(|count| format!("{:.3}", count / 1e6)));
                 cells.push(format!("{:+.1} %", 100.0 * (foretold / counted - 1.0)));
@@ -192,10 +195,10 @@ fn foretold(cores: &[String], counts: &[Counts], works: &[[Work; ROWS.len()]; GR
 /// counted.
 fn frames(
     counts: &Counts,
-    works: &[[Work; ROWS.len()]; GRIDS],
+    works: &Works,
     unit: usize,
     format: &str,
-    material: &str,
+    (material, kind): (&str, Kind),
     k: usize,
 ) -> Option<Vec<(Work, f64)>> {
     let rows = ROWS[k];
@@ -203,7 +206,7 @@ fn frames(
     let frame = |(grid, work): (usize, &[Work; ROWS.len()])| {
         Some((work[k], counts.get(unit, &format!("{format}/{material}"), &format!("{grid}/{rows}"))? - empty))
     };
-    works.iter().enumerate().map(frame).collect()
+    works[usize::from(kind.is_textured())].iter().enumerate().map(frame).collect()
 }
 
 /// Makes the tables of pixels of all materials, of formats, and of packers.

@@ -40,16 +40,20 @@ const SUN: Sun = Sun::from_channels(Vec3::from_ints(1, 2, 4), [220, 220, 200], [
 const ORANGE: Sunlit = SUN.on(&Matte::from_channels([255, 160, 64]), &Affine::IDENTITY);
 const WHITE: Sunlit = SUN.on(&Matte::from_channels([255; 3]), &Affine::IDENTITY);
 
-static TEXELS: [[u16; 64]; 64] = {
-    let mut texels = [[0xFFFF; 64]; 64];
+/// Sides of the texture.
+pub const TEXELS: u32 = 64;
+const SIDE: usize = TEXELS as usize;
+
+static PIXELS: [[u16; SIDE]; SIDE] = {
+    let mut texels = [[0xFFFF; SIDE]; SIDE];
     let mut k = 0;
-    while k < 64 * 64 {
-        texels[k / 64][k % 64] = (k * 37) as u16;
+    while k < SIDE * SIDE {
+        texels[k / SIDE][k % SIDE] = (k * 37) as u16;
         k += 1;
     }
     texels
 };
-static TILE: Tile<'static, 64, 64> = Tile::new(&TEXELS);
+static TILE: Tile<'static, SIDE, SIDE> = Tile::new(&PIXELS);
 
 static MIST: FogTable = match FogTable::perspective(
     Scalar::ONE,
@@ -70,6 +74,12 @@ fn glossy(mesh: &Mesh<'_>) -> LitMaterial<1, 0> {
 }
 
 impl Kind {
+    /// Returns whether perspective decides, too, which triangles are small.
+    #[cfg(not(target_os = "none"))]
+    pub const fn is_textured(self) -> bool {
+        matches!(self, Self::Textured | Self::LitTextured)
+    }
+
     /// Draws a mesh in each place.
     pub fn draw<P: PixelFormat>(
         self,

@@ -1,13 +1,15 @@
 //! Counts what there is to do in a frame: by the library's own counters, and by a shader that counts its calls.
 
 use super::grids::{self, GRIDS, Memory, Parts, ROWS, WIDTH};
+use super::materials::TEXELS;
 use super::workloads::Buffers;
 use super::workloads::price::{self, Priced};
+use super::workloads::spot;
 use std::cell::Cell;
 use zstrip::color::PixelFormat;
-use zstrip::embedded_graphics_core::pixelcolor::Gray8;
+use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565};
 use zstrip::span::{DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup};
-use zstrip::vertex::{VertexRef, VertexShader, Wrapper};
+use zstrip::vertex::{Perspective, VertexRef, VertexShader, Wrapper};
 
 /// Things that cost, in the order of [`TERMS`].
 pub type Work = [f64; TERMS.len()];
@@ -70,25 +72,114 @@ impl<P: PixelFormat> Shader<P> for Calls {
     }
 }
 
+/// Counts as [`Calls`] does, with texture coordinates: perspective decides, too, which triangles are small.
+struct TexturedCalls {
+    calls: Calls,
+    /// A sixteenth of a texel.
+    tolerance: u32,
+    row: Cell<i32>,
+}
+
+impl TexturedCalls {
+    fn new(side: u32) -> Self {
+        Self { calls: Calls::default(), tolerance: 4096 / side, row: Cell::new(0) }
+    }
+}
+
+impl VertexShader for TexturedCalls {
+    type Varyings = Perspective<2, 3>;
+
+    const IS_TOLERANT: bool = true;
+
+    fn tolerance(&self) -> u32 {
+        self.tolerance
+    }
+
+    fn vertex(&self, vertex: &VertexRef<'_>) -> Perspective<2, 3> {
+        Perspective::new(vertex.uv().map(|c| c.to_bits()), [])
+    }
+}
+
+impl<P: PixelFormat> Shader<P> for TexturedCalls {
+    type Setup = ();
+
+    /// Small triangles are not set up.
+    fn setup(&self, _: &TriangleSetup<'_, Perspective<2, 3>>) {
+        self.calls.add(0, 1);
+    }
+
+    /// Fragments of small triangles.
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<P::Raw> {
+        let (_, y) = fragment.position;
+        self.calls.add(1, usize::from(self.row.replace(y) != y));
+        self.calls.add(2, 1);
+        None
+    }
+
+    /// Spans of large triangles.
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, _: D) {
+        self.calls.add(1, 1);
+        self.calls.add(2, span.color.len());
+    }
+}
+
+/// A shader that counts.
+trait Counter: Shader<Gray8, Setup = ()> + Shader<Rgb565, Setup = ()> {
+    fn calls(&self) -> &Calls;
+
+    /// A small triangle begins.
+    fn begin(&self) {
+        self.calls().is_small.set(true);
+    }
+
+    /// A small triangle has ended.
+    fn end(&self, result: SmallResult) {
+        let _ = result;
+        self.calls().is_small.set(false);
+    }
+}
+
+impl Counter for Calls {
+    fn calls(&self) -> &Calls {
+        self
+    }
+}
+
+impl Counter for TexturedCalls {
+    fn calls(&self) -> &Calls {
+        &self.calls
+    }
+
+    fn begin(&self) {
+        self.row.set(i32::MIN);
+        self.calls.is_small.set(true);
+    }
+
+    fn end(&self, result: SmallResult) {
+        self.calls.add(0, usize::from(result == SmallResult::Drawn));
+        self.calls.is_small.set(false);
+    }
+}
+
 /// Tells the shader inside which triangles are small.
-struct Sized<'c>(&'c Calls);
+struct Sized<'c, C>(&'c C);
 
-impl Wrapper for Sized<'_> {
-    type Inner = Calls;
+impl<C: Counter> Wrapper for Sized<'_, C> {
+    type Inner = C;
 
-    fn inner(&self) -> &Calls {
+    fn inner(&self) -> &C {
         self.0
     }
 }
 
-impl<P: PixelFormat> Shader<P> for Sized<'_> {
+impl<P: PixelFormat, C: Counter + Shader<P, Setup = ()>> Shader<P> for Sized<'_, C> {
     type Setup = ();
 
-    fn setup(&self, triangle: &TriangleSetup<'_, [i32; 0]>) {
+    fn setup(&self, triangle: &TriangleSetup<'_, C::Varyings>) {
         Shader::<P>::setup(self.0, triangle);
     }
 
-    fn fragment(&self, fragment: &Fragment<'_, [i32; 0]>) -> Option<P::Raw> {
+    fn fragment(&self, fragment: &Fragment<'_, C::Varyings>) -> Option<P::Raw> {
         Shader::<P>::fragment(self.0, fragment)
     }
 
@@ -99,12 +190,12 @@ impl<P: PixelFormat> Shader<P> for Sized<'_> {
     fn small<D: DepthTest>(
         &self,
         triangle: SmallTriangle<'_, '_, P, D>,
-        corners: &[[i32; 0]; 3],
+        corners: &[C::Varyings; 3],
         flat: u32,
     ) -> SmallResult {
-        self.0.is_small.set(true);
+        self.0.begin();
         let result = Shader::<P>::small(self.0, triangle, corners, flat);
-        self.0.is_small.set(false);
+        self.0.end(result);
         result
     }
 }
@@ -127,36 +218,42 @@ fn work(draws: usize, vertices: usize, triangles: usize, calls: &Calls, first: &
     work
 }
 
-/// Returns the work of each grid in strips of these rows.
-pub fn of_grids() -> [[Work; ROWS.len()]; GRIDS] {
+/// Returns the work of each grid in strips of these rows; of a texture, or of other materials.
+pub fn of_grids(textured: bool) -> [[Work; ROWS.len()]; GRIDS] {
     let mut parts = Box::new(Parts::NEW);
     std::array::from_fn(|number| {
-        let grid = grids::grid(number);
-        let places = &grids::places(grid.draws())[..grid.draws()];
-        let mesh = parts.build(&grid).expect("a mesh");
         let mut first = None;
-        ROWS.map(|rows| {
-            let (mut color, mut depth) = (vec![0; WIDTH * rows], vec![0; WIDTH * rows]);
-            let mut records = vec![0; 96 * 1024];
-            let memory = Memory::<Gray8> { color: &mut color, depth: &mut depth, records: &mut records };
-            let calls = Calls::default();
-            let stats = grids::draw_by(memory, &mut |_| {}, &Sized(&calls), &mesh, places);
-            assert_eq!(stats.overflows + stats.clipped + stats.culled, 0, "grid {number}: {stats:?}");
-            work(grid.draws(), mesh.vertex_count(), mesh.triangle_count(), &calls, &mut first)
+        ROWS.map(|rows| match textured {
+            true => of_grid(&mut parts, number, rows, &TexturedCalls::new(TEXELS), &mut first),
+            false => of_grid(&mut parts, number, rows, &Calls::default(), &mut first),
         })
     })
+}
+
+fn of_grid(parts: &mut Parts, number: usize, rows: usize, counter: &impl Counter, first: &mut Option<f64>) -> Work {
+    let grid = grids::grid(number);
+    let places = &grids::places(grid.draws())[..grid.draws()];
+    let mesh = parts.build(&grid).expect("a mesh");
+    let (mut color, mut depth, mut records) = (vec![0; WIDTH * rows], vec![0; WIDTH * rows], vec![0; 96 * 1024]);
+    let memory = Memory::<Gray8> { color: &mut color, depth: &mut depth, records: &mut records };
+    let stats = grids::draw_by(memory, &mut |_| {}, &Sized(counter), &mesh, places);
+    assert_eq!(stats.overflows + stats.clipped + stats.culled, 0, "grid {number}: {stats:?}");
+    work(grid.draws(), mesh.vertex_count(), mesh.triangle_count(), counter.calls(), first)
 }
 
 /// Returns the work of a workload of the benchmark in strips of these rows.
 pub fn of_workload(workload: Priced) -> [Work; ROWS.len()] {
     let mut first = None;
     ROWS.map(|rows| {
+        let (calls, textured) = (Calls::default(), TexturedCalls::new(spot::TEXELS as u32));
         let pixels = workload.width() * rows;
         let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; 96 * 1024]);
         let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
-        let calls = Calls::default();
-        let stats = price::draw_by(workload, &Sized(&calls), buffers, &mut |_| {});
+        let (stats, calls) = match workload {
+            Priced::W9 => (price::draw_by(workload, &Sized(&textured), buffers, &mut |_| {}), &textured.calls),
+            _ => (price::draw_by(workload, &Sized(&calls), buffers, &mut |_| {}), &calls),
+        };
         assert_eq!(stats.overflows, 0, "{workload:?}: {stats:?}");
-        work(1, stats.vertices as usize, stats.triangles as usize, &calls, &mut first)
+        work(1, stats.vertices as usize, stats.triangles as usize, calls, &mut first)
     })
 }

@@ -93,7 +93,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let mut words = [[0; 2]; 3];
         pack(v, &mut words);
         let [a, b, c] = words.each_ref();
-        const { assert!(!S::PACKS_SMALL || S::WORDS <= MOST_PACKED) };
+        const { assert!(!S::PACKS_SMALL || S::WORDS <= MOST_PACKED, "small triangles take at most 4 words a corner") };
         let mut packed = [0; 3 * MOST_PACKED];
         if S::PACKS_SMALL {
             pack_varyings::<S>(varyings, &mut packed);

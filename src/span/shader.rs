@@ -156,7 +156,8 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         triangle.draw_spans(self, corners, flat)
     }
 
-    /// Set if small triangles are drawn from packed varyings, by [`small_packed`](Self::small_packed).
+    /// Set if small triangles are drawn from packed varyings, by [`small_packed`](Self::small_packed). Such a shader
+    /// has at most 4 [`WORDS`](VertexShader::WORDS).
     const PACKS_SMALL: bool = false;
 
     /// Draws a triangle, if it is small, from the words that [`store`](VertexShader::store) packed at its corners. A
