@@ -26,12 +26,6 @@ pub enum Positions<'a> {
     Homogeneous(&'a [[Scalar; 4]]),
 }
 
-#[cfg(test)]
-std::thread_local! {
-    /// Number of times that a test has looked up a position.
-    pub(crate) static LOOKED_UP: core::cell::Cell<u32> = const { core::cell::Cell::new(0) };
-}
-
 impl Positions<'_> {
     /// Returns the stored numbers of a position. It returns 0 past the end, and 0 as the w of positions that have
     /// none.
@@ -659,4 +653,10 @@ const fn find_bounds(positions: &Positions<'_>, vertices: usize) -> Bounds {
         axis += 1;
     }
     bounding_box(min, max)
+}
+
+#[cfg(test)]
+std::thread_local! {
+    /// Number of times that a test has looked up a position.
+    pub(crate) static LOOKED_UP: core::cell::Cell<u32> = const { core::cell::Cell::new(0) };
 }
