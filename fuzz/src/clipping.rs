@@ -101,6 +101,9 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
     }
     let mut sure = [0_u8; SIDE * SIDE];
     let mut maybe = [0_u8; SIDE * SIDE];
+    // Set if a triangle covers no sample for sure: snapped, one that is narrower than the grid may lie on the other
+    // side of the edge where the two meet.
+    let mut is_thin = false;
     let viewport = Viewport::new(SIDE as u32, SIDE as u32);
     for triangle in vertices.chunks_exact(3) {
         let corner = |k: usize| {
@@ -120,6 +123,7 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
             continue;
         }
         let triangle = [corner(0), corner(1), corner(2)];
+        let mut covers_any = false;
         for_each_sample(&viewport, (SIDE as u32, SIDE as u32), &triangle, |sample| {
             let at = sample.y as usize * SIDE + sample.x as usize;
             let drawn = match cull {
@@ -129,15 +133,17 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
             };
             if sample.margin < MARGIN || sample.inv_w > LARGEST_INVERSE_W {
                 maybe[at] += if range == DepthRange::Clip { 1 } else { 3 };
-            } else if sample.covered && drawn {
-                sure[at] += 1;
+            } else if sample.covered {
+                covers_any = true;
+                sure[at] += u8::from(drawn);
             }
         });
+        is_thin |= !covers_any;
     }
     for (at, count) in counts.iter().enumerate() {
         let count = count.get();
         // Where the two triangles meet, one of them draws, and not both.
-        let most = if vertices.len() > 3 && range == DepthRange::Clip {
+        let most = if vertices.len() > 3 && range == DepthRange::Clip && !is_thin {
             (sure[at] + maybe[at]).min(1)
         } else {
             sure[at] + maybe[at]
