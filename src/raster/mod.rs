@@ -18,6 +18,7 @@ pub(crate) use direction::unit;
 pub use gradient::{Gradients, PlaneEquation};
 pub(crate) use gradient::{gradients, high};
 pub use line::{Line, LinePixels};
+pub(crate) use perspective::least_and_most;
 pub use perspective::{homogenize, straighten, widen, widen_along};
 pub use point::{square, wide_square};
 pub(crate) use small::{HEIGHT, ShortEdge, ShortPlanes, WIDTH};

@@ -183,6 +183,14 @@ fn convert(
     (class, moderate)
 }
 
+/// Returns the least and the largest of three [`weights`], in 26 bits, from the words of
+/// [`inverse_w`](crate::vertex::inverse_w).
+#[inline(always)]
+pub(crate) fn least_and_most(words: [u32; 3]) -> (u32, u32) {
+    let [a, b, c] = weights(words);
+    (a.min(b).min(c) >> 5, a.max(b).max(c) >> 5)
+}
+
 /// Returns numbers in the ratio of 1 / w, from the words of [`inverse_w`](crate::vertex::inverse_w): the largest is in
 /// 2³⁰..2³¹, and none is below 1.
 fn weights(words: [u32; 3]) -> [u32; 3] {

@@ -8,7 +8,7 @@ use super::small_rows::SmallRows;
 use super::state::State;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans};
 use crate::span::{
-    BiasSteps, DepthBias, DepthState, DepthTest, Primitive, Shader, SmallResult, SmallTriangle, Span, SpanOf,
+    BiasSteps, DepthBias, DepthState, DepthTest, Primitive, Shader, SmallResult, SmallTriangle, Span, SpanOf, biased,
     interpolate, set_up_shader, subslice,
 };
 use crate::target::{Framebuffer, turns as turns_of};
@@ -141,7 +141,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
         primitive.dz_dx = depth.dx;
         if let Some(bias) = self.bias_steps() {
-            add_bias(bias, v, depth);
+            let depths = v.each_ref().map(|v| i32::from(v.z));
+            depth.base = depth.base.wrapping_add(biased(&bias, depths, depth.dx, depth.dy));
         }
         set_up_shader(self.shader, [v[0].x, v[0].y], varyings, area.unsigned_abs(), primitive);
     }
@@ -256,14 +257,6 @@ fn turns([a, b, c]: &[ScreenVertex; 3]) -> u32 {
     // As the words of a `PackedVertex` compare.
     let word = |v: &ScreenVertex| v.y << 8 | i32::from(v.z & 0xFF);
     turns_of([word(a), word(b), word(c)])
-}
-
-/// Adds a bias to the depths of a triangle with these vertices.
-#[inline(never)]
-fn add_bias((steps, bias): (BiasSteps, DepthBias), v: &[ScreenVertex; 3], depth: &mut PlaneEquation) {
-    let [a, b, c] = v.each_ref().map(|v| v.z);
-    let steps = steps(bias, a.min(b).min(c)..a.max(b).max(c), depth.dx, depth.dy);
-    depth.base = depth.base.wrapping_add((steps as u32) << 16);
 }
 
 /// Turns the corners of a triangle with these vertices, so that the highest one comes first.

@@ -3,8 +3,9 @@
 use super::mipmap::{BLOCK, Levels, Mipmapped, OneLevel};
 use super::surface::Surface;
 use crate::color::PixelFormat;
+use crate::math::leading_zeros;
 use crate::span::{
-    DepthTest, Fragment, Light, Primitive, STEP, Shader, SmallResult, SmallTriangle, SpanOf, TexelBrush, TexelSource,
+    DepthTest, Fragment, Light, Primitive, STEP, Shader, SmallResult, SmallTriangle, SpanOf, TexelSource,
     TriangleSetup, UvStepper, draw_fragments, texture_span,
 };
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
@@ -124,15 +125,16 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
     }
 }
 
-impl<T: Texture, W, F, L, const N: usize> VertexShader for Textured<'_, T, W, F, L, N> {
+impl<T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> VertexShader for Textured<'_, T, W, F, L, N> {
     type Varyings = Perspective<2, 3>;
     const IS_TOLERANT: bool = true;
 
-    /// Returns 1/16 texel, or 1/32 if each pixel is divided.
+    /// Returns 1/16 texel, or 1/32 if each pixel is divided; or less, because sides are rounded up to powers of two.
     #[inline]
     fn tolerance(&self) -> u32 {
-        let sides = self.levels.first().map_or(Size::zero(), Texture::size);
-        (if N == 1 { 2048_u32 } else { 4096 }).checked_div(sides.width.max(sides.height)).unwrap_or(0)
+        let sides = self.level(0).map_or(Size::zero(), Texture::size);
+        let log = 32 - leading_zeros(sides.width.max(sides.height).saturating_sub(1));
+        1_u32 << 16 >> texel_bits(N) >> log.min(16)
     }
 
     #[inline]
@@ -189,29 +191,26 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
         triangle: SmallTriangle<'_, '_, P, D>,
         corners: &PackedCorners<'_>,
     ) -> SmallResult {
-        match corners.words::<3>() {
-            Some(words) if !L::MANY => triangle.draw(&TexelBrush::new(self, words)),
-            _ => SmallResult::Large,
-        }
+        triangle.draw_texels::<_, 3>(self, corners)
     }
 }
 
 impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> TexelSource<P>
     for Textured<'_, T, W, F, L, N>
 {
+    type Texture = T;
     const LIT: bool = false;
     const RGB565: bool = false;
     const REPEATS: bool = W::REPEATS;
-    const EXACT: bool = N == 1;
+    const BITS: u32 = texel_bits(N);
 
     #[inline(always)]
-    fn size(&self) -> Size {
-        self.level(0).map_or(Size::zero(), Texture::size)
+    fn texture(&self) -> Option<&T> {
+        if L::MANY { None } else { self.level(0) }
     }
 
     #[inline(always)]
-    fn pixel(&self, uv: [i32; 2], _: Light, position: (i32, i32)) -> Option<P::Raw> {
-        let texture = self.level(0)?;
+    fn pixel(texture: &T, uv: [i32; 2], _: Light, position: (i32, i32)) -> Option<P::Raw> {
         if P::ALPHA || P::DITHER.is_some() {
             return visible::<P>(F::rgba::<T, W>(texture, uv), position);
         }
@@ -278,7 +277,9 @@ pub struct LitTexture<'a, T, S, W = Repeat, F = Nearest, L = OneLevel, const N: 
 /// Texture coordinates 16.16; red, green and blue of the surface, 8.16, linear on the screen.
 type LitVaryings = Perspective<2, 6>;
 
-impl<T: Texture, S: Surface, W, F, L, const N: usize> VertexShader for LitTexture<'_, T, S, W, F, L, N> {
+impl<T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, const N: usize> VertexShader
+    for LitTexture<'_, T, S, W, F, L, N>
+{
     type Varyings = LitVaryings;
     const IS_TOLERANT: bool = true;
 
@@ -315,6 +316,11 @@ impl<T: Texture, S: Surface, W, F, L, const N: usize> VertexShader for LitTextur
     }
 }
 
+/// Returns b, if perspective may move texels of small triangles by 2⁻ᵇ of one where a `step` is chosen.
+const fn texel_bits(step: usize) -> u32 {
+    if step == 1 { 5 } else { 4 }
+}
+
 /// Returns the pixel of a texel; `None` if the texel is transparent and the format has no alpha.
 #[inline(always)]
 fn visible<P: PixelFormat>(rgba: [u8; 4], position: (i32, i32)) -> Option<P::Raw> {
@@ -348,6 +354,7 @@ impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, cons
         let [lr, lg, lb] = fragment.varyings.linear() else { return None };
         visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
     }
+
     const PACKS_SMALL: bool = !L::MANY;
 
     #[inline(always)]
@@ -356,30 +363,27 @@ impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, cons
         triangle: SmallTriangle<'_, '_, P, D>,
         corners: &PackedCorners<'_>,
     ) -> SmallResult {
-        match corners.words::<4>() {
-            Some(words) if !L::MANY => triangle.draw(&TexelBrush::new(self, words)),
-            _ => SmallResult::Large,
-        }
+        triangle.draw_texels::<_, 4>(self, corners)
     }
 }
 
 impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, const N: usize> TexelSource<P>
     for LitTexture<'_, T, S, W, F, L, N>
 {
+    type Texture = T;
     const LIT: bool = true;
     /// Texels and pixels of 16 bits are multiplied in those bits.
     const RGB565: bool = P::PACKED && P::DITHER.is_none() && !P::ALPHA && F::NEAREST && T::IS_RGB565;
     const REPEATS: bool = W::REPEATS;
-    const EXACT: bool = N == 1;
+    const BITS: u32 = texel_bits(N);
 
     #[inline(always)]
-    fn size(&self) -> Size {
-        self.texture.level(0).map_or(Size::zero(), Texture::size)
+    fn texture(&self) -> Option<&T> {
+        if L::MANY { None } else { self.texture.level(0) }
     }
 
     #[inline(always)]
-    fn pixel(&self, uv: [i32; 2], light: Light, position: (i32, i32)) -> Option<P::Raw> {
-        let texture = self.texture.level(0)?;
+    fn pixel(texture: &T, uv: [i32; 2], light: Light, position: (i32, i32)) -> Option<P::Raw> {
         if <Self as TexelSource<P>>::RGB565 {
             return Some(P::from_rgb565(light.on_rgb565(F::rgb565::<T, W>(texture, uv))));
         }

@@ -18,7 +18,7 @@ use super::shader::Shader;
 use super::small::{Brush, BrushRows};
 use super::span::Fragment;
 use crate::color::PixelFormat;
-use crate::raster::{ShortPlanes, gradients};
+use crate::raster::{ShortPlanes, gradients, least_and_most};
 use crate::vertex::{Side, Varyings};
 use core::marker::PhantomData;
 
@@ -108,11 +108,9 @@ impl<V: Varyings> Planes<V> {
 /// # Format
 /// Δ (q - q₀) / 4 q₀ is at most the tolerance, see `texels.rs`. The rounding of q, of 26 bits, is a unit more.
 #[inline(never)]
-fn is_straight([a, b, c]: [u32; 3], most: u32, tolerance: u32) -> bool {
-    let exponent = (a & 63).max(b & 63).max(c & 63);
-    let q = |word: u32| (word >> 6) >> (exponent - (word & 63)).min(31);
-    let (a, b, c) = (q(a), q(b), q(c));
-    let (least, more) = (a.min(b).min(c), a.max(b).max(c) - a.min(b).min(c) + 2);
+fn is_straight(words: [u32; 3], most: u32, tolerance: u32) -> bool {
+    let (least, largest) = least_and_most(words);
+    let more = largest - least + 2;
     u64::from(more) * u64::from(most) <= 4 * u64::from(least) * u64::from(tolerance)
 }
 

@@ -233,7 +233,7 @@ fn covers_pixels([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, rows: usize) -> boo
 
 /// Returns what a bias adds to the depths of a triangle with these depths, 16.16.
 #[inline(never)]
-fn biased((steps, bias): &(BiasSteps, DepthBias), [a, b, c]: [i32; 3], dz_dx: i32, dz_dy: i32) -> u32 {
+pub(crate) fn biased((steps, bias): &(BiasSteps, DepthBias), [a, b, c]: [i32; 3], dz_dx: i32, dz_dy: i32) -> u32 {
     let depths = a.min(b).min(c) as u16..a.max(b).max(c) as u16;
     (steps(*bias, depths, dz_dx, dz_dy) as u32) << 16
 }

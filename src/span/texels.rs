@@ -27,28 +27,47 @@
 //! (√r - 1) / (√r + 1), which is at most (r - 1) / 4.
 
 use super::depth::DepthTest;
-use super::small::{Brush, BrushRows};
+use super::small::{Brush, BrushRows, SmallResult, SmallTriangle};
 use crate::color::PixelFormat;
-use crate::raster::{ShortPlanes, gradients};
+use crate::raster::{ShortPlanes, gradients, least_and_most};
+use crate::texture::Texture;
+use crate::vertex::PackedCorners;
 use core::marker::PhantomData;
 use embedded_graphics_core::geometry::Size;
 
-/// A texture whose texels small triangles are drawn with.
+/// A shader whose small triangles show texels.
 pub(crate) trait TexelSource<P: PixelFormat> {
+    type Texture: Texture;
     /// Set if texels are multiplied by light.
     const LIT: bool;
     /// Set if light is scaled for [`Light::on_rgb565`].
     const RGB565: bool;
     /// Set if coordinates count modulo 1.
     const REPEATS: bool;
-    /// Set if texels have to be as exact as when each pixel is divided.
-    const EXACT: bool;
+    /// Perspective may move texels by 2⁻`BITS` of one.
+    const BITS: u32;
 
-    /// Returns the size of the texture.
-    fn size(&self) -> Size;
+    /// Returns the texture; `None` if not all pixels of a triangle have the same one.
+    fn texture(&self) -> Option<&Self::Texture>;
 
     /// Returns the pixel at coordinates in 16.16; `None` if it is transparent.
-    fn pixel(&self, uv: [i32; 2], light: Light, position: (i32, i32)) -> Option<P::Raw>;
+    fn pixel(texture: &Self::Texture, uv: [i32; 2], light: Light, position: (i32, i32)) -> Option<P::Raw>;
+}
+
+impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
+    /// Draws the triangle with the texels of a shader, if it is small. The shader packs corners into `N` words: u and
+    /// v, light if there is any, and 1 / w.
+    #[inline(always)]
+    pub(crate) fn draw_texels<S: TexelSource<P>, const N: usize>(
+        self,
+        shader: &S,
+        corners: &PackedCorners<'_>,
+    ) -> SmallResult {
+        match (shader.texture(), corners.words::<N>()) {
+            (Some(texture), Some(words)) => self.draw(&TexelBrush::<S, P, N> { texture, words, format: PhantomData }),
+            _ => SmallResult::Large,
+        }
+    }
 }
 
 /// Light on a pixel: red and green, and blue.
@@ -84,16 +103,15 @@ impl Light {
 }
 
 /// Draws small triangles with the texels of a source.
-pub(crate) struct TexelBrush<'s, S, P, const N: usize> {
-    source: &'s S,
-    /// The words of the corners: u and v, light if there is any, and 1 / w.
+struct TexelBrush<'s, S: TexelSource<P>, P: PixelFormat, const N: usize> {
+    texture: &'s S::Texture,
     words: [&'s [u32; N]; 3],
     format: PhantomData<P>,
 }
 
 /// The spans of a [`TexelBrush`].
-pub(crate) struct TexelRows<'s, S, P> {
-    source: &'s S,
+struct TexelRows<'s, S: TexelSource<P>, P: PixelFormat> {
+    texture: &'s S::Texture,
     /// The first column, and the row; its number below the first row.
     place: (i32, i32),
     row: u32,
@@ -102,13 +120,6 @@ pub(crate) struct TexelRows<'s, S, P> {
     dx: [u32; 4],
     dy: [u32; 4],
     format: PhantomData<P>,
-}
-
-impl<'s, P: PixelFormat, S: TexelSource<P>, const N: usize> TexelBrush<'s, S, P, N> {
-    #[inline(always)]
-    pub(crate) fn new(source: &'s S, words: [&'s [u32; N]; 3]) -> Self {
-        Self { source, words, format: PhantomData }
-    }
 }
 
 /// Half a unit of 16.16, in 8.24.
@@ -179,14 +190,11 @@ const fn bends_little(least: u32, most: u32, texels: u32, bits: u32) -> bool {
 /// Differences are at most 2¹⁶, and sides of the texture below 2¹⁶: Δ is below 2³¹ · 2⁻⁶. Where q differs by more than
 /// a factor of 2, too much is moved in any case.
 #[inline(never)]
-fn is_straight(sides: Size, [du, dv]: [(i32, i32); 2], [a, b, c]: [u32; 3], bits: u32) -> bool {
+fn is_straight(sides: Size, [du, dv]: [(i32, i32); 2], words: [u32; 3], bits: u32) -> bool {
     // Rounded up: in a wide texture, one unit is a texel.
     let range = |(b, c): (i32, i32)| (b.max(c).max(0) - b.min(c).min(0) + 3) as u32 >> 2;
     let texels = (range(du).wrapping_mul(sides.width) >> 6).max(range(dv).wrapping_mul(sides.height) >> 6);
-    let most = (a & 63).max(b & 63).max(c & 63);
-    let q = |word: u32| (word >> 6) >> (most - (word & 63)).min(31);
-    let (a, b, c) = (q(a), q(b), q(c));
-    let (least, most) = (a.min(b).min(c), a.max(b).max(c));
+    let (least, most) = least_and_most(words);
     texels >> 16 == 0 && most - least <= least && bends_little(least, most, texels, bits)
 }
 
@@ -210,7 +218,7 @@ impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<
         let ((ua, va, wa), (ub, vb, wb), (uc, vc, wc)) = (coordinates(a), coordinates(b), coordinates(c));
         let (ub, vb, uc, vc) = (ub.wrapping_sub(ua), vb.wrapping_sub(va), uc.wrapping_sub(ua), vc.wrapping_sub(va));
         let difference = bits_of(ub) | bits_of(vb) | bits_of(uc) | bits_of(vc);
-        let (sides, words, bits) = (self.source.size(), [wa, wb, wc], if S::EXACT { 5 } else { 4 });
+        let (sides, words, bits) = (self.texture.size(), [wa, wb, wc], S::BITS);
         if difference >> 16 != 0
             || !is_clearly_straight(difference, sides, words, bits)
                 && !is_straight(sides, [(ub, uc), (vb, vc)], words, bits)
@@ -225,7 +233,7 @@ impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<
         }
         let (u, v) = (coordinate(planes, ua, ub, uc)?, coordinate(planes, va, vb, vc)?);
         let mut rows = TexelRows {
-            source: self.source,
+            texture: self.texture,
             place,
             row: 0,
             at: [u[0], v[0], 0, 0],
@@ -273,7 +281,7 @@ impl<P: PixelFormat, D: DepthTest, S: TexelSource<P>> BrushRows<P, D> for TexelR
             let near = (z >> 16) as u16;
             if !D::ENABLED || test.passes(near, *depth) {
                 let uv = [u as i32 >> 8, v as i32 >> 8];
-                if let Some(pixel) = self.source.pixel(uv, Light(light), (x, self.place.1 + self.row as i32)) {
+                if let Some(pixel) = S::pixel(self.texture, uv, Light(light), (x, self.place.1 + self.row as i32)) {
                     test.write(near, depth);
                     *color = pixel;
                 }
