@@ -69,7 +69,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws a triangle in the way of large ones, unless its area is 0. Its highest corner is the first.
     #[inline(never)]
-    pub(super) fn large(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
+    fn large(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area == 0 {
             return;

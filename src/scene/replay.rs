@@ -83,12 +83,7 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
             load_outlined::<S>(triangles, record, &mut self.varyings);
         }
         let Self { state, hooks, shader, .. } = *self;
-        let mut painter = Painter { target, screen, clip, state, hooks, shader };
-        if fits::<F, S>() {
-            painter.turned(v, &self.varyings, record.face, refused);
-        } else {
-            painter.large(v, &self.varyings, record.face);
-        }
+        Painter { target, screen, clip, state, hooks, shader }.turned(v, &self.varyings, record.face, refused);
     }
 }
 

@@ -219,16 +219,28 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
 /// the others are relative to it, with that on the left first. The first row's centres are `p` below it. All in 24.8.
 #[inline(never)]
 fn covers_pixels([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
-    // Each row by itself: edges are exact, wherever they begin.
-    (0..rows as i32).any(|row| {
-        let y = p + 256 * row;
-        let edge = |is_first: bool, (ax, ay): (i32, i32), (bx, by): (i32, i32)| match is_first {
-            true => ShortEdge::outlined(x, ax, ay, y),
-            false => ShortEdge::outlined(x + ax, bx - ax, by - ay, y - ay),
-        };
-        let (left, right) = (edge(y < by, (bx, by), (cx, cy)), edge(y < cy, (cx, cy), (bx, by)));
-        left.column() < right.column()
-    })
+    // From the highest corner, or from the bend: edges are exact, wherever they begin.
+    let edge = |y: i32, is_right: bool| {
+        let ((ax, ay), (bx, by)) = if is_right { ((cx, cy), (bx, by)) } else { ((bx, by), (cx, cy)) };
+        let (x, dx, dy, p) = if y < ay { (x, ax, ay, y) } else { (x + ax, bx - ax, by - ay, y - ay) };
+        ShortEdge::outlined(x, dx, dy, p)
+    };
+    let (mut y, end) = (p, p + 256 * rows as i32);
+    while y < end {
+        // Down to the bend, or from there on.
+        let bend = by.min(cy);
+        let stop = if y < bend { bend.min(end) } else { end };
+        let (mut left, mut right) = (edge(y, false), edge(y, true));
+        while y < stop {
+            if left.column() < right.column() {
+                return true;
+            }
+            left.step();
+            right.step();
+            y += 256;
+        }
+    }
+    false
 }
 
 /// Returns what a bias adds to the depths of a triangle with these depths, 16.16.
