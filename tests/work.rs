@@ -3,13 +3,17 @@
 mod reference;
 mod support;
 
+use reference::rng::Rng;
+use std::cell::Cell;
 use support::{difference, strips, unrecorded_strips};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::{Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Positions, Topology, Vertices};
 use zstrip::shader::Gouraud;
+use zstrip::span::{Fragment, Shader, TriangleSetup};
 use zstrip::target::Stats;
+use zstrip::vertex::{VertexRef, VertexShader};
 use zstrip::{Cull, State, Thick};
 
 const SCREEN: (u16, u16) = (320, 240);
@@ -132,4 +136,85 @@ fn bands_are_recorded_in_vain_only_a_few_times() {
             assert!(slower < 1.1 && stats.overflows <= most, "{case}");
         }
     }
+}
+
+/// A shader that counts how often it is called for each vertex.
+struct CountsVertices(Vec<Cell<u32>>);
+
+impl VertexShader for CountsVertices {
+    type Varyings = [i32; 1];
+
+    fn vertex(&self, vertex: &VertexRef<'_>) -> [i32; 1] {
+        let calls = &self.0[vertex.index()];
+        calls.set(calls.get() + 1);
+        [0]
+    }
+}
+
+impl Shader<Rgb565> for CountsVertices {
+    type Setup = ();
+
+    fn setup(&self, _: &TriangleSetup<'_, [i32; 1]>) {}
+
+    fn fragment(&self, _: &Fragment<'_, [i32; 1]>) -> Option<u16> {
+        Some(0xFFFF)
+    }
+}
+
+#[test]
+fn recorded_vertices_are_shaded_once_if_a_triangle_of_theirs_is_seen() {
+    let seed = 71;
+    let mut rng = Rng::new(seed);
+    let (mut shaded, mut hidden) = (0, 0);
+    for case in 0..60 {
+        // Squares of 20 px from 80 px left of the screen and above it to 80 px right of it and below, or of 40 px.
+        let (side, columns, rows) = [(20, 25, 21), (40, 13, 11)][case % 2];
+        let at = |k: u16| [i32::from(k % columns) * side - 80, i32::from(k / columns) * side - 80];
+        let points: Vec<_> = (0..columns * rows)
+            .map(|k| {
+                let [x, y] = at(k);
+                // The screen is 320 px by 240 px, and w is 480.
+                [3 * x - 480, 480 - 4 * y, 0, 480].map(|c| Scalar::from_bits(c << 16))
+            })
+            .collect();
+        let height = [240, 120, 16, 5][case / 2 % 4];
+        // Each triangle shows its front, its back or is left out.
+        let mut indices = Vec::new();
+        let mut expected = vec![0; points.len()];
+        for k in (0..columns * (rows - 1)).filter(|k| k % columns != columns - 1) {
+            for [a, b, c] in [[k, k + columns, k + 1], [k + 1, k + columns, k + columns + 1]] {
+                let corners = [a, b, c].map(at);
+                let is_in = |axis: usize, screen: i32| {
+                    corners.iter().any(|at| at[axis] > 0) && corners.iter().any(|at| at[axis] < screen)
+                };
+                match rng.between(0, 2) {
+                    0 => indices.push([a, c, b]),
+                    1 => {
+                        indices.push([a, b, c]);
+                        // In a single strip, triangles beside the screen are shaded too.
+                        if height == 240 || is_in(0, 320) && is_in(1, 240) {
+                            for k in [a, b, c] {
+                                expected[usize::from(k)] = 1;
+                            }
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        let indices = indices.concat();
+        let mesh = Mesh::new(MeshData { indices: Some(&indices), ..MeshData::new(Positions::Homogeneous(&points)) });
+        let (mesh, shader) = (mesh.expect("triangles"), CountsVertices(vec![Cell::new(0); points.len()]));
+
+        let (_, stats) = strips::<Rgb565>(SCREEN, height, 100_000, Rgb565::BLACK, |scene| {
+            scene.draw(&mesh, &Projective::IDENTITY, &shader);
+        });
+        let calls: Vec<_> = shader.0.iter().map(Cell::get).collect();
+        assert_eq!(stats.clipped, 0, "seed {seed}, case {case}");
+        assert_eq!(calls, expected, "seed {seed}, case {case}: strips of {height} rows");
+        shaded += calls.iter().filter(|calls| **calls == 1).count();
+        hidden += calls.iter().filter(|calls| **calls == 0).count();
+    }
+    println!("seed {seed}: {shaded} vertices are shaded, {hidden} are not");
+    assert!(shaded > 1000 && hidden > 1000);
 }

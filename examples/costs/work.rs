@@ -162,9 +162,9 @@ impl Counter for TexturedCalls {
 }
 
 /// Tells the shader inside which triangles are small.
-struct Sized<'c, C>(&'c C);
+struct BySize<'c, C>(&'c C);
 
-impl<C: Counter> Wrapper for Sized<'_, C> {
+impl<C: Counter> Wrapper for BySize<'_, C> {
     type Inner = C;
 
     fn inner(&self) -> &C {
@@ -172,7 +172,7 @@ impl<C: Counter> Wrapper for Sized<'_, C> {
     }
 }
 
-impl<P: PixelFormat, C: Counter + Shader<P, Setup = ()>> Shader<P> for Sized<'_, C> {
+impl<P: PixelFormat, C: Counter + Shader<P, Setup = ()>> Shader<P> for BySize<'_, C> {
     type Setup = ();
 
     fn setup(&self, triangle: &TriangleSetup<'_, C::Varyings>) {
@@ -236,7 +236,7 @@ fn of_grid(parts: &mut Parts, number: usize, rows: usize, counter: &impl Counter
     let mesh = parts.build(&grid).expect("a mesh");
     let (mut color, mut depth, mut records) = (vec![0; WIDTH * rows], vec![0; WIDTH * rows], vec![0; 96 * 1024]);
     let memory = Memory::<Gray8> { color: &mut color, depth: &mut depth, records: &mut records };
-    let stats = grids::draw_by(memory, &mut |_| {}, &Sized(counter), &mesh, places);
+    let stats = grids::draw_by(memory, &mut |_| {}, &BySize(counter), &mesh, places);
     assert_eq!(stats.overflows + stats.clipped + stats.culled, 0, "grid {number}: {stats:?}");
     work(grid.draws(), mesh.vertex_count(), mesh.triangle_count(), counter.calls(), first)
 }
@@ -250,8 +250,8 @@ pub fn of_workload(workload: Priced) -> [Work; ROWS.len()] {
         let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; 96 * 1024]);
         let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };
         let (stats, calls) = match workload {
-            Priced::W9 => (price::draw_by(workload, &Sized(&textured), buffers, &mut |_| {}), &textured.calls),
-            _ => (price::draw_by(workload, &Sized(&calls), buffers, &mut |_| {}), &calls),
+            Priced::W9 => (price::draw_by(workload, &BySize(&textured), buffers, &mut |_| {}), &textured.calls),
+            _ => (price::draw_by(workload, &BySize(&calls), buffers, &mut |_| {}), &calls),
         };
         assert_eq!(stats.overflows, 0, "{workload:?}: {stats:?}");
         work(1, stats.vertices as usize, stats.triangles as usize, calls, &mut first)

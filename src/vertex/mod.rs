@@ -24,9 +24,8 @@ pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSl
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
-pub(crate) use packed::{PackedVertex, pack};
+pub(crate) use packed::{PackedVertex, VERTEX_WORDS, pack};
 pub use packed_corners::PackedCorners;
-pub(crate) use packed_corners::VERTEX_WORDS;
 pub use painters_order::{SortError, SortReport, SortScratch, painters_order};
 pub use project::{DepthScale, ScreenVertex};
 pub(crate) use project::{Projected, inverse_w, project, signed_area, small};

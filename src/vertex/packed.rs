@@ -3,6 +3,9 @@
 
 use super::project::{Projected, ScreenVertex};
 
+/// Words of a vertex's position in the records, which come before its varyings.
+pub(crate) const VERTEX_WORDS: usize = 2;
+
 /// A position of a vertex on the screen, in two words: x in the upper 24 bits of the first, y in those of the second;
 /// below x the high byte of z, below y the low byte.
 ///

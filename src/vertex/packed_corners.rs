@@ -1,9 +1,9 @@
 //! The packed varyings of a triangle's corners, in the words where the vertex stage left them.
 
-/// Words of a vertex's position in the records, which come before its varyings.
-pub(crate) const VERTEX_WORDS: usize = 2;
+use super::packed::VERTEX_WORDS;
 
-/// The packed varyings of a triangle's corners.
+/// The packed varyings of a triangle's corners. A shader receives them in
+/// [`small_packed`](crate::span::Shader::small_packed) and hands them on to the shader inside.
 #[derive(Clone, Copy, Debug)]
 pub struct PackedCorners<'r> {
     /// Words of varyings, those of one vertex after the other.

@@ -186,9 +186,10 @@ fn fifteen_bits(v: [i32; 3]) -> [i32; 3] {
 /// The programmable vertex stage: computes the values that are interpolated over triangles, and the word that is
 /// constant on each.
 ///
-/// While records are used, each vertex of a visible triangle is shaded once per draw, and the others are not shaded; a
-/// triangle that has to be clipped asks for its vertices again. Without records, a vertex is shaded as often as it is
-/// needed.
+/// While records are used, each vertex of a triangle that is not culled is shaded once per draw. Vertices that only
+/// culled triangles have are not shaded; nor are, in a frame of several strips, those that only triangles beside the
+/// screen have. A triangle that has to be clipped asks for its vertices again. Without records, a vertex is shaded as
+/// often as it is needed.
 pub trait VertexShader {
     /// Type of the values that are interpolated.
     type Varyings: Varyings;
@@ -214,6 +215,41 @@ pub trait VertexShader {
     /// Set if perspective-correct varyings may be planes on the screen, on small triangles where perspective moves none
     /// of them by more than [`tolerance`](Self::tolerance). That saves all divisions there. Shaders whose
     /// [`Setup`](crate::span::Shader::Setup) is not empty take no part.
+    ///
+    /// ```
+    /// use zstrip::embedded_graphics_core::pixelcolor::Gray8;
+    /// use zstrip::span::{Fragment, Shader, TriangleSetup};
+    /// use zstrip::vertex::{Perspective, VertexRef, VertexShader};
+    ///
+    /// /// Shows a chessboard of 8 × 8 fields.
+    /// struct Board;
+    ///
+    /// impl VertexShader for Board {
+    ///     type Varyings = Perspective<2, 3>;
+    ///
+    ///     const IS_TOLERANT: bool = true;
+    ///
+    ///     // A field is 2¹³ units of the coordinates, 16.16: its border may move by 1/64 of it.
+    ///     fn tolerance(&self) -> u32 {
+    ///         1 << 7
+    ///     }
+    ///
+    ///     fn vertex(&self, vertex: &VertexRef<'_>) -> Perspective<2, 3> {
+    ///         Perspective::new(vertex.uv().map(|c| c.to_bits()), [])
+    ///     }
+    /// }
+    ///
+    /// impl Shader<Gray8> for Board {
+    ///     type Setup = ();
+    ///
+    ///     fn setup(&self, _: &TriangleSetup<'_, Perspective<2, 3>>) {}
+    ///
+    ///     fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<u8> {
+    ///         let [u, v] = fragment.varyings.corrected();
+    ///         Some(if (u ^ v) >> 13 & 1 == 0 { 0 } else { 255 })
+    ///     }
+    /// }
+    /// ```
     const IS_TOLERANT: bool = false;
 
     /// Returns by how much perspective may move perspective-correct varyings on small triangles, in units of the
