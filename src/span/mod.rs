@@ -18,6 +18,7 @@ mod solid;
 mod span;
 mod texels;
 mod textured;
+mod uv_stepper;
 
 pub(crate) use channels::ChannelBrush;
 pub use color_setup::ColorSetup;
@@ -35,4 +36,5 @@ pub(crate) use small::{biased, subslice};
 pub(crate) use solid::{ValueBrush, flat_span};
 pub use span::{Fragment, Primitive, Span, TriangleSetup};
 pub(crate) use texels::{Light, TexelSource};
-pub(crate) use textured::{STEP, UvStepper, texture_span};
+pub(crate) use textured::{STEP, texture_span};
+pub(crate) use uv_stepper::UvStepper;
