@@ -20,6 +20,8 @@ const SIDE: usize = 6;
 /// Distance from an edge, in px, up to which either decision is right: corners are rounded to 1/256 px, and those of a
 /// cut triangle once more.
 const MARGIN: f64 = 1.0 / 50.0;
+/// Triangles of the fan that is left of a triangle between the near and the far plane.
+const FAN: u8 = 3;
 /// 1 / w from which on a pixel may be missing: there, w is below one half of the last bit of a coordinate. The transform
 /// cuts where it is 1/8 of that bit.
 const LARGEST_INVERSE_W: f64 = 2.0 * 65_536.0;
@@ -101,9 +103,9 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
     }
     let mut sure = [0_u8; SIDE * SIDE];
     let mut maybe = [0_u8; SIDE * SIDE];
-    // Set if a triangle covers no sample for sure: snapped, one that is narrower than the grid may lie on the other
-    // side of the edge where the two meet.
-    let mut is_thin = false;
+    // Set where a triangle is narrower than corners are rounded: its polygon may fold there, so that triangles of its
+    // fan overlap, and may lie on the other side of the edge where the two triangles meet.
+    let mut is_narrow = [false; SIDE * SIDE];
     let viewport = Viewport::new(SIDE as u32, SIDE as u32);
     for triangle in vertices.chunks_exact(3) {
         let corner = |k: usize| {
@@ -119,11 +121,11 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
         };
         if is_edge_on(triangle) {
             // Rounded corners may make slivers of its parts before, between and beyond the planes.
-            maybe.iter_mut().for_each(|maybe| *maybe += 3);
+            maybe.iter_mut().for_each(|maybe| *maybe += FAN);
+            is_narrow = [true; SIDE * SIDE];
             continue;
         }
         let triangle = [corner(0), corner(1), corner(2)];
-        let mut covers_any = false;
         for_each_sample(&viewport, (SIDE as u32, SIDE as u32), &triangle, |sample| {
             let at = sample.y as usize * SIDE + sample.x as usize;
             let drawn = match cull {
@@ -132,18 +134,19 @@ fn check(vertices: &[[i32; 4]], range: DepthRange, cull: Cull, words: usize) -> 
                 Cull::Front => !sample.front,
             };
             if sample.margin < MARGIN || sample.inv_w > LARGEST_INVERSE_W {
-                maybe[at] += if range == DepthRange::Clip { 1 } else { 3 };
-            } else if sample.covered {
-                covers_any = true;
-                sure[at] += u8::from(drawn);
+                let slabs = if range == DepthRange::Clip { 1 } else { 3 };
+                let narrow = sample.second_margin < MARGIN;
+                maybe[at] += if narrow { FAN * slabs } else { slabs };
+                is_narrow[at] |= narrow;
+            } else if sample.covered && drawn {
+                sure[at] += 1;
             }
         });
-        is_thin |= !covers_any;
     }
     for (at, count) in counts.iter().enumerate() {
         let count = count.get();
         // Where the two triangles meet, one of them draws, and not both.
-        let most = if vertices.len() > 3 && range == DepthRange::Clip && !is_thin {
+        let most = if vertices.len() > 3 && range == DepthRange::Clip && !is_narrow[at] {
             (sure[at] + maybe[at]).min(1)
         } else {
             sure[at] + maybe[at]

@@ -63,6 +63,8 @@ pub struct Sample<const K: usize> {
     pub front: bool,
     /// Distance in px by which the decision on `covered` is safe; never more than the true distance.
     pub margin: f64,
+    /// The same for the second nearest border. The visible part of the triangle is narrow where this is small too.
+    pub second_margin: f64,
     /// z/w.
     pub depth: f64,
     pub inv_w: f64,
@@ -162,7 +164,8 @@ pub fn for_each_sample<const K: usize>(
             let inv_w: f64 = b.iter().sum();
             // Inside a convex region, the nearest border decides; outside, the border that is violated most.
             let lines = [&edges[0], &edges[1], &edges[2], &near, &far];
-            let nearest = lines.map(|line| line.distance(cx, cy));
+            let mut distances = lines.map(|line| line.distance(cx, cy));
+            distances.sort_by(f64::total_cmp);
             let weighted =
                 |weights: [f64; 3], i: usize| -> f64 { (0..3).map(|k| weights[k] * tri[k].attributes[i]).sum() };
             visit(&Sample {
@@ -170,7 +173,8 @@ pub fn for_each_sample<const K: usize>(
                 y,
                 covered: inside_edges && inv_w > 0.0 && near.at(cx, cy) >= 0.0 && far.at(cx, cy) >= 0.0,
                 front: det < 0.0,
-                margin: nearest.into_iter().fold(f64::INFINITY, f64::min).abs(),
+                margin: distances[0].abs(),
+                second_margin: distances[1].abs(),
                 depth: near.at(cx, cy) / det.abs(),
                 inv_w,
                 perspective: std::array::from_fn(|i| weighted(b, i) / inv_w),
