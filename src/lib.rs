@@ -41,6 +41,7 @@
 //! | draw on an embedded-graphics display, or into a sink | [`Renderer::frame`], [`Renderer::frame_to`] |
 //! | draw into a framebuffer, without strips | [`frame::FramebufferRenderer`] |
 //! | know how much RAM that takes, at compile time | [`frame::RamBudget`] |
+//! | draw in strips of a few rows | [`Renderer::with_carried_state`] |
 //! | bring in a mesh, lines, points | [`mesh`] |
 //! | place a camera, move things | [`math`] |
 //! | light them, and choose a shader | [`light`], [`shader`] |

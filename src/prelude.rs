@@ -31,7 +31,7 @@ pub use crate::{
     mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Topology, Vertices},
     scene::{Cull, Scene, Smooth, State, Thick, Thin, Winding},
     shader::{Flat, Gouraud, Phong, Textured},
-    target::{Framebuffer, StripPixels, WithDepth, WithRecords, WithoutDepth, WithoutRecords},
+    target::{Framebuffer, StripPixels, WithCarriedState, WithDepth, WithRecords, WithoutDepth, WithoutRecords},
 };
 #[doc(no_inline)]
 pub use embedded_graphics_core::{

@@ -24,8 +24,8 @@ use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::{Flat, Gouraud, Textured};
 use zstrip::span::{DepthState, DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf};
 use zstrip::target::RecordsChoice;
+use zstrip::target::WithDepth;
 use zstrip::target::{Stats, Strip};
-use zstrip::target::{WithDepth, WithRecords};
 use zstrip::texture::Tile;
 use zstrip::vertex::{Face, VertexRef, VertexShader};
 use zstrip::{Scene, State};
@@ -110,8 +110,14 @@ pub fn draw(workload: Workload, buffers: Buffers<'_>, mut sink: impl FnMut(&[u16
 
 const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
 
+/// What renderers have beside depths.
+#[cfg(not(carries))]
+type Lent = zstrip::target::WithRecords;
+#[cfg(carries)]
+type Lent = zstrip::target::WithCarriedState;
+
 /// The closure of a frame, called through a pointer.
-type DrawScene<'d> = dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, WithRecords>>) + 'd;
+type DrawScene<'d> = dyn FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithDepth, Lent>>) + 'd;
 
 #[inline(always)]
 fn frame(buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16]), draw: &mut DrawScene<'_>) -> Stats {
@@ -123,7 +129,10 @@ fn frame(buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16]), draw: &mut DrawScen
 fn frame_on(screen: Size, buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16]), draw: &mut DrawScene<'_>) -> Stats {
     let Buffers { color, depth, records } = buffers;
     let renderer = Renderer::new(screen).and_then(|renderer| renderer.with_depth(depth));
-    frame_by(renderer.map(|renderer| renderer.with_records(records)), color, sink, draw)
+    let renderer = renderer.map(|renderer| renderer.with_records(records));
+    #[cfg(carries)]
+    let renderer = renderer.map(|renderer| renderer.with_carried_state());
+    frame_by(renderer, color, sink, draw)
 }
 
 /// Buffers that do not hold a row draw nothing.

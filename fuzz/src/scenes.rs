@@ -336,7 +336,14 @@ fn check<P: Kind<Raw: PartialEq + Debug>>(plan: &Plan, way: Way) -> u64 {
     let mut renderer = renderer.with_records(&mut few);
     let found = strips(&mut renderer, &mut color[..width * way.rows], plan);
     assert_alike(&found, &expected, plan.screen, &way);
-    if way.renderer & 1 != 0 {
+    if way.renderer & 4 != 0 {
+        // Whether states of triangles are carried on, and for how many there is room, does not show.
+        let words = if way.renderer & 8 != 0 { &mut records } else { &mut few };
+        let renderer = Renderer::<P>::new(plan.size()).expect("a renderer").with_depth(&mut depth).expect("depths");
+        let mut carrying = renderer.with_records(words).with_carried_state();
+        let found = strips(&mut carrying, &mut color[..width * way.rows], plan);
+        assert_alike(&found, &expected, plan.screen, &("carried", way));
+    } else if way.renderer & 1 != 0 {
         let again = strips(&mut renderer, &mut color[..width * way.rows], plan);
         assert_alike(&again, &expected, plan.screen, &("again", way));
     }

@@ -207,6 +207,9 @@ impl Engine<'_> {
                 progress.end_strip(rows, phase);
                 return Ok(());
             }
+            if F::CARRIES {
+                Records::new(self.records, &mut progress.layout).begin_carrying();
+            }
         }
     }
 

@@ -20,9 +20,9 @@ pub(crate) const HEIGHT: i32 = 25 << 8;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ShortEdge {
     /// The position plus one pixel, less δ; modulo 2⁶ px.
-    x: u32,
+    pub(crate) x: u32,
     /// Change of the position per row, modulo 2⁶ px.
-    step: u32,
+    pub(crate) step: u32,
 }
 
 impl ShortEdge {
@@ -101,6 +101,12 @@ impl ShortEdge {
         if self.column() > column {
             self.x = column << FRACTION;
         }
+    }
+
+    /// Returns the edge a number of rows further down.
+    #[inline(always)]
+    pub(crate) const fn below(self, rows: u32) -> Self {
+        Self { x: self.x.wrapping_add(self.step.wrapping_mul(rows)), step: self.step }
     }
 
     /// Goes one row down.

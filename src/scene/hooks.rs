@@ -3,7 +3,7 @@
 use super::painter::RasterHooks;
 use super::replay::{ShaderDrawer, fits};
 use super::state::State;
-use crate::span::{DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Shader, SmallResult};
+use crate::span::{Carrying, DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Shader, SmallResult};
 use crate::target::Framebuffer;
 use crate::vertex::Varyings;
 
@@ -16,15 +16,28 @@ impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
             spans: |painter, set_up| painter.spans(set_up, D::of(painter.test())),
             // Without varyings both ways draw the same, and one triangle by itself gains little.
             small: if fits::<F, S>() && S::Varyings::LEN > 0 {
-                |painter, v, varyings, flat| painter.small(v, varyings, flat, D::of(painter.test()))
+                |painter, v, varyings, flat| {
+                    let test = D::of(painter.test());
+                    if F::CARRIES {
+                        painter.small(v, varyings, flat, Carrying(test))
+                    } else {
+                        painter.small(v, varyings, flat, test)
+                    }
+                }
             } else {
                 |_, _, _, _| SmallResult::Large
             },
             replay: |scene, state, hooks, shader, waiting| {
                 if F::RECORDS {
                     let (test, varyings) = (D::of(state.depth), [S::Varyings::ZERO; 3]);
-                    let mut drawer = ShaderDrawer { state, hooks, shader, test, varyings };
-                    scene.replay(state, hooks.bias, waiting, &mut drawer);
+                    // One kind of test for all small triangles, so that each of their loops is linked once.
+                    if F::CARRIES {
+                        let mut drawer = ShaderDrawer { state, hooks, shader, test: Carrying(test), varyings };
+                        scene.replay(state, hooks.bias, waiting, &mut drawer);
+                    } else {
+                        let mut drawer = ShaderDrawer { state, hooks, shader, test, varyings };
+                        scene.replay(state, hooks.bias, waiting, &mut drawer);
+                    }
                 }
             },
             bias: None,

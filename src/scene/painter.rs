@@ -102,11 +102,12 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let (shader, bias) = (self.shader, self.bias_steps());
         let rows = SmallRows::new(self.screen, self.clip, self.state, bias);
         let Range { start: mut y, end } = rows.of(v);
-        while y < end
-            && let Some(mut target) = rows.place(self.target, Some(y))
-        {
+        while y < end {
+            // Not moved out: that would link `memcpy`.
+            let mut place = rows.place(self.target, Some(y), &mut []);
+            let Some(target) = &mut place else { break };
             y = target.rows.end;
-            let triangle = SmallTriangle { target: &mut target, v: [a, b, c], test };
+            let triangle = SmallTriangle { target, v: [a, b, c], state: None, test };
             let result = if S::PACKS_SMALL {
                 shader.small_packed(triangle, &packed)
             } else {

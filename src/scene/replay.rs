@@ -7,9 +7,11 @@ use super::scene::{Scene, Target};
 use super::small_rows::{Raw, SmallRows};
 use super::state::State;
 use crate::raster::PixelRect;
-use crate::span::{BiasSteps, DepthTest, Shader, SmallResult, SmallTarget, SmallTriangle};
-use crate::target::{Framebuffer, TriangleRecord, Triangles};
-use crate::vertex::{MAX_IN_REGISTERS, ScreenVertex, Varyings, VertexShader};
+use crate::span::{
+    BiasSteps, DepthTest, MOST_CARRIED, Shader, SmallResult, SmallTarget, SmallTriangle, face_of, goes_on,
+};
+use crate::target::{DrawTriangles, Framebuffer, TriangleRecord, Triangles};
+use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, PackedVertex, ScreenVertex, Varyings, VertexShader};
 
 /// Draws triangles from the records with a shader.
 pub(super) trait RecordDrawer<F: Framebuffer> {
@@ -24,6 +26,9 @@ pub(super) trait RecordDrawer<F: Framebuffer> {
         record: &TriangleRecord,
         v: [&[u32; 2]; 3],
     ) -> SmallResult;
+
+    /// Goes on with a small triangle from the strip above.
+    fn go_on(&mut self, target: &mut SmallTarget<'_, Raw<F>>, state: &mut [u32]);
 
     /// Draws a triangle with these vertices. `refused` says that [`small`](Self::small) has just found it to be large.
     fn single(
@@ -60,7 +65,7 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
         record: &TriangleRecord,
         v: [&[u32; 2]; 3],
     ) -> SmallResult {
-        let triangle = SmallTriangle { target, v, test: self.test };
+        let triangle = SmallTriangle { target, v, state: None, test: self.test };
         if S::PACKS_SMALL {
             self.shader.small_packed(triangle, &triangles.packed_corners::<S>(record.corners))
         } else if fits::<F, S>() {
@@ -68,6 +73,17 @@ impl<F: Framebuffer, S: Shader<F::Format>, D: DepthTest> RecordDrawer<F> for Sha
             self.shader.small(triangle, &self.varyings, record.face)
         } else {
             SmallResult::Large
+        }
+    }
+
+    fn go_on(&mut self, target: &mut SmallTarget<'_, Raw<F>>, state: &mut [u32]) {
+        let face = face_of(state);
+        let v = [&PackedVertex::NONE_WORDS; 3];
+        let triangle = SmallTriangle { target, v, state: Some(state), test: self.test };
+        if S::PACKS_SMALL {
+            self.shader.small_packed(triangle, &PackedCorners::NONE);
+        } else if fits::<F, S>() {
+            self.shader.small(triangle, &self.varyings, face);
         }
     }
 
@@ -112,6 +128,37 @@ fn load<S: VertexShader>(triangles: &Triangles<'_>, record: &TriangleRecord, [a,
     triangles.varyings::<S>(k, c);
 }
 
+/// Draws the small ones of the triangles that it is handed.
+struct SmallDrawer<'p, 't, 'd, F: Framebuffer> {
+    place: &'p mut Option<SmallTarget<'t, Raw<F>>>,
+    drawer: &'p mut (dyn RecordDrawer<F> + 'd),
+}
+
+impl<F: Framebuffer> DrawTriangles for SmallDrawer<'_, '_, '_, F> {
+    const CARRIES: bool = F::CARRIES;
+
+    #[inline(always)]
+    fn draw(&mut self, triangles: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]) -> SmallResult {
+        match self.place {
+            Some(place) => self.drawer.small(place, triangles, record, v),
+            None => SmallResult::Large,
+        }
+    }
+
+    #[inline(always)]
+    fn take_state(&mut self) -> &[u32] {
+        let Some(place) = self.place else { return &[] };
+        place.state.get(..core::mem::take(&mut place.state_words)).unwrap_or_default()
+    }
+
+    #[inline(always)]
+    fn go_on(&mut self, state: &mut [u32]) -> Option<bool> {
+        let place = self.place.as_mut().filter(|place| !place.state.is_empty())?;
+        self.drawer.go_on(place, state);
+        Some(goes_on(state))
+    }
+}
+
 impl<F: Framebuffer> Scene<'_, F> {
     /// Draws triangles of this draw in the current strip: stages 8 to 11. These are the recorded ones of the strip, or
     /// those that wait to be drawn at once, which are taken out of the records. This code is compiled once, for all
@@ -136,13 +183,14 @@ impl<F: Framebuffer> Scene<'_, F> {
             triangles.begin_waiting();
         }
         let fits = drawer.fits();
+        // States are carried on if the rows of the next strip follow those that are drawn here.
+        let carries = F::CARRIES && !waiting && clip.y.end == target.rows.end;
+        let mut state = [0; MOST_CARRIED];
         loop {
-            let mut place = if fits { rows.place(target, None) } else { None };
+            let state: &mut [u32] = if carries { &mut state } else { &mut [] };
+            let mut place = if fits { rows.place(target, None, state) } else { None };
             let tried = place.is_some();
-            let draw = |triangles: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]| match &mut place {
-                Some(place) => drawer.small(place, triangles, record, v),
-                None => SmallResult::Large,
-            };
+            let draw = &mut SmallDrawer { place: &mut place, drawer };
             let found = if waiting {
                 triangles.waiting_each(&mut record, &mut test.left_out, draw)
             } else {

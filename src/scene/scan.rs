@@ -319,7 +319,7 @@ mod tests {
     use crate::math::{Scalar, Vec3};
     use crate::mesh::{MeshData, Positions};
     use crate::span::SmallResult;
-    use crate::target::{Layout, TriangleRecord};
+    use crate::target::{DrawTriangles, Layout, TriangleRecord};
     use crate::vertex::Projected;
     use std::vec;
     use std::vec::Vec;
@@ -349,6 +349,26 @@ mod tests {
                 }
                 .words()
             })
+        }
+    }
+
+    /// Looks at each triangle.
+    struct Each<T>(T);
+
+    impl<T: FnMut(&TriangleRecord, [&[u32; 2]; 3])> DrawTriangles for Each<T> {
+        const CARRIES: bool = false;
+
+        fn draw(&mut self, _: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]) -> SmallResult {
+            (self.0)(record, v);
+            SmallResult::Drawn
+        }
+
+        fn take_state(&mut self) -> &[u32] {
+            &[]
+        }
+
+        fn go_on(&mut self, _: &mut [u32]) -> Option<bool> {
+            None
         }
     }
 
@@ -411,7 +431,7 @@ mod tests {
                 records.begin_replay(strip);
                 assert!(records.replay_draw(7, positions.len(), 2));
                 let mut listed = drawn.iter();
-                records.triangles().replay_each(i32::MAX >> 2, &mut TriangleRecord::default(), |_, triangle, v| {
+                let draw = |triangle: &TriangleRecord, v: [&[u32; 2]; 3]| {
                     let (corners, number, front) = listed.next().expect("no more triangles");
                     let (next, area) = PendingFace(triangle.face).parts();
                     assert_eq!((next, area > 0), (*number, *front), "case {case}, strip {strip}");
@@ -423,8 +443,8 @@ mod tests {
                     let [a, b, c] = [a, b, c].map(|words| words[1] as i32);
                     assert!(a <= b && a <= c, "case {case}, strip {strip}: the highest corner is not the first");
                     found += 1;
-                    SmallResult::Drawn
-                });
+                };
+                records.triangles().replay_each(i32::MAX >> 2, &mut TriangleRecord::default(), &mut Each(draw));
                 assert_eq!(listed.next(), None, "case {case}, strip {strip}");
             }
         }

@@ -45,6 +45,7 @@ impl<'p> SmallRows<'p> {
         &self,
         target: &'t mut Target<'_, F>,
         row: Option<i32>,
+        state: &'t mut [u32],
     ) -> Option<SmallTarget<'t, Raw<F>>> {
         let (width, first) = (usize::from(self.screen.0), target.rows.start);
         let length = width.wrapping_mul((target.rows.end - first) as usize);
@@ -58,6 +59,17 @@ impl<'p> SmallRows<'p> {
             (target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, y..y + 1)
         };
         let Self { screen, clip, clockwise_fronts, bias } = *self;
-        Some(SmallTarget { color, depth, first, columns: clip.x.clone(), rows, screen, clockwise_fronts, bias })
+        Some(SmallTarget {
+            color,
+            depth,
+            first,
+            columns: clip.x.clone(),
+            rows,
+            screen,
+            clockwise_fronts,
+            bias,
+            state,
+            state_words: 0,
+        })
     }
 }

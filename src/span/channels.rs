@@ -86,9 +86,25 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ChannelBrush<'_, P> {
         }
         Some(ChannelRows { at: [at, b << 16], dx: [dx, b_dx << 16], dy: [dy, b_dy << 16] })
     }
+
+    #[inline(always)]
+    fn resume(&self, words: &[u32], _: (i32, i32)) -> ChannelRows {
+        let [a, b, c, d, e, f] = *words.first_chunk().unwrap_or(&[0; 6]);
+        ChannelRows { at: [a, b], dx: [c, d], dy: [e, f] }
+    }
 }
 
 impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ChannelRows {
+    const WORDS: Option<usize> = Some(6);
+
+    #[inline(always)]
+    fn save(&self, down: u32, words: &mut [u32]) {
+        if let Some(words) = words.first_chunk_mut() {
+            let ([a, b], [c, d], [e, f]) = (self.at, self.dx, self.dy);
+            *words = [a.wrapping_add(e.wrapping_mul(down)), b.wrapping_add(f.wrapping_mul(down)), c, d, e, f];
+        }
+    }
+
     #[inline(always)]
     fn next_row(&mut self) {
         self.at[0] = self.at[0].wrapping_add(self.dy[0]);

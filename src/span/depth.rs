@@ -86,6 +86,9 @@ pub trait DepthTest: DepthStorage<<Self as DepthTest>::Depth> {
     /// Set if depth plays a part. If it does not, callers may leave out `passes` and `write`.
     const ENABLED: bool;
 
+    /// Set if small triangles that go on in the next strip leave their state, see [`Carrying`].
+    const CARRIES: bool = false;
+
     /// Stored depth of a pixel: `u16`, or `()` where depth plays no part.
     type Depth: Copy;
 
@@ -134,6 +137,41 @@ macro_rules! storing_test {
 
 storing_test!(DepthLess, <, LESS);
 storing_test!(DepthLessEqual, <=, LESS_EQUAL);
+
+/// A depth test of small triangles that leave their state for the next strip. As this is said by a type, programs that
+/// carry no state on link nothing of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Carrying<D>(pub D);
+
+impl<D: DepthTest> DepthTest for Carrying<D> {
+    const ENABLED: bool = D::ENABLED;
+
+    const CARRIES: bool = true;
+
+    type Depth = D::Depth;
+
+    #[inline(always)]
+    fn passes(self, z: u16, stored: D::Depth) -> bool {
+        self.0.passes(z, stored)
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut D::Depth) {
+        self.0.write(z, stored);
+    }
+}
+
+impl<D: DepthTest> DepthStorage<D::Depth> for Carrying<D> {
+    #[inline(always)]
+    fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [D::Depth] {
+        D::slots(depths, nothing)
+    }
+
+    #[inline(always)]
+    fn as_dyn(self, stored: &mut [D::Depth]) -> Option<(DepthDyn, &mut [u16])> {
+        self.0.as_dyn(stored)
+    }
+}
 
 /// The test of [`DepthState::OFF`].
 #[derive(Clone, Copy, Debug)]

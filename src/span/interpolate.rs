@@ -1,6 +1,7 @@
 //! Triangles of any shader: the planes of their varyings, a part of stage 8 of [the pipeline](crate#the-pipeline), and
 //! the brush that draws small ones by the shader's spans.
 
+use super::carried::{load_varyings, save_varyings, words_of};
 use super::depth::DepthTest;
 use super::planar::PlanarBrush;
 use super::shader::{Shader, SpanOf};
@@ -76,9 +77,33 @@ impl<'s, P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> Brush<P, D> for Sh
         }
         Some(ShaderRows { shader: self.shader, primitive, place })
     }
+
+    fn resume(&self, words: &[u32], place: (i32, i32)) -> ShaderRows<'s, P, S> {
+        let mut primitive = Primitive::constant(S::Varyings::ZERO, self.flat, Side::Front, S::Setup::default());
+        if let Some(([side, dz_dx], words)) = words.split_first_chunk() {
+            if *side != 0 {
+                primitive.side = Side::Back;
+            }
+            primitive.dz_dx = *dz_dx as i32;
+            load_varyings([&mut primitive.at_origin, &mut primitive.d_dx, &mut primitive.d_dy], words);
+        }
+        ShaderRows { shader: self.shader, primitive, place }
+    }
 }
 
 impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for ShaderRows<'_, P, S> {
+    // What a shader has set up is of any type, and stays in its strip.
+    const WORDS: Option<usize> = if size_of::<S::Setup>() == 0 { words_of::<S::Varyings>(3) } else { None };
+
+    #[inline(never)]
+    fn save(&self, _: u32, words: &mut [u32]) {
+        let Primitive { side, dz_dx, at_origin, d_dx, d_dy, .. } = &self.primitive;
+        if let Some((first, words)) = words.split_first_chunk_mut() {
+            *first = [u32::from(*side == Side::Back), *dz_dx as u32];
+            save_varyings([at_origin, d_dx, d_dy], words);
+        }
+    }
+
     #[inline(always)]
     fn next_row(&mut self) {
         self.place.1 += 1;

@@ -1,6 +1,7 @@
 //! The seam between triangles and pixels: the depth test, and the trait that colours fragments. A program meets
 //! [`DepthState`] first, in a [`State`](crate::scene::State); [`Shader`] is for shaders of one's own.
 
+mod carried;
 mod channels;
 mod color_setup;
 mod depth;
@@ -20,9 +21,10 @@ mod texels;
 mod textured;
 mod uv_stepper;
 
+pub(crate) use carried::{CARRIED, MOST_CARRIED, STATE_UNIT, face_of, goes_on};
 pub(crate) use channels::ChannelBrush;
 pub use color_setup::ColorSetup;
-pub use depth::{Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff, DepthState, DepthTest};
+pub use depth::{Carrying, Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff, DepthState, DepthTest};
 pub(crate) use depth_bias::BiasSteps;
 pub use depth_bias::DepthBias;
 pub(crate) use interpolate::{interpolate, set_up_shader};

@@ -13,6 +13,7 @@
 //! [textures](super::texels). Planes are those of differences to the first corner, with 8 more bits; of differences of
 //! more than 16 bits, the lower ones are cut.
 
+use super::carried::{load_varyings, save_varyings, words_of};
 use super::depth::DepthTest;
 use super::shader::Shader;
 use super::small::{Brush, BrushRows};
@@ -130,9 +131,35 @@ impl<'s, P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> Brush<P, D> for Pl
         let mut rows = PlanarRows { shader, flat, side, planes: Planes::ZERO, place, row: 0, format };
         if rows.planes.set(short, [a, b, c], shader.tolerance()) { Some(rows) } else { None }
     }
+
+    fn resume(&self, words: &[u32], place: (i32, i32)) -> PlanarRows<'s, P, S> {
+        let (shader, flat, format) = (self.shader, self.flat, PhantomData);
+        let mut rows = PlanarRows { shader, flat, side: Side::Front, planes: Planes::ZERO, place, row: 0, format };
+        let Planes { base, at, dx, dy, finer } = &mut rows.planes;
+        if let Some((side, words)) = words.split_first() {
+            if *side != 0 {
+                rows.side = Side::Back;
+            }
+            load_varyings([base, at, dx, dy, finer], words);
+        }
+        rows
+    }
 }
 
 impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for PlanarRows<'_, P, S> {
+    const WORDS: Option<usize> = words_of::<S::Varyings>(5);
+
+    #[inline(never)]
+    fn save(&self, down: u32, words: &mut [u32]) {
+        let Planes { base, at, dx, dy, finer } = &self.planes;
+        let mut below = *at;
+        below.advance(dy, self.row.wrapping_add(down as i32));
+        if let Some((side, words)) = words.split_first_mut() {
+            *side = (self.side == Side::Back).into();
+            save_varyings([base, &below, dx, dy, finer], words);
+        }
+    }
+
     #[inline(always)]
     fn next_row(&mut self) {
         self.row += 1;

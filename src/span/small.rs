@@ -13,6 +13,10 @@
 //! A triangle is small or not by its vertices and the columns of the viewport alone; neither strips nor records take
 //! part in the decision. Coverage and depth are, bit for bit, those of the way that large triangles take.
 
+use super::carried::{
+    CARRIED, Outline, STATE_UNIT, column_and_slopes, count_row, edge_from_bend, edges_and_depth, set_edges_and_depth,
+    take_rows,
+};
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
 use crate::color::PixelFormat;
@@ -35,6 +39,10 @@ pub struct SmallTarget<'a, R> {
     pub(crate) clockwise_fronts: bool,
     /// Depth bias, if there may be one, and how it is computed.
     pub(crate) bias: Option<(BiasSteps, DepthBias)>,
+    /// Words in which a triangle leaves its state for the next strip; none if it is not to.
+    pub(crate) state: &'a mut [u32],
+    /// Number of words that it has filled in.
+    pub(crate) state_words: usize,
 }
 
 /// A triangle that may be small, as [`Shader::small`](crate::span::Shader::small) gets it: its target, and its corners,
@@ -43,6 +51,8 @@ pub struct SmallTriangle<'t, 'a, P: PixelFormat, D: DepthTest> {
     pub(crate) target: &'t mut SmallTarget<'a, P::Raw>,
     /// Words of [`PackedVertex`]s.
     pub(crate) v: [&'t [u32; 2]; 3],
+    /// The state of a triangle from the strip above, which goes on here.
+    pub(crate) state: Option<&'t mut [u32]>,
     pub(crate) test: D,
 }
 
@@ -70,10 +80,20 @@ pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
     /// Sets up a triangle, of which (`column`, `row`) is the first pixel: spans are counted from there. `swapped` says
     /// that the last two corners have changed places in `planes`. Returns `None` if the brush cannot draw it.
     fn set_up(&self, planes: &ShortPlanes, swapped: bool, place: (i32, i32), dz_dx: i32) -> Option<Self::Rows>;
+
+    /// Goes on with the spans of a triangle, from words that [`BrushRows::save`] has filled in. (`column`, `row`) is
+    /// the first pixel from now on.
+    fn resume(&self, words: &[u32], place: (i32, i32)) -> Self::Rows;
 }
 
 /// Draws the spans of a small triangle, from the top to the bottom.
 pub(crate) trait BrushRows<P: PixelFormat, D: DepthTest> {
+    /// Number of words of the state; `None` if it is not carried on to the next strip.
+    const WORDS: Option<usize>;
+
+    /// Puts the state into words, as it is a number of rows further down.
+    fn save(&self, down: u32, words: &mut [u32]);
+
     /// Goes on to the next row.
     fn next_row(&mut self);
 
@@ -86,7 +106,15 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
     #[inline(always)]
     pub(crate) fn draw<B: Brush<P, D>>(self, brush: &B) -> SmallResult {
         let [a, b, c] = self.v;
-        draw_small(self.target, a, b, c, brush, self.test)
+        match self.state {
+            None => draw_small(self.target, a, b, c, brush, self.test),
+            Some(state) => {
+                if D::CARRIES {
+                    go_on(self.target, state, brush, self.test);
+                }
+                SmallResult::Drawn
+            }
+        }
     }
 }
 
@@ -168,6 +196,18 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     let (left_end, right_end) =
         (first_centre(ay + by).min(target.rows.end), first_centre(ay + cy).min(target.rows.end));
     let (mut left, mut right) = (ShortEdge::new(start, bx, by, p), ShortEdge::new(start, cx, cy, p));
+    if D::CARRIES
+        && end > target.rows.end
+        && let Some(length) = B::Rows::WORDS
+    {
+        let below = target.rows.end - row;
+        let outline = Outline { sides, x: start, p, column, edges: [left, right], depth, dz: (dz_dx, dz_dy) };
+        if let Some((words, state)) = target.state.split_first_chunk_mut() {
+            outline.store(below, words);
+            rows.save(below as u32, state);
+            target.state_words = (CARRIED + length).next_multiple_of(STATE_UNIT);
+        }
+    }
     let width = usize::from(target.screen.0);
     let mut at = width.wrapping_mul((row - target.first) as usize).wrapping_add(column as usize);
     // Both get one length, so that the compiler knows a span inside of one to be inside of the other.
@@ -215,22 +255,61 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     }
 }
 
+/// Draws the rows of a triangle from the strip above that are in this strip, and leaves its state below them.
+#[inline(never)]
+fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
+    target: &mut SmallTarget<'_, P::Raw>,
+    state: &mut [u32],
+    brush: &B,
+    test: D,
+) {
+    let Some((words, state)) = state.split_first_chunk_mut::<CARRIED>() else { return };
+    let (mut left, mut right, mut depth) = edges_and_depth(words);
+    let (column, dz_dx, dz_dy) = column_and_slopes(words);
+    let mut rows = brush.resume(state, (column, target.rows.start));
+    let width = usize::from(target.screen.0);
+    let mut at = width.wrapping_mul((target.rows.start - target.first) as usize).wrapping_add(column as usize);
+    // Both get one length, so that the compiler knows a span inside of one to be inside of the other.
+    let mut nothing = [(); usize::MAX];
+    let (colors, depths) = (&mut *target.color, D::slots(target.depth, &mut nothing));
+    let length = colors.len().min(depths.len());
+    let (Some(colors), Some(depths)) = (colors.get_mut(..length), depths.get_mut(..length)) else { return };
+    let mut count = take_rows(words, target.rows.end - target.rows.start);
+    while count > 0 {
+        if let Some((edge, is_right)) = edge_from_bend(words) {
+            *if is_right { &mut right } else { &mut left } = edge;
+        }
+        let (from, past) = (left.column(), right.column());
+        if from < past {
+            let (start, length) = (at.wrapping_add(from as usize), (past - from) as usize);
+            let Some(depths) = subslice(depths, start, length) else { break };
+            let Some(colors) = subslice(colors, start, length) else { break };
+            let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
+            rows.span(colors, depths, z, dz_dx, from as i32, test);
+        }
+        left.step();
+        right.step();
+        at = at.wrapping_add(width);
+        depth = depth.wrapping_add_signed(dz_dy);
+        rows.next_row();
+        count_row(words);
+        count -= 1;
+    }
+    set_edges_and_depth(words, left, right, depth);
+    rows.save(0, state);
+}
+
 /// Returns whether a triangle covers a pixel in some rows. Its highest corner is at `x`, relative to the first column;
 /// the others are relative to it, with that on the left first. The first row's centres are `p` below it. All in 24.8.
 #[inline(never)]
-fn covers_pixels([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
-    // From the highest corner, or from the bend: edges are exact, wherever they begin.
-    let edge = |y: i32, is_right: bool| {
-        let ((ax, ay), (bx, by)) = if is_right { ((cx, cy), (bx, by)) } else { ((bx, by), (cx, cy)) };
-        let (x, dx, dy, p) = if y < ay { (x, ax, ay, y) } else { (x + ax, bx - ax, by - ay, y - ay) };
-        ShortEdge::outlined(x, dx, dy, p)
-    };
+fn covers_pixels(sides: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
+    let [_, by, _, cy] = sides;
     let (mut y, end) = (p, p + 256 * rows as i32);
     while y < end {
         // Down to the bend, or from there on.
         let bend = by.min(cy);
         let stop = if y < bend { bend.min(end) } else { end };
-        let (mut left, mut right) = (edge(y, false), edge(y, true));
+        let (mut left, mut right) = (edge_at(sides, x, y, false), edge_at(sides, x, y, true));
         while y < stop {
             if left.column() < right.column() {
                 return true;
@@ -241,6 +320,15 @@ fn covers_pixels([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, rows: usize) -> boo
         }
     }
     false
+}
+
+/// Returns the edge on the left or on the right of a triangle at a height `p` below its highest corner, which is at
+/// `x`: from that corner, or from the bend. Edges are exact, wherever they begin.
+#[inline(never)]
+pub(crate) fn edge_at([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, is_right: bool) -> ShortEdge {
+    let ((ax, ay), (bx, by)) = if is_right { ((cx, cy), (bx, by)) } else { ((bx, by), (cx, cy)) };
+    let (x, dx, dy, p) = if p < ay { (x, ax, ay, p) } else { (x + ax, bx - ax, by - ay, p - ay) };
+    ShortEdge::outlined(x, dx, dy, p)
 }
 
 /// Returns what a bias adds to the depths of a triangle with these depths, 16.16.

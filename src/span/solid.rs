@@ -82,9 +82,19 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ValueBrush<P::Raw> {
     fn set_up(&self, _: &ShortPlanes, _: bool, _: (i32, i32), _: i32) -> Option<Self> {
         Some(Self(self.0))
     }
+
+    #[inline(always)]
+    fn resume(&self, _: &[u32], _: (i32, i32)) -> Self {
+        Self(self.0)
+    }
 }
 
 impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ValueBrush<P::Raw> {
+    const WORDS: Option<usize> = Some(0);
+
+    #[inline(always)]
+    fn save(&self, _: u32, _: &mut [u32]) {}
+
     #[inline(always)]
     fn next_row(&mut self) {}
 

@@ -63,7 +63,8 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
         shader: &S,
         corners: &PackedCorners<'_>,
     ) -> SmallResult {
-        match (shader.texture(), corners.words::<N>()) {
+        let words = if self.state.is_some() { Some([&[0; N]; 3]) } else { corners.words::<N>() };
+        match (shader.texture(), words) {
             (Some(texture), Some(words)) => self.draw(&TexelBrush::<S, P, N> { texture, words, format: PhantomData }),
             _ => SmallResult::Large,
         }
@@ -259,9 +260,35 @@ impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<
         }
         Some(rows)
     }
+
+    #[inline(always)]
+    fn resume(&self, words: &[u32], place: (i32, i32)) -> TexelRows<'s, S, P> {
+        let mut rows =
+            TexelRows { texture: self.texture, place, row: 0, at: [0; 4], dx: [0; 4], dy: [0; 4], format: PhantomData };
+        let planes = rows.at.iter_mut().zip(&mut rows.dx).zip(&mut rows.dy);
+        for (((at, dx), dy), words) in planes.zip(words.chunks_exact(3)) {
+            if let [a, b, c] = words {
+                (*at, *dx, *dy) = (*a, *b, *c);
+            }
+        }
+        rows
+    }
 }
 
 impl<P: PixelFormat, D: DepthTest, S: TexelSource<P>> BrushRows<P, D> for TexelRows<'_, S, P> {
+    const WORDS: Option<usize> = Some(if S::LIT { 12 } else { 6 });
+
+    #[inline(always)]
+    fn save(&self, down: u32, words: &mut [u32]) {
+        let at = |k: usize| self.at[k].wrapping_add(self.dy[k].wrapping_mul(self.row.wrapping_add(down)));
+        if let Some((words, light)) = words.split_first_chunk_mut() {
+            *words = [at(0), self.dx[0], self.dy[0], at(1), self.dx[1], self.dy[1]];
+            if let (true, Some(words)) = (S::LIT, light.first_chunk_mut()) {
+                *words = [at(2), self.dx[2], self.dy[2], at(3), self.dx[3], self.dy[3]];
+            }
+        }
+    }
+
     #[inline(always)]
     fn next_row(&mut self) {
         self.row += 1;

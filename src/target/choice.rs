@@ -6,10 +6,13 @@ pub trait DepthChoice: sealed::Sealed {
     const DEPTH: bool;
 }
 
-/// Choice of records, said by a type: [`WithRecords`] or [`WithoutRecords`].
+/// Choice of records, said by a type: [`WithRecords`], [`WithCarriedState`] or [`WithoutRecords`].
 pub trait RecordsChoice: sealed::Sealed {
     /// True if there may be records.
     const RECORDS: bool;
+
+    /// True if the state of small triangles is carried on from strip to strip, beside the records.
+    const CARRIES: bool = false;
 }
 
 /// Marks a renderer or strip with a depth buffer.
@@ -23,6 +26,10 @@ pub struct WithoutDepth;
 /// Marks a renderer or strip that may have records.
 #[derive(Clone, Copy, Debug)]
 pub struct WithRecords;
+
+/// Marks a renderer or strip that may have records, beside which the state of small triangles is carried on.
+#[derive(Clone, Copy, Debug)]
+pub struct WithCarriedState;
 
 /// Marks a renderer or strip without records: the closure is called once per strip, and the code that records and
 /// replays is not linked.
@@ -41,6 +48,12 @@ impl RecordsChoice for WithRecords {
     const RECORDS: bool = true;
 }
 
+impl RecordsChoice for WithCarriedState {
+    const RECORDS: bool = true;
+
+    const CARRIES: bool = true;
+}
+
 impl RecordsChoice for WithoutRecords {
     const RECORDS: bool = false;
 }
@@ -51,5 +64,6 @@ mod sealed {
     impl Sealed for super::WithDepth {}
     impl Sealed for super::WithoutDepth {}
     impl Sealed for super::WithRecords {}
+    impl Sealed for super::WithCarriedState {}
     impl Sealed for super::WithoutRecords {}
 }

@@ -23,6 +23,9 @@ pub trait Framebuffer {
     /// records and replays is not linked.
     const RECORDS: bool = true;
 
+    /// True if the state of small triangles may be carried on from strip to strip, beside the records.
+    const CARRIES: bool = false;
+
     /// Returns row `y` of the screen, from column 0.
     fn row(&mut self, y: u32) -> &mut [<Self::Format as PixelFormat>::Raw];
 
@@ -73,6 +76,8 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice> Framebuffer for Strip<'_,
 
     const RECORDS: bool = R::RECORDS;
 
+    const CARRIES: bool = R::CARRIES;
+
     // Out of line, since loops ask for rows one by one only where the strip is short or narrow.
     #[inline(never)]
     fn row(&mut self, y: u32) -> &mut [P::Raw] {
@@ -110,6 +115,8 @@ impl<F: Framebuffer> Framebuffer for Depthless<F> {
     const DEPTH: bool = false;
 
     const RECORDS: bool = F::RECORDS;
+
+    const CARRIES: bool = F::CARRIES;
 
     #[inline]
     fn row(&mut self, y: u32) -> &mut [<F::Format as PixelFormat>::Raw] {

@@ -1,5 +1,7 @@
 //! The layout of [`Records`](super::records::Records): which things lie where in the words.
 
+use super::state_pool::StatePool;
+
 /// Number that stands for no triangle.
 pub(super) const NONE: u16 = u16::MAX;
 /// Words of a triangle: two vertices; the third and the link; the word of its face.
@@ -32,4 +34,6 @@ pub(crate) struct Layout {
     pub(super) after: u16,
     /// First word after the lists of the strips.
     pub(super) lists: usize,
+    /// Places for the states of triangles that go on in the next strip.
+    pub(super) pool: StatePool,
 }

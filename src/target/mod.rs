@@ -1,6 +1,7 @@
 //! Where pixels go: framebuffers, strips, sinks, packers, embedded-graphics targets. A program meets [`StripPixels`]
 //! first, a finished strip; [`StripSink`] takes them, [`Packer`] packs them for panels of less than a byte per pixel.
 
+mod carried;
 mod choice;
 mod draw_target;
 mod framebuffer;
@@ -8,11 +9,12 @@ mod layout;
 mod packer;
 mod records;
 mod sink;
+mod state_pool;
 mod stats;
 mod strip_rows;
 mod triangles;
 
-pub use choice::{DepthChoice, RecordsChoice, WithDepth, WithRecords, WithoutDepth, WithoutRecords};
+pub use choice::{DepthChoice, RecordsChoice, WithCarriedState, WithDepth, WithRecords, WithoutDepth, WithoutRecords};
 pub use draw_target::Overlay;
 pub(crate) use draw_target::OverlayTarget;
 pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};
@@ -23,4 +25,4 @@ pub use records::records_len;
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
 pub(crate) use strip_rows::{StripRows, whole_rows};
-pub(crate) use triangles::{Room, TriangleRecord, Triangles, Unshaded, positions_at, turns};
+pub(crate) use triangles::{DrawTriangles, Room, TriangleRecord, Triangles, Unshaded, positions_at, turns};

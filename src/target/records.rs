@@ -15,9 +15,10 @@
 //! The word of a strip in `lists` holds the first and the last of its triangles, which are linked through their
 //! records in drawing order. A triangle is in one list at a time. It is recorded into the list of the topmost strip
 //! it touches; when that strip is done with it, it moves on to the list of the next strip. So a triangle is one
-//! record, however tall it is.
+//! record, however tall it is. What is left free may keep the state of such triangles: see `carried.rs`.
 
 use super::layout::{Layout, NONE, TRIANGLE};
+use super::state_pool::StatePool;
 use super::triangles::{Triangles, Unshaded};
 use crate::color::clear_words;
 use crate::vertex::{PackedVertex, VERTEX_WORDS, Varyings, VertexShader};
@@ -278,6 +279,12 @@ impl<'a> Records<'a> {
             count: layout.triangles,
             layout,
         }
+    }
+
+    /// Makes the words that recording has left a pool for the states of triangles.
+    pub(crate) fn begin_carrying(&mut self) {
+        let (front, triangles) = (self.layout.front, TRIANGLE * usize::from(self.layout.triangles));
+        self.layout.pool = StatePool::new(self.words.len().saturating_sub(front), triangles);
     }
 
     /// Starts replaying a strip of the band.

@@ -109,8 +109,24 @@ impl Room<'_> {
 
 /// Returns the two halves of a word.
 #[inline]
-fn halves(word: &mut u32) -> &mut [u16; 2] {
+pub(super) fn halves(word: &mut u32) -> &mut [u16; 2] {
     bytemuck::cast_mut(word)
+}
+
+/// Draws the triangles that it is handed.
+pub(crate) trait DrawTriangles {
+    /// Set if the state of triangles may be carried on from strip to strip.
+    const CARRIES: bool;
+
+    /// Draws a triangle with these vertices, if it is small.
+    fn draw(&mut self, triangles: &Triangles<'_>, record: &TriangleRecord, v: [&[u32; 2]; 3]) -> SmallResult;
+
+    /// Returns the state that the last triangle has left for the next strip, once.
+    fn take_state(&mut self) -> &[u32];
+
+    /// Goes on with a triangle from the strip above. Returns whether it goes on in the next one; `None` if that is not
+    /// possible here.
+    fn go_on(&mut self, state: &mut [u32]) -> Option<bool>;
 }
 
 /// The words of a draw, taken apart into slices for a pass over its triangles.
@@ -210,28 +226,36 @@ impl<'r> Triangles<'r> {
     ///
     /// A triangle that reaches beyond `end`, see [`end_of`](Self::end_of), moves on to the next strip.
     #[inline(always)]
-    pub(crate) fn replay_each(
-        &mut self,
-        end: i32,
-        to: &mut TriangleRecord,
-        mut draw: impl FnMut(&Self, &TriangleRecord, [&[u32; 2]; 3]) -> SmallResult,
-    ) -> bool {
+    pub(crate) fn replay_each<T: DrawTriangles>(&mut self, end: i32, to: &mut TriangleRecord, draw: &mut T) -> bool {
         loop {
             let number = self.layout.next;
             if u32::from(number) >= self.layout.last {
                 return false;
             }
             let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
-            let [_, next]: [u16; 2] = bytemuck::cast(*b);
+            let [k, next]: [u16; 2] = bytemuck::cast(*b);
             *to = TriangleRecord { corners: corners_of(*a, *b), face: *face };
             self.layout.next = next;
+            if T::CARRIES
+                && k == NONE
+                && let Some(goes_on) = self.go_on(number, to, draw)
+            {
+                if goes_on {
+                    self.move_on(number);
+                }
+                continue;
+            }
             let v = self.positions_of(to.corners);
             // The first vertex is not below the others.
-            if (end - (v[1][1] as i32 >> 8)) | (end - (v[2][1] as i32 >> 8)) < 0 {
+            let moves_on = (end - (v[1][1] as i32 >> 8)) | (end - (v[2][1] as i32 >> 8)) < 0;
+            if moves_on {
                 self.move_on(number);
             }
-            if draw(self, to, v) == SmallResult::Large {
+            if draw.draw(self, to, v) == SmallResult::Large {
                 return true;
+            }
+            if T::CARRIES && moves_on {
+                self.keep(number, to, draw.take_state());
             }
         }
     }
@@ -253,7 +277,7 @@ impl<'r> Triangles<'r> {
         &mut self,
         to: &mut TriangleRecord,
         [empty, outside]: &mut [u32; 2],
-        mut draw: impl FnMut(&Self, &TriangleRecord, [&[u32; 2]; 3]) -> SmallResult,
+        draw: &mut impl DrawTriangles,
     ) -> bool {
         loop {
             let number = self.layout.next;
@@ -265,7 +289,7 @@ impl<'r> Triangles<'r> {
             self.layout.next = number + 1;
             let (corners, v) = self.highest_first(corners);
             *to = TriangleRecord { corners, face };
-            match draw(self, to, v) {
+            match draw.draw(self, to, v) {
                 SmallResult::Drawn => {}
                 SmallResult::Empty => *empty += 1,
                 SmallResult::Outside => *outside += 1,
@@ -358,7 +382,7 @@ impl<'r> Triangles<'r> {
     }
 
     #[inline(always)]
-    fn triangle_at(&self, number: u16) -> usize {
+    pub(super) fn triangle_at(&self, number: u16) -> usize {
         self.triangles.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
     }
 

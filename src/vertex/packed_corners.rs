@@ -15,6 +15,9 @@ pub struct PackedCorners<'r> {
 }
 
 impl<'r> PackedCorners<'r> {
+    /// No corners.
+    pub(crate) const NONE: PackedCorners<'static> = PackedCorners { varyings: &[], vertices: &[], corners: [0; 3] };
+
     /// Returns the words of each corner, `N` each.
     #[inline(always)]
     pub(crate) fn words<const N: usize>(&self) -> Option<[&'r [u32; N]; 3]> {
