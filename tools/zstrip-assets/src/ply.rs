@@ -102,8 +102,11 @@ fn failure(error: &ParseError, byte: Option<usize>, context: &Context) -> Error 
         (None, Some(line)) => Place::Line(line),
         (None, None) => Place::File,
     };
-    let text = error.to_string().split_whitespace().collect::<Vec<_>>().join(" ");
-    let text: String = text.chars().take(300).collect();
+    // The error quotes the line, and then repeats all of it as the cause.
+    let text = error.to_string();
+    let (_, text) = text.split_once(": ").filter(|_| error.line().is_some()).unwrap_or(("", &text));
+    let text = text.split("\n\tError").next().unwrap_or_default().split_whitespace().collect::<Vec<_>>().join(" ");
+    let text: String = text.chars().take(200).collect();
     context.error(place, Kind::Syntax, format!("{text}; export the file again"))
 }
 
