@@ -64,7 +64,7 @@ pub(crate) fn wind(draft: &mut Draft, winding: Winding, report: &mut Report) {
     report.add(Note::Opposed { triangles: opposed });
 }
 
-/// Whether the normals of a triangle's vertices point to its back.
+/// Returns whether the normals of a triangle's vertices point to its back.
 fn is_opposed(vertices: &Vertices, triangle: [u32; 3]) -> bool {
     if vertices.normals.is_empty() {
         return false;

@@ -7,8 +7,11 @@ use crate::model::{Bounds, Cluster, Cone, Mesh, Vertices};
 use crate::options::Options;
 use crate::weld::compact;
 
-/// How much the directions of triangles count, beside their distances, when they are grouped.
+/// The weight of triangles' directions, beside that of their distances, when they are grouped.
 const CONE_WEIGHT: f32 = 0.5;
+
+/// The most triangles around a vertex for which the best order is looked for.
+const MOST_USES: u32 = 4096;
 
 /// Returns the triangles of each cluster.
 pub(crate) fn group(unit_positions: &[[f32; 3]], triangles: &[[u32; 3]], options: &Options) -> Vec<Vec<[u32; 3]>> {
@@ -17,14 +20,26 @@ pub(crate) fn group(unit_positions: &[[f32; 3]], triangles: &[[u32; 3]], options
         Ok(vertices) if !triangles.is_empty() => vertices,
         _ => return Vec::new(),
     };
-    let indices = meshopt::optimize_vertex_cache(triangles.as_flattened(), unit_positions.len());
     let most = options.cluster_vertices.min(options.max_vertices);
-    let meshlets = meshopt::build_meshlets(&indices, &vertices, most, options.cluster_triangles, CONE_WEIGHT);
+    let meshlets = if is_crowded(triangles, unit_positions.len()) {
+        meshopt::build_meshlets_scan(triangles.as_flattened(), unit_positions.len(), most, options.cluster_triangles)
+    } else {
+        let indices = meshopt::optimize_vertex_cache(triangles.as_flattened(), unit_positions.len());
+        meshopt::build_meshlets(&indices, &vertices, most, options.cluster_triangles, CONE_WEIGHT)
+    };
     let triangles = |meshlet: meshopt::Meshlet| {
         let local = meshlet.triangles.as_chunks::<3>().0.iter();
         local.map(|t| t.map(|k| meshlet.vertices[usize::from(k)])).collect()
     };
     meshlets.iter().map(triangles).collect()
+}
+
+/// Returns whether a vertex is in so many triangles that meshopt would look at their pairs for minutes. Their order in
+/// the file has to do then.
+fn is_crowded(triangles: &[[u32; 3]], count: usize) -> bool {
+    let mut uses = vec![0u32; count];
+    triangles.iter().flatten().for_each(|v| uses[*v as usize] += 1);
+    uses.into_iter().any(|uses| uses > MOST_USES)
 }
 
 /// Puts clusters into meshes of at most `max_vertices` vertices.

@@ -34,7 +34,7 @@ pub(crate) struct Scene {
     pub drafts: Vec<Draft>,
     /// All but the meshes. Nodes number drafts.
     pub import: Import,
-    /// Whether options move vertices, and not a node above all others.
+    /// True where options move vertices, and false where they move a node above all others.
     pub is_static: bool,
 }
 
@@ -48,12 +48,15 @@ pub(crate) struct Context<'o> {
     ignored: BTreeMap<String, usize>,
 }
 
+/// The most numbers whatever the limits are, so that those of vertices fit 32 bits.
+const MOST_NUMBERS: u64 = 1 << 31;
+
 /// Kinds of ignored things that are told apart.
 const MOST_IGNORED: usize = 24;
 
 impl<'o> Context<'o> {
     pub fn new(options: &'o Options, files: Files) -> Self {
-        let numbers = options.limits.numbers;
+        let numbers = options.limits.numbers.min(MOST_NUMBERS);
         let images = Images::default();
         Self { options, files, images, report: Report::default(), numbers, ignored: BTreeMap::new() }
     }

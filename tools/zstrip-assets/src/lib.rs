@@ -164,22 +164,32 @@ pub fn import_with_progress(
 
     let mut import = scene.import;
     import.images = std::mem::take(&mut context.images.list);
-    let repaired: Vec<_> = scene.drafts.into_iter().map(|draft| process::repair(draft, &mut context)).collect();
-    let triangles: usize = repaired.iter().map(process::Repaired::triangles).sum();
+    // Drafts that a node shows together are parts of one shape.
+    let mut groups = Vec::new();
+    let mut drafts = scene.drafts.into_iter();
+    let mut first = 0;
+    for node in &import.nodes {
+        if node.meshes.first() == Some(&first) {
+            first += node.meshes.len();
+            groups.push(drafts.by_ref().take(node.meshes.len()).collect::<Vec<_>>());
+        }
+    }
+    groups.iter_mut().for_each(|group| process::repair(group, &mut context));
+    let triangles: usize = groups.iter().flatten().map(|draft| draft.triangles.len()).sum();
     if triangles == 0 {
         let message = "no triangle that shows anything; export the model as a mesh of faces";
         return Err(context.error(Place::File, Kind::Empty, message));
     }
-    // Each mesh keeps the same part of its triangles.
+    // Each draft keeps the same part of its triangles.
     let share = |of: usize| options.max_triangles.map(|most| (of * most / triangles.max(most)).max(1));
-    let count = repaired.len();
-    let mut meshes_of_drafts = Vec::with_capacity(count);
-    for (k, draft) in repaired.into_iter().enumerate() {
+    let count = groups.len();
+    let mut meshes_of_drafts = Vec::new();
+    for (k, group) in groups.into_iter().enumerate() {
         progress(Progress::Mesh { number: k + 1, count });
-        let budget = share(draft.triangles());
-        let meshes = process::finish(draft, budget, &mut context)?;
-        meshes_of_drafts.push(import.meshes.len()..import.meshes.len() + meshes.len());
-        import.meshes.extend(meshes);
+        for meshes in process::finish(group, &share, &mut context) {
+            meshes_of_drafts.push(import.meshes.len()..import.meshes.len() + meshes.len());
+            import.meshes.extend(meshes);
+        }
     }
     for node in &mut import.nodes {
         node.meshes = node.meshes.iter().flat_map(|draft| meshes_of_drafts[*draft].clone()).collect();

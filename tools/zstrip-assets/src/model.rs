@@ -166,9 +166,9 @@ pub struct Material {
     pub texture: Option<Texture>,
     /// The meaning of alpha.
     pub alpha: AlphaMode,
-    /// Whether back faces are drawn.
+    /// True where back faces are drawn too.
     pub double_sided: bool,
-    /// Whether light is ignored.
+    /// True where light does not matter.
     pub unlit: bool,
 }
 
@@ -192,7 +192,7 @@ pub struct Texture {
     pub image: usize,
     /// The way to go on beyond the image, to the right and down.
     pub wrap: [Wrap; 2],
-    /// Whether texels are shown as squares, instead of being filtered.
+    /// True where texels are shown as squares, and false where they are filtered.
     pub nearest: bool,
 }
 

@@ -14,11 +14,11 @@ pub struct Options {
     pub up: Option<UpAxis>,
     /// A factor of all lengths, above 0.
     pub scale: f64,
-    /// Whether, and how, the model is moved to the origin.
+    /// The point of the model that comes to the origin.
     pub center: Center,
     /// The side of triangles that is the front.
     pub winding: Winding,
-    /// Where normals come from.
+    /// The origin of normals.
     pub normals: Normals,
     /// The largest angle, in degrees, between two faces whose common edge looks smooth. It counts where normals are
     /// made.
@@ -90,10 +90,10 @@ pub enum UpAxis {
     Z,
 }
 
-/// Whether, and how, a model is moved to the origin.
+/// The point of a model that comes to the origin.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Center {
-    /// It stays.
+    /// The origin of the file: nothing moves.
     Keep,
     /// The middle of its bounding box comes to the origin.
     Middle,
@@ -112,7 +112,7 @@ pub enum Winding {
     FromNormals,
 }
 
-/// Where normals come from.
+/// The origin of normals.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Normals {
     /// From the file. Missing ones are made, smooth up to the crease angle or as smoothing groups say.
@@ -131,7 +131,7 @@ pub enum Normals {
 pub struct Limits {
     /// Bytes of all files together: the model, its buffers, materials and images.
     pub file_bytes: u64,
-    /// Numbers of all vertices, indices and keys. A vertex with a normal has 6.
+    /// Numbers of all vertices, indices and keys, up to 2^31. A vertex with a normal has 6.
     pub numbers: u64,
     /// Values of a glTF document: brackets and commas.
     pub json_values: u64,

@@ -15,7 +15,7 @@ fn turned(up: UpAxis, scale: f64) -> Transform {
     Transform::Parts { translation: [0.0; 3], rotation, scale: [scale as f32; 3] }
 }
 
-/// How far the box is from where it should be.
+/// The way that the box has to go.
 fn offset(center: Center, bounds: Option<Bounds>) -> [f32; 3] {
     let Some(Bounds { min, max }) = bounds else { return [0.0; 3] };
     let middle: [f32; 3] = std::array::from_fn(|k| min[k] / 2.0 + max[k] / 2.0);

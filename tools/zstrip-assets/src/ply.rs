@@ -34,7 +34,7 @@ pub(crate) fn read(bytes: &[u8], context: &mut Context) -> Result<Scene, Error> 
         match &name[..] {
             "vertex" => add_vertices(&mut draft, definition, elements, &place, context)?,
             "face" => faces.polygons(elements, &place, context)?,
-            "tristrips" => faces.strips(elements),
+            "tristrips" => faces.strips(elements, &place, context)?,
             _ => (0..definition.count.min(1)).for_each(|_| context.ignore(&format!("element \"{name}\""))),
         }
     }
@@ -151,7 +151,7 @@ impl PropertyAccess for Element {
 }
 
 impl Element {
-    /// Where a property of this name belongs, and whether it is a colour.
+    /// The number that a property of this name sets, and whether it is a colour.
     fn place(&mut self, name: &str) -> Option<(&mut f32, bool)> {
         let Self { position, normal, uv, color, .. } = self;
         Some(match name {
@@ -227,7 +227,7 @@ struct Faces {
     corners: Vec<i64>,
     /// u and v of all corners, or nothing.
     uvs: Vec<[f32; 2]>,
-    /// Where each polygon ends in the corners.
+    /// The ends of polygons in the corners.
     ends: Vec<usize>,
     /// The place of the first polygon.
     places: Vec<Place>,
@@ -268,8 +268,14 @@ impl Faces {
         Ok(())
     }
 
-    fn strips(&mut self, elements: Vec<Element>) {
-        for element in elements {
+    fn strips(
+        &mut self,
+        elements: Vec<Element>,
+        place: &dyn Fn(usize) -> Place,
+        context: &mut Context,
+    ) -> Result<(), Error> {
+        for (k, element) in elements.into_iter().enumerate() {
+            context.take_numbers(18 * element.corners.len() as u64, || place(k))?;
             for strip in element.corners.split(|corner| *corner == -1) {
                 for (k, window) in strip.windows(3).enumerate() {
                     // Every second triangle goes the other way around.
@@ -279,6 +285,7 @@ impl Faces {
                 }
             }
         }
+        Ok(())
     }
 
     fn put(self, draft: &mut Draft, triangulator: &mut Triangulator, context: &Context) -> Result<(), Error> {

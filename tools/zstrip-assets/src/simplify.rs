@@ -8,14 +8,22 @@ use meshopt::{SimplifyOptions, VertexDataAdapter};
 /// Vertices stay where they are; some are not used any more. Seams of texture coordinates stay too, so a mesh with many
 /// of them may keep more triangles than the target. It is then simplified across seams, and loses parts that are
 /// small.
-pub(crate) fn simplify(unit_positions: &[[f32; 3]], triangles: &[[u32; 3]], target: usize) -> (Vec<[u32; 3]>, f32) {
+///
+/// Vertices that are locked stay in use.
+pub(crate) fn simplify(
+    unit_positions: &[[f32; 3]],
+    triangles: &[[u32; 3]],
+    locks: &[bool],
+    target: usize,
+) -> (Vec<[u32; 3]>, f32) {
     let bytes = meshopt::typed_to_bytes(unit_positions);
     let Ok(vertices) = VertexDataAdapter::new(bytes, size_of::<[f32; 3]>(), 0) else {
         return (triangles.to_vec(), 0.0);
     };
     let attempt = |options| {
         let mut error = 0.0;
-        let left = meshopt::simplify(triangles.as_flattened(), &vertices, 3 * target, 1.0, options, Some(&mut error));
+        let corners = triangles.as_flattened();
+        let left = meshopt::simplify_with_locks(corners, &vertices, locks, 3 * target, 1.0, options, Some(&mut error));
         (left.as_chunks::<3>().0.to_vec(), error)
     };
     let kept = attempt(SimplifyOptions::None);

@@ -107,7 +107,7 @@ fn image(json: &Root, number: usize, buffers: &Buffers, context: &mut Context) -
     })
 }
 
-/// Where texture coordinates of a material come from, and how they are moved.
+/// The origin of a material's texture coordinates, and the way in which they are moved.
 pub(super) struct Mapping {
     /// The number of the set of coordinates.
     pub set: u32,

@@ -97,7 +97,7 @@ fn order(json: &Root, context: &Context) -> Result<(Vec<usize>, Vec<Option<usize
     Ok((order, parents))
 }
 
-/// Whether the default scene shows a node: all nodes are shown where the file has no scene.
+/// Returns for each node whether the default scene shows it. Without a scene, all are shown.
 fn shown(json: &Root, order: &[usize], parents: &[Option<usize>]) -> Vec<bool> {
     let scene = json.scene.map_or(0, |scene| scene.value());
     let Some(scene) = json.scenes.get(scene) else { return vec![true; order.len()] };

@@ -205,8 +205,8 @@ fn normals_are_those_of_the_definition() {
         let mesh = only_mesh(&import);
         let triangles = corners(mesh);
         for (t, triangle) in mesh.triangles.iter().enumerate() {
-            for k in 0..3 {
-                let found = wide(mesh.vertices.normals[triangle[k] as usize]);
+            for (k, v) in triangle.iter().enumerate() {
+                let found = wide(mesh.vertices.normals[*v as usize]);
                 let error = sub(found, plain_normal(&triangles, t, k, crease));
                 assert!(dot(error, error).sqrt() < 1e-5, "crease {crease}, triangle {t}, corner {k}: {found:?}");
             }
@@ -296,6 +296,19 @@ fn clusters_are_bounded_and_their_boxes_and_cones_hold() {
 }
 
 #[test]
+fn a_crowded_vertex_takes_no_longer_than_others() {
+    let count = 20_000;
+    let spoke = |k: usize| (std::f64::consts::TAU * k as f64 / count as f64).sin_cos();
+    let rim: String = (0..count).map(|k| format!("v {} {} 0\n", spoke(k).1, spoke(k).0)).collect();
+    let faces: String = (0..count).map(|k| format!("f 1 {} {}\n", k + 2, (k + 1) % count + 2)).collect();
+    let (import, report) = read("a.obj", format!("v 0 0 1\n{rim}{faces}")).expect("a cone");
+    assert!(has(&report, &Note::CrowdedPoints { points: 1 }), "{report}");
+    check_clusters(only_mesh(&import), &Options::default());
+    let tip = only_mesh(&import).vertices.positions.iter().position(|p| *p == [0.0, 0.0, 1.0]).expect("the tip");
+    assert!(only_mesh(&import).vertices.normals[tip][2] > 0.999_999);
+}
+
+#[test]
 fn vertices_are_in_the_order_of_their_use() {
     let (import, _) = read("a.obj", grid(20, 0.3)).expect("a grid");
     let mesh = only_mesh(&import);
@@ -344,6 +357,44 @@ fn a_budget_of_triangles_is_kept() {
     let options = Options { max_triangles: Some(4000), ..Options::default() };
     let (_, report) = read_with("a.obj", grid(40, 0.1), &options).expect("a grid");
     assert_eq!((report.after.triangles, report.to_string().contains("simplified")), (3200, false));
+}
+
+/// A wave whose left half has another material than its right half.
+fn two_materials(n: usize) -> String {
+    let (vertices, faces): (Vec<_>, Vec<_>) =
+        grid(n, 0.1).lines().map(str::to_owned).partition(|line| line.starts_with('v'));
+    let (left, right): (Vec<_>, Vec<_>) = faces.into_iter().enumerate().partition(|(k, _)| k % n < n / 2);
+    let lines = |faces: Vec<(usize, String)>| faces.into_iter().map(|(_, line)| line + "\n").collect::<String>();
+    format!("{}\nusemtl left\n{}usemtl right\n{}", vertices.join("\n"), lines(left), lines(right))
+}
+
+#[test]
+fn materials_that_meet_leave_no_seam() {
+    let options = Options { crease_angle: 180.0, ..Options::default() };
+    let (import, report) = read_with("a.obj", two_materials(8), &options).expect("a wave");
+    assert_eq!(import.meshes.len(), 2);
+    assert!(has(&report, &Note::OpenEdges { edges: 32 }), "{report}");
+    let normals = |mesh: &Mesh| {
+        let on_seam = |v: &usize| mesh.vertices.positions[*v][0] == 0.5;
+        let normal =
+            |v: usize| (mesh.vertices.positions[v].map(f32::to_bits), mesh.vertices.normals[v].map(f32::to_bits));
+        (0..mesh.vertices.len()).filter(on_seam).map(normal).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(normals(&import.meshes[0]).len(), 9);
+    assert_eq!(normals(&import.meshes[0]), normals(&import.meshes[1]));
+}
+
+#[test]
+fn simplifying_tears_no_gap_between_materials() {
+    let options = Options { max_triangles: Some(200), ..Options::default() };
+    let (import, report) = read_with("a.obj", two_materials(20), &options).expect("a wave");
+    assert!(report.after.triangles < 400 && import.meshes.len() == 2, "{report}");
+    let seam = |mesh: &Mesh| {
+        let positions = mesh.vertices.positions.iter().filter(|p| p[0] == 0.5);
+        positions.map(|p| p.map(f32::to_bits)).collect::<BTreeSet<_>>()
+    };
+    assert_eq!(seam(&import.meshes[0]).len(), 21);
+    assert_eq!(seam(&import.meshes[0]), seam(&import.meshes[1]));
 }
 
 #[test]
