@@ -33,7 +33,12 @@ pub(crate) fn read(bytes: &[u8], context: &mut Context) -> Result<Scene, Error> 
         let place = |k: usize| element_place(&header, definition, name, k, at, bytes);
         match &name[..] {
             "vertex" => add_vertices(&mut draft, definition, elements, &place, context)?,
-            "face" => faces.polygons(elements, &place, context)?,
+            "face" => {
+                if definition.properties.contains_key("red") {
+                    context.ignore("colours of faces");
+                }
+                faces.polygons(elements, &place, context)?;
+            }
             "tristrips" => faces.strips(elements, &place, context)?,
             _ => (0..definition.count.min(1)).for_each(|_| context.ignore(&format!("element \"{name}\""))),
         }

@@ -10,6 +10,8 @@ mod mesh;
 mod scene;
 
 use gltf::json;
+use gltf::json::mesh::Semantic;
+use gltf::json::validation::Checked;
 
 use crate::draft::{Context, Scene};
 use crate::error::{Error, Kind, Place};
@@ -28,6 +30,7 @@ pub(crate) fn read(bytes: &[u8], context: &mut Context) -> Result<Scene, Error> 
         .map_err(|error| context.error(Place::File, Kind::Syntax, format!("{}; export it again", text(&error))))?;
     let mut json = document.into_json();
     check_extensions(&mut json, context)?;
+    check_positions(&json, context)?;
     // Only now, because validation knows less extensions than this module.
     let json = match gltf::Document::from_json(json) {
         Ok(document) => document.into_json(),
@@ -101,6 +104,21 @@ fn check_extensions(json: &mut json::Root, context: &mut Context) -> Result<(), 
     unknown.dedup();
     for name in unknown {
         context.report.add(Note::ExtensionIgnored { name });
+    }
+    Ok(())
+}
+
+/// Checks the accessors of positions, at which validation panics where they do not exist.
+fn check_positions(json: &json::Root, context: &Context) -> Result<(), Error> {
+    for (m, mesh) in json.meshes.iter().enumerate() {
+        for (k, primitive) in mesh.primitives.iter().enumerate() {
+            let index = primitive.attributes.get(&Checked::Valid(Semantic::Positions)).map(|index| index.value());
+            if let Some(index) = index.filter(|index| *index >= json.accessors.len()) {
+                let at = Place::Json(format!("meshes[{m}].primitives[{k}].attributes[\"POSITION\"]"));
+                let message = format!("accessor {index}, where there are {}", json.accessors.len());
+                return Err(context.error(at, Kind::Index, message));
+            }
+        }
     }
     Ok(())
 }

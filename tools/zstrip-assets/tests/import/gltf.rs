@@ -370,6 +370,15 @@ fn required_extensions_must_be_known() {
 }
 
 #[test]
+fn positions_must_exist() {
+    let mut document = Document::triangle();
+    document.attribute("POSITION", 1);
+    let error = document.import().expect_err("an accessor");
+    assert_eq!(error.kind, Kind::Index);
+    assert!(error.to_string().contains("meshes[0].primitives[0].attributes[\"POSITION\"]"), "{error}");
+}
+
+#[test]
 fn validation_names_the_place() {
     let mut document = Document::triangle();
     document.json["nodes"][0]["mesh"] = json!(7);

@@ -2,9 +2,10 @@
 
 use std::path::Path;
 
-use zstrip_assets::{AlphaMode, Kind, Note, Options, Place, Winding, Wrap};
+use image::ImageFormat;
+use zstrip_assets::{AlphaMode, Kind, Note, Options, Place, Progress, Winding, Wrap, import_with_progress};
 
-use crate::support::{Folder, corners, has, only_mesh, png, read, read_with, sorted_corners};
+use crate::support::{Folder, corners, has, only_mesh, picture, png, read, read_with, sorted_corners};
 
 const SQUARE: &str = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
 
@@ -112,6 +113,37 @@ fn materials_and_their_textures_are_read() {
     assert_eq!(leaf.alpha, AlphaMode::Mask { cutoff: 0.5 });
     assert_eq!(import.images[leaf.texture.expect("a texture").image].width, 4);
     assert!(has(&report, &Note::Ignored { what: "map_Bump in materials".to_owned(), count: 1 }), "{report}");
+}
+
+#[test]
+fn images_are_known_by_their_bytes() {
+    for format in [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp] {
+        let folder = Folder::new()
+            .with("a.obj", obj("mtllib a.mtl\nusemtl a\nf 1 2 3"))
+            .with("a.mtl", "newmtl a\nmap_Kd a.img")
+            .with("a.img", picture(5, 3, format));
+        let (import, _) = folder.import("a.obj", &Options::default()).expect("a triangle");
+        let image = &import.images[0];
+        assert_eq!((image.width, image.height, image.texels.len()), (5, 3, 60), "{format:?}");
+        let texel = [10, 20, 30, 255];
+        // JPEG is not exact.
+        let near = |(k, value): (usize, &u8)| value.abs_diff(texel[k % 4]) <= 2;
+        assert!(image.texels.iter().enumerate().all(near), "{format:?}: {:?}", image.texels);
+    }
+    let folder = Folder::new()
+        .with("a.obj", obj("mtllib a.mtl\nusemtl a\nf 1 2 3"))
+        .with("a.mtl", "newmtl a\nmap_Kd a.png")
+        .with("a.png", b"GIF89a\x01\0\x01\0\0\0\0");
+    let (_, report) = folder.import("a.obj", &Options::default()).expect("a triangle");
+    assert!(report.to_string().contains("save it as PNG"), "{report}");
+}
+
+#[test]
+fn progress_is_told_before_each_mesh() {
+    let folder = Folder::new().with("a.obj", obj("f 1 2 3"));
+    let mut stages = Vec::new();
+    import_with_progress(&folder.path("a.obj"), &Options::default(), &mut |stage| stages.push(stage)).expect("one");
+    assert_eq!(stages, [Progress::Reading, Progress::Mesh { number: 1, count: 1 }]);
 }
 
 #[test]

@@ -66,9 +66,14 @@ pub fn sorted_corners(mesh: &Mesh) -> Vec<[[f32; 3]; 3]> {
 
 /// A PNG of one colour.
 pub fn png(width: u32, height: u32) -> Vec<u8> {
-    let image = image::RgbaImage::from_pixel(width, height, image::Rgba([10, 20, 30, 255]));
+    picture(width, height, image::ImageFormat::Png)
+}
+
+/// An image of one colour.
+pub fn picture(width: u32, height: u32, format: image::ImageFormat) -> Vec<u8> {
+    let image = image::RgbImage::from_pixel(width, height, image::Rgb([10, 20, 30]));
     let mut bytes = std::io::Cursor::new(Vec::new());
-    image.write_to(&mut bytes, image::ImageFormat::Png).expect("a PNG");
+    image.write_to(&mut bytes, format).expect("an image");
     bytes.into_inner()
 }
 
