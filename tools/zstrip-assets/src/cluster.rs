@@ -11,7 +11,7 @@ use crate::weld::compact;
 const CONE_WEIGHT: f32 = 0.5;
 
 /// The most triangles around a vertex for which the best order is looked for.
-const MOST_USES: u32 = 4096;
+const MOST_USES: u32 = 512;
 
 /// Returns the triangles of each cluster.
 pub(crate) fn group(unit_positions: &[[f32; 3]], triangles: &[[u32; 3]], options: &Options) -> Vec<Vec<[u32; 3]>> {
