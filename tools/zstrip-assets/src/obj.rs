@@ -262,7 +262,7 @@ impl<'a> Lines<'a> {
         Self { rest: bytes.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(bytes), number: 0, not_utf8: 0 }
     }
 
-    /// The number of the first of its lines, and the text without blanks around it.
+    /// Returns the next logical line: the number of the first of its lines, and the text without blanks around it.
     pub fn next(&mut self) -> Option<(usize, String)> {
         if self.rest.is_empty() {
             return None;

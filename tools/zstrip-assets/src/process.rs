@@ -1,7 +1,7 @@
 //! Turns drafts into meshes: the steps in their order.
 //!
-//! Drafts come in groups, each the parts of a shape that have different materials. Where parts meet, edges are not open,
-//! normals are smooth, and simplifying must not tear a gap. So these steps look at a group as a whole.
+//! Drafts come in groups, each the parts of a shape that have different materials. Where parts meet, edges are not
+//! open, normals are smooth, and simplifying must not tear a gap. So these steps look at a group as a whole.
 
 use std::collections::HashMap;
 
