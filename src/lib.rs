@@ -42,6 +42,7 @@
 //! | draw into a framebuffer, without strips | [`frame::FramebufferRenderer`] |
 //! | know how much RAM that takes, at compile time | [`frame::RamBudget`] |
 //! | bring in a mesh, lines, points | [`mesh`] |
+//! | draw a model with its materials, textures and animation from one file | [`model`] |
 //! | place a camera, move things | [`math`] |
 //! | light them, and choose a shader | [`light`], [`shader`] |
 //! | put textures on them | [`texture`] |
@@ -92,6 +93,7 @@
 //! | [`shader`] | the ready-made shaders, ordinary users of that seam |
 //! | [`target`] | framebuffers, strips, sinks, packers, embedded-graphics targets, records |
 //! | [`scene`] | the one place that calls every stage, in order: [`Scene`] |
+//! | [`model`] | models in containers: nodes, materials, animation; an ordinary user of all floors below |
 //! | [`frame`] | bands and strips, renderers, views, RAM budgets |
 //!
 //! A folder imports only from those above it in this table, and no two files import each other: `tests/floors.rs`
@@ -137,6 +139,7 @@ pub mod frame;
 pub mod light;
 pub mod math;
 pub mod mesh;
+pub mod model;
 mod raster;
 pub mod scene;
 pub mod shader;
@@ -172,6 +175,8 @@ mod tests {
     fn errors_and_statistics_can_be_logged() {
         fn logged<T: defmt::Format>() {}
         logged::<crate::mesh::MeshError>();
+        logged::<crate::model::ModelError>();
+        logged::<crate::model::MemoryError>();
         logged::<crate::vertex::SortError>();
         logged::<crate::vertex::ViewportError>();
         logged::<crate::math::PrecisionError>();
