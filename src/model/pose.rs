@@ -18,7 +18,7 @@ use super::posed::PosedPart;
 use super::read::{MATRIX_WORDS, Model, items, pose_words};
 use super::shader::Light;
 use super::skin::Joints;
-use super::transform::{Local, ONE, from_words, to_words};
+use super::transform::{Local, ONE, compose, from_words, rows, to_words};
 use crate::math::{Affine, Scalar};
 use crate::mesh::{Mesh, MeshData};
 
@@ -153,13 +153,13 @@ fn set_nodes(model: &Model<'_>, words: &mut [u32], from: &mut Option<Track<'_>>,
             track.apply(number, &mut other);
             local = local.mixed(&other, *weight);
         }
-        let mut transform = local.matrix();
-        let parent = words.get(MATRIX_WORDS * usize::from(node.parent)..).and_then(|rest| rest.first_chunk());
-        if let (Some(parent), true) = (parent, node.parent != NONE) {
-            transform = from_words(parent) * transform;
-        }
-        if let Some(words) = words.get_mut(MATRIX_WORDS * number..).and_then(|rest| rest.first_chunk_mut()) {
-            to_words(&transform, words);
+        // Those of the parents are before it.
+        let Some((before, rest)) = words.split_at_mut_checked(MATRIX_WORDS * number) else { return };
+        let Some(to) = rest.first_chunk_mut() else { return };
+        let parent = before.get(MATRIX_WORDS * usize::from(node.parent)..).and_then(|rest| rest.first_chunk());
+        match parent {
+            Some(parent) => compose(rows(parent), &local.matrix().to_rows(), to),
+            None => to_words(&local.matrix(), to),
         }
     }
 }

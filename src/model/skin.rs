@@ -7,8 +7,8 @@
 use super::container::{Delta, Influence, NONE, Part, Target};
 use super::normal::{decode_normal, octahedral};
 use super::read::{MATRIX_WORDS, Model, POSED_HEAD, items, vector_words};
-use super::transform::{from_words, to_words};
-use crate::math::{Affine, Vec3, unit_vector_of_any_length};
+use super::transform::{compose, rows};
+use crate::math::{mul_wide, unit_vector_of_any_length};
 
 /// The joints of a skin in the memory of a pose, and the cube of the posed vertices.
 pub(super) struct Joints<'w> {
@@ -27,29 +27,30 @@ struct Cube {
     half: [i32; 3],
 }
 
-/// A joint's matrix for vertices: three rows of m and t. Row · q is Σ m q + t, in 2⁻¹⁶ of a fraction.
+/// A matrix for vertices, that of a joint or a mean of several: three rows of m and t. Row · q is Σ m q + 2¹¹ t, in 2⁻¹⁶
+/// of a fraction.
 ///
 /// # Format
-/// |m| ≤ 2¹⁶. The result is below 2³¹ for every vertex that the joint moves, because the cube holds it. So it does not
-/// matter that t and the sums wrap.
-type Rows = [u32; MATRIX_WORDS];
+/// |m| ≤ 2¹⁶ and |t| < 2²³ for joints that move vertices. The result is below 2³¹ for every vertex that the joint moves,
+/// because the cube holds it. So it does not matter that sums wrap.
+type Rows = [i32; MATRIX_WORDS];
 
-/// Returns the rows times a vector.
+/// Returns the rows times a vector, without t.
 #[inline(always)]
-fn point(rows: &Rows, [x, y, z]: [i32; 3]) -> [i32; 3] {
-    let [a, b, c, s, d, e, f, t, g, h, i, u] = *rows;
-    let sum = |m: [u32; 3], t: u32| {
-        let [a, b, c] = m.map(|m| m as i32);
-        a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y)).wrapping_add(c.wrapping_mul(z)).wrapping_add(t as i32)
-    };
-    [sum([a, b, c], s), sum([d, e, f], t), sum([g, h, i], u)]
+fn direction(rows: &Rows, [x, y, z]: [i32; 3]) -> [i32; 3] {
+    let [a, b, c, _, d, e, f, _, g, h, i, _] = rows;
+    let sum =
+        |a: i32, b: i32, c: i32| a.wrapping_mul(x).wrapping_add(b.wrapping_mul(y)).wrapping_add(c.wrapping_mul(z));
+    [sum(*a, *b, *c), sum(*d, *e, *f), sum(*g, *h, *i)]
 }
 
-/// Returns the matrix times a direction whose components are below 2¹⁰: the result is below 2²⁸.
+/// Returns the place of a position, rounded.
 #[inline(always)]
-fn direction(rows: &Rows, v: [i32; 3]) -> [i32; 3] {
-    let [a, b, c, _, d, e, f, _, g, h, i, _] = *rows;
-    point(&[a, b, c, 0, d, e, f, 0, g, h, i, 0], v)
+fn point(rows: &Rows, q: [i32; 3]) -> [i16; 3] {
+    let [_, _, _, s, _, _, _, t, _, _, _, u] = rows;
+    let [x, y, z] = direction(rows, q);
+    let short = |c: i32, t: i32| (c.wrapping_add(t << 11).wrapping_add(1 << 15) >> 16) as i16;
+    [short(x, *s), short(y, *t), short(z, *u)]
 }
 
 impl Joints<'_> {
@@ -68,21 +69,18 @@ impl Joints<'_> {
         let (mut low, mut high, mut widest) = ([i64::MAX; 3], [i64::MIN; 3], 0);
         for (joint, words) in joints.iter().zip(matrices(self.words)) {
             let node = nodes.get(MATRIX_WORDS * usize::from(joint.node)..).and_then(|rest| rest.first_chunk());
-            let transform = node.map_or(Affine::IDENTITY, from_words);
-            let [x, y, z] = joint.inverse_bind.map(|[x, y, z, _]| Vec3::from_bits([x, y, z]));
-            let bind = joint.inverse_bind.map(|[.., t]| t);
-            let matrix = transform * Affine::from_rows(x, y, z, Vec3::from_bits(bind));
-            to_words(&matrix, words);
+            let Some(node) = node else { continue };
+            compose(rows(node), &joint.inverse_bind, words);
             if joint.used == 0 {
                 continue;
             }
-            for ((row, low), high) in matrix.to_rows().iter().zip(&mut low).zip(&mut high) {
+            for ((row, low), high) in rows(words).iter().zip(&mut low).zip(&mut high) {
                 let [entries @ .., t] = row;
                 let (mut middle, mut reach) = (i64::from(*t), 0);
                 for ((entry, center), half) in entries.iter().zip(&joint.center).zip(&joint.half) {
                     widest |= entry.unsigned_abs();
-                    middle += (i64::from(*entry) * i64::from(*center)) >> 15;
-                    reach += ((i64::from(entry.unsigned_abs()) * i64::from(*half)) >> 15) + 2;
+                    middle += mul_wide(*entry, (*center).into()) >> 15;
+                    reach += (mul_wide(*entry, (*half).into()).abs() >> 15) + 2;
                 }
                 (*low, *high) = ((*low).min(middle - reach), (*high).max(middle + reach));
             }
@@ -114,20 +112,16 @@ impl Joints<'_> {
             }
             box_around(part, points)
         } else {
-            if targets.is_empty() {
-                for ((to, from), influence) in points.iter_mut().zip(from).zip(influences) {
-                    *to = self.skinned(influence, from.map(i32::from));
-                }
-                for ((to, from), influence) in normals.iter_mut().zip(from_normals).zip(influences) {
-                    *to = self.turned(influence, octahedral(*from));
-                }
-            } else {
-                for (k, ((to, from), influence)) in points.iter_mut().zip(from).zip(influences).enumerate() {
-                    *to = self.skinned(influence, morph.point(k, *from));
-                }
-                for (k, ((to, from), influence)) in normals.iter_mut().zip(from_normals).zip(influences).enumerate() {
-                    // Ten bits, with the sign.
-                    *to = self.turned(influence, morph.normal(k, *from).map(|c| (c >> 6).clamp(-511, 511)));
+            let mut normals = normals.iter_mut().zip(from_normals);
+            let mut mean = [0; MATRIX_WORDS];
+            for (k, ((to, from), influence)) in points.iter_mut().zip(from).zip(influences).enumerate() {
+                let rows = self.rows_of(influence, &mut mean);
+                let still = targets.is_empty();
+                *to = point(rows, if still { from.map(i32::from) } else { morph.point(k, *from) });
+                if let Some((to, from)) = normals.next() {
+                    // Below 2⁹ each, so that sums are below 2²⁷.
+                    let normal = if still { octahedral(*from) } else { morph.normal(k, *from).map(|c| c >> 6) };
+                    *to = unit(direction(rows, normal));
                 }
             }
             (1 << self.cube.log_scale, self.cube.center, self.cube.center, self.cube.half)
@@ -139,54 +133,44 @@ impl Joints<'_> {
     /// Returns the matrix of a joint.
     #[inline(always)]
     fn rows(&self, joint: u8) -> &Rows {
-        let words = self.words.get(MATRIX_WORDS * usize::from(joint)..).and_then(|rest| rest.first_chunk());
-        words.unwrap_or(&[0; MATRIX_WORDS])
+        let rest = self.words.get(MATRIX_WORDS * usize::from(joint)..);
+        rest.and_then(|rest| rest.first_chunk::<MATRIX_WORDS>()).map_or(&[0; MATRIX_WORDS], bytemuck::cast_ref)
     }
 
-    /// Returns the position of a vertex that its joints move.
+    /// Returns the matrix of a vertex: that of its joint, or the mean of those of its joints, which is put into `mean`.
+    #[inline(always)]
+    fn rows_of<'r>(&'r self, influence: &Influence, mean: &'r mut Rows) -> &'r Rows {
+        let [first, ..] = influence.joints;
+        if influence.weights == [0; 3] {
+            return self.rows(first);
+        }
+        self.blend(influence, mean);
+        mean
+    }
+
+    /// Computes the mean of the matrices of a vertex's joints.
     ///
     /// # Format
-    /// Of each joint, 2⁻⁸ of a fraction count: the sum of their products with weights that sum up to 256 is below 2³¹.
-    #[inline(always)]
-    fn skinned(&self, influence: &Influence, from: [i32; 3]) -> [i16; 3] {
-        let [first, others @ ..] = influence.joints;
-        let mut sum = point(self.rows(first), from);
-        if influence.weights[0] != 0 {
-            self.blend(&mut sum, 8, others, influence.weights, |rows| point(rows, from));
-        }
-        // Rounded; within 16 bits by the cube.
-        let [x, y, z] = sum;
-        let short = |c: i32| (c.wrapping_add(1 << 15) >> 16) as i16;
-        [short(x), short(y), short(z)]
-    }
-
-    /// Returns the unit normal, 2.14, of a vertex that its joints turn, from one of any length below 2¹⁰.
-    #[inline(always)]
-    fn turned(&self, influence: &Influence, from: [i32; 3]) -> [i16; 3] {
-        let [first, others @ ..] = influence.joints;
-        let mut sum = direction(self.rows(first), from);
-        if influence.weights[0] != 0 {
-            self.blend(&mut sum, 5, others, influence.weights, |rows| direction(rows, from));
-        }
-        unit(sum)
-    }
-
-    /// Replaces what the first joint makes of a vector by the mean of what all joints make of it. `cut` bits of it are
-    /// lost, so that products with weights of 256ths fit.
+    /// Entries are at most 2²³, and weights are 256ths: products are at most 2³¹. Sums wrap only if the boxes of joints
+    /// do not hold their vertices. Entries are rounded.
     #[inline(never)]
-    fn blend(&self, sum: &mut [i32; 3], cut: u32, joints: [u8; 3], weights: [u8; 3], make: impl Fn(&Rows) -> [i32; 3]) {
-        let left = weights.iter().fold(256, |left, weight| left - i32::from(*weight));
-        // Below 2³¹ by the cube; bad boxes of joints make them wrap.
-        let mut all = sum.map(|c| (c >> cut).wrapping_mul(left));
-        for (joint, weight) in joints.into_iter().zip(weights) {
+    fn blend(&self, influence: &Influence, mean: &mut Rows) {
+        let [first, others @ ..] = influence.joints;
+        let left = influence.weights.iter().fold(256, |left, weight| left - i32::from(*weight));
+        for (to, entry) in mean.iter_mut().zip(self.rows(first)) {
+            *to = entry.wrapping_mul(left);
+        }
+        for (joint, weight) in others.into_iter().zip(influence.weights) {
             if weight == 0 {
                 break;
             }
-            for (all, c) in all.iter_mut().zip(make(self.rows(joint))) {
-                *all = all.wrapping_add((c >> cut).wrapping_mul(weight.into()));
+            for (to, entry) in mean.iter_mut().zip(self.rows(joint)) {
+                *to = to.wrapping_add(entry.wrapping_mul(weight.into()));
             }
         }
-        *sum = all.map(|c| (c >> 8) << cut);
+        for entry in mean {
+            *entry = entry.wrapping_add(1 << 7) >> 8;
+        }
     }
 }
 
@@ -214,22 +198,24 @@ impl Cube {
         cube
     }
 
-    /// Makes the rows of [`Rows`] from those of a matrix.
-    fn fit(&self, words: &mut Rows) {
+    /// Makes [`Rows`] from the rows of a matrix.
+    fn fit(&self, words: &mut [u32; MATRIX_WORDS]) {
         for (row, center) in words.chunks_exact_mut(4).zip(self.center) {
             if let [x, y, z, t] = row {
                 for entry in [x, y, z] {
                     // 2¹⁶ of the entry / 2^log_scale, rounded.
                     *entry = ((((i64::from(*entry as i32) << 17) >> self.log_scale) + 1) >> 1) as u32;
                 }
-                *t = (*t as i32).wrapping_sub(center).wrapping_shl(31 - self.log_scale) as u32;
+                // 2⁵ fractions of 2¹⁵.
+                let moved = i64::from(*t as i32) - i64::from(center);
+                *t = ((((moved << 21) >> self.log_scale) + 1) >> 1) as u32;
             }
         }
     }
 }
 
 /// Returns words as matrices.
-fn matrices(words: &mut [u32]) -> &mut [Rows] {
+fn matrices(words: &mut [u32]) -> &mut [[u32; MATRIX_WORDS]] {
     let whole = words.len() / MATRIX_WORDS * MATRIX_WORDS;
     bytemuck::try_cast_slice_mut(words.get_mut(..whole).unwrap_or_default()).unwrap_or_default()
 }

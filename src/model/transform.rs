@@ -140,6 +140,29 @@ pub(super) fn from_words(words: &[u32; 12]) -> Affine {
     Affine::from_rows(vector(a, b, c), vector(d, e, f), vector(g, h, i), vector(x, y, z))
 }
 
+/// Keeps a transform in words: `inner`, then `outer`. Takes half the time of [`Affine::compose`] on small cores.
+///
+/// # Format
+/// Entries are rounded to nearest. They wrap where they leave 16.16, instead of saturating.
+#[inline(never)]
+pub(super) fn compose(outer: &[[i32; 4]; 3], inner: &[[i32; 4]; 3], words: &mut [u32; 12]) {
+    let [x, y, z] = inner;
+    for ([a, b, c, t], words) in outer.iter().zip(words.chunks_exact_mut(4)) {
+        for (((word, x), y), z) in words.iter_mut().zip(x).zip(y).zip(z) {
+            let sum = mul_wide(*a, *x).wrapping_add(mul_wide(*b, *y)).wrapping_add(mul_wide(*c, *z));
+            *word = (sum.wrapping_add(1 << 15) >> 16) as u32;
+        }
+        if let Some(moved) = words.last_mut() {
+            *moved = moved.wrapping_add(*t as u32);
+        }
+    }
+}
+
+/// Returns the rows of a transform that was kept in words.
+pub(super) fn rows(words: &[u32; 12]) -> &[[i32; 4]; 3] {
+    bytemuck::cast_ref(words)
+}
+
 /// Keeps a transform in words.
 pub(super) fn to_words(transform: &Affine, words: &mut [u32; 12]) {
     for (word, entry) in words.iter_mut().zip(transform.to_rows().as_flattened()) {
@@ -190,6 +213,22 @@ mod tests {
         println!("worst entry off by {worst:.3} / 2^16");
         assert!(worst <= 1.0, "{worst}");
         assert_eq!(rotation_rows(&[0; 4]), [[65_536, 0, 0], [0, 65_536, 0], [0, 0, 65_536]]);
+    }
+
+    #[test]
+    fn transforms_are_composed_as_matrices_are() {
+        let mut rng = Rng::new(7);
+        for _ in 0..10_000 {
+            let mut random = || {
+                let mut words = [0; 12];
+                words.iter_mut().for_each(|word| *word = rng.signed_bits(22) as i32 as u32);
+                words
+            };
+            let (outer, inner) = (random(), random());
+            let mut found = [0; 12];
+            compose(rows(&outer), rows(&inner), &mut found);
+            assert_eq!(from_words(&found), from_words(&outer) * from_words(&inner));
+        }
     }
 
     #[test]

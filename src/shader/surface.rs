@@ -118,7 +118,7 @@ impl Surface for Sunlit {
         self.vertex_with(vertex, vertex.normal())
     }
 
-    #[inline]
+    #[inline(always)]
     fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
         if self.has_vertex_colors() {
             self.colored(vertex.color()).shade(self.turned(normal))

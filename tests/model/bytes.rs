@@ -138,3 +138,44 @@ fn errors_name_what_is_wrong() {
     let message = error(&|b| b[table] += 2);
     assert!(message.contains("section Nodes") && message.contains("do not lie at a multiple of 4"), "{message}");
 }
+
+#[test]
+fn the_document_has_the_sizes_and_places_of_all_structures() {
+    use core::mem::offset_of;
+    use zstrip::model::container::{
+        Channel, Clip, Cluster, Delta, Influence, Joint, Material, Node, Part, Section, Skin, Target, Texture, Timeline,
+    };
+    let document = include_str!("../../docs/container.md");
+    macro_rules! check {
+        ($($name:ident: $($field:ident)*;)*) => { $(
+            let heading = format!("### `{}`, {} bytes\n", stringify!($name), size_of::<$name>());
+            let start = document.find(&heading).unwrap_or_else(|| panic!("{heading}"));
+            let chapter = document[start + 3..].split("\n##").next().unwrap_or_default();
+            $(
+                let at = offset_of!($name, $field);
+                let row = chapter.lines().find(|line| line.contains(concat!(" | `", stringify!($field), "` | ")));
+                let row = row.unwrap_or_else(|| panic!("{heading}: {}", stringify!($field)));
+                assert!(row.starts_with(&format!("| {at} | ")), "{row}: byte {at}");
+            )*
+        )* };
+    }
+    check! {
+        Section: offset count;
+        Header: magic version sections length draws pose_words weights rest_weights center half table;
+        Node: parent first_part parts name_length name translation rotation scale;
+        Part: first_vertex vertices first_index triangles first_normal first_color first_uv first_influence
+            first_cluster first_target first_weight pose scale offset center half uv_offset texels_per_unit error
+            clusters targets material skin coarser uv_shift uv_bits;
+        Cluster: center half first_triangle triangles axis cutoff;
+        Material: color specular shininess texture alpha_mode cutoff flags;
+        Texture: width height format levels colors texels palette alpha;
+        Skin: first_joint joints;
+        Joint: inverse_bind center half node used;
+        Influence: joints weights zero;
+        Target: first_delta first_vertex vertices;
+        Delta: point normal zero;
+        Clip: first_channel channels duration name name_length center half;
+        Timeline: first_time times;
+        Channel: timeline first_key scale offset target weights path interpolation zero;
+    }
+}
