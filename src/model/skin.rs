@@ -27,8 +27,8 @@ struct Cube {
     half: [i32; 3],
 }
 
-/// A matrix for vertices, that of a joint or a mean of several: three rows of m and t. Row · q is Σ m q + 2¹¹ t, in 2⁻¹⁶
-/// of a fraction.
+/// A matrix for vertices, that of a joint or a mean of several: three rows of m and t. Row · q is Σ m q + 2¹¹ t, in
+/// 2⁻¹⁶ of a fraction.
 ///
 /// # Format
 /// |m| ≤ 2¹⁶ and |t| < 2²³ for joints that move vertices. The result is below 2³¹ for every vertex that the joint moves,
