@@ -111,20 +111,26 @@ impl Surface for Unlit {
     }
 }
 
+/// Returns the colour under a sun. The normal is looked up where it is needed, last: it would wait in memory otherwise.
+#[inline(always)]
+fn sunlit(surface: &Sunlit, vertex: &VertexRef<'_>, normal: impl FnOnce() -> [i16; 3]) -> LitColor {
+    if surface.has_vertex_colors() {
+        surface.colored(vertex.color()).shade(surface.turned(normal()))
+    } else {
+        surface.shade(surface.turned(normal()))
+    }
+}
+
 /// Lit by the normals of vertices or of faces. A mesh without normals shows only the ambient light at its vertices.
 impl Surface for Sunlit {
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
-        self.vertex_with(vertex, vertex.normal())
+        sunlit(self, vertex, || vertex.normal())
     }
 
-    #[inline(always)]
+    #[inline]
     fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
-        if self.has_vertex_colors() {
-            self.colored(vertex.color()).shade(self.turned(normal))
-        } else {
-            self.shade(self.turned(normal))
-        }
+        sunlit(self, vertex, || normal)
     }
 
     #[inline]
