@@ -146,14 +146,17 @@ pub(super) fn from_words(words: &[u32; 12]) -> Affine {
 /// Entries are rounded to nearest. They wrap where they leave 16.16, instead of saturating.
 #[inline(never)]
 pub(super) fn compose(outer: &[[i32; 4]; 3], inner: &[[i32; 4]; 3], words: &mut [u32; 12]) {
-    let [x, y, z] = inner;
+    let [[xa, ya, za, ta], [xb, yb, zb, tb], [xc, yc, zc, tc]] = *inner;
     for ([a, b, c, t], words) in outer.iter().zip(words.chunks_exact_mut(4)) {
-        for (((word, x), y), z) in words.iter_mut().zip(x).zip(y).zip(z) {
-            let sum = mul_wide(*a, *x).wrapping_add(mul_wide(*b, *y)).wrapping_add(mul_wide(*c, *z));
-            *word = (sum.wrapping_add(1 << 15) >> 16) as u32;
-        }
-        if let Some(moved) = words.last_mut() {
-            *moved = moved.wrapping_add(*t as u32);
+        let entry = |x: i32, y: i32, z: i32| {
+            let sum = mul_wide(*a, x).wrapping_add(mul_wide(*b, y)).wrapping_add(mul_wide(*c, z));
+            (sum.wrapping_add(1 << 15) >> 16) as u32
+        };
+        // One by one: a zip of words and numbers is a loop that shaders have too, and would then be compiled apart from
+        // them.
+        if let [x, y, z, moved] = words {
+            (*x, *y, *z) = (entry(xa, xb, xc), entry(ya, yb, yc), entry(za, zb, zc));
+            *moved = entry(ta, tb, tc).wrapping_add(*t as u32);
         }
     }
 }
@@ -165,9 +168,7 @@ pub(super) fn rows(words: &[u32; 12]) -> &[[i32; 4]; 3] {
 
 /// Keeps a transform in words.
 pub(super) fn to_words(transform: &Affine, words: &mut [u32; 12]) {
-    for (word, entry) in words.iter_mut().zip(transform.to_rows().as_flattened()) {
-        *word = *entry as u32;
-    }
+    *words = bytemuck::cast(transform.to_rows());
 }
 
 #[cfg(test)]

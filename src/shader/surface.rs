@@ -111,26 +111,25 @@ impl Surface for Unlit {
     }
 }
 
-/// Returns the colour under a sun. The normal is looked up where it is needed, last: it would wait in memory otherwise.
-#[inline(always)]
-fn sunlit(surface: &Sunlit, vertex: &VertexRef<'_>, normal: impl FnOnce() -> [i16; 3]) -> LitColor {
-    if surface.has_vertex_colors() {
-        surface.colored(vertex.color()).shade(surface.turned(normal()))
-    } else {
-        surface.shade(surface.turned(normal()))
-    }
-}
-
 /// Lit by the normals of vertices or of faces. A mesh without normals shows only the ambient light at its vertices.
 impl Surface for Sunlit {
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
-        sunlit(self, vertex, || vertex.normal())
+        // The normal is looked up last. Shared with `vertex_with`, this code would be slower or larger.
+        if self.has_vertex_colors() {
+            self.colored(vertex.color()).shade(self.turned(vertex.normal()))
+        } else {
+            self.shade(self.turned(vertex.normal()))
+        }
     }
 
     #[inline]
     fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
-        sunlit(self, vertex, || normal)
+        if self.has_vertex_colors() {
+            self.colored(vertex.color()).shade(self.turned(normal))
+        } else {
+            self.shade(self.turned(normal))
+        }
     }
 
     #[inline]
