@@ -43,12 +43,12 @@ impl Local {
     pub(super) fn matrix(&self) -> Affine {
         let mut rows = rotation_rows(&self.rotation);
         if self.scale != [1 << 16; 3] {
-            for row in &mut rows {
-                for (entry, factor) in row.iter_mut().zip(&self.scale) {
-                    let product = (mul_wide(*entry, *factor) + (1 << 15)) >> 16;
-                    *entry = product.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
-                }
-            }
+            let times = |entry: i32, factor: i32| {
+                let product = (mul_wide(entry, factor) + (1 << 15)) >> 16;
+                product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+            };
+            let [x, y, z] = self.scale;
+            rows = rows.map(|[a, b, c]| [times(a, x), times(b, y), times(c, z)]);
         }
         let [x, y, z] = rows;
         Affine::from_rows(Vec3::from_bits(x), Vec3::from_bits(y), Vec3::from_bits(z), Vec3::from_bits(self.translation))
@@ -117,7 +117,8 @@ pub(super) fn rotation_rows(&[x, y, z, w]: &[i32; 4]) -> [[i32; 3]; 3] {
 /// the angle.
 #[inline(never)]
 pub(super) fn arc(a: &[i32; 4], b: &[i32; 4], factor: i32) -> [i32; 4] {
-    let cosine: i32 = a.iter().zip(b).map(|(a, b)| (a * b) >> 16).sum();
+    let ([ax, ay, az, aw], [bx, by, bz, bw]) = (*a, *b);
+    let cosine = ((ax * bx) >> 16) + ((ay * by) >> 16) + ((az * bz) >> 16) + ((aw * bw) >> 16);
     let d = cosine.abs().min(ONE);
     let times = |a: i32, b: i32| (a * b) >> 14;
     let slope = 17_865 + times(d, -53_169 + times(d, 58_269 - times(d, 23_514)));
@@ -125,12 +126,11 @@ pub(super) fn arc(a: &[i32; 4], b: &[i32; 4], factor: i32) -> [i32; 4] {
     let middle = factor - ONE / 2;
     let k = times(slope, times(middle, middle)) + base;
     let factor = factor + times(times(times(factor, middle), factor - ONE), k);
-    let mut result = *a;
-    for (to, b) in result.iter_mut().zip(b) {
-        let b = if cosine < 0 { -b } else { *b };
-        *to += ((b - *to) * factor + (1 << 13)) >> 14;
-    }
-    result
+    let between = |from: i32, to: i32| {
+        let to = if cosine < 0 { -to } else { to };
+        from + (((to - from) * factor + (1 << 13)) >> 14)
+    };
+    [between(ax, bx), between(ay, by), between(az, bz), between(aw, bw)]
 }
 
 /// Returns the transform that was kept in words.
