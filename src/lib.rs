@@ -43,6 +43,7 @@
 //! | know how much RAM that takes, at compile time | [`frame::RamBudget`] |
 //! | draw in strips of a few rows | [`Renderer::with_carried_state`] |
 //! | bring in a mesh, lines, points | [`mesh`] |
+//! | draw a model with its materials, textures and animation from one file | [`model`] |
 //! | place a camera, move things | [`math`] |
 //! | light them, and choose a shader | [`light`], [`shader`] |
 //! | put textures on them | [`texture`] |
@@ -93,6 +94,7 @@
 //! | [`shader`] | the ready-made shaders, ordinary users of that seam |
 //! | [`target`] | framebuffers, strips, sinks, packers, embedded-graphics targets, records |
 //! | [`scene`] | the one place that calls every stage, in order: [`Scene`] |
+//! | [`model`] | models in containers: nodes, materials, animation; an ordinary user of all floors below |
 //! | [`frame`] | bands and strips, renderers, views, RAM budgets |
 //!
 //! A folder imports only from those above it in this table, and no two files import each other: `tests/floors.rs`
@@ -138,6 +140,7 @@ pub mod frame;
 pub mod light;
 pub mod math;
 pub mod mesh;
+pub mod model;
 mod raster;
 pub mod scene;
 pub mod shader;
@@ -173,6 +176,8 @@ mod tests {
     fn errors_and_statistics_can_be_logged() {
         fn logged<T: defmt::Format>() {}
         logged::<crate::mesh::MeshError>();
+        logged::<crate::model::ModelError>();
+        logged::<crate::model::MemoryError>();
         logged::<crate::vertex::SortError>();
         logged::<crate::vertex::ViewportError>();
         logged::<crate::math::PrecisionError>();

@@ -9,6 +9,7 @@
 //! | [`strokes`] | lines in every stroke, and the canvas | thin lines: exactly the model's pixels; all: the same bytes |
 //! | [`constructors`] | constructors and functions on numbers | results in range, the model's where there is one |
 //! | [`bytes`] | what reads bytes: images, palettes, packed formats | the model's texels and bits |
+//! | [`models`] | containers with changed bytes | an error, or pictures: the same bytes for any strips and records |
 //! | [`sinks`] | sinks that fail, frames that are dropped, scenes that change | the next frame is as from a new renderer |
 //!
 //! `ci/fuzz` runs them.
@@ -17,6 +18,7 @@ pub mod bytes;
 pub mod clipping;
 pub mod constructors;
 pub mod coverage;
+pub mod models;
 mod reference;
 pub mod scenes;
 pub mod sinks;
@@ -27,13 +29,14 @@ mod things;
 pub use reference::rng::Rng;
 
 /// All targets: a name, and a function from any bytes to a hash of the results.
-pub const TARGETS: [(&str, fn(&[u8]) -> u64); 7] = [
+pub const TARGETS: [(&str, fn(&[u8]) -> u64); 8] = [
     ("scenes", scenes::run),
     ("coverage", coverage::run),
     ("clipping", clipping::run),
     ("strokes", strokes::run),
     ("constructors", constructors::run),
     ("bytes", bytes::run),
+    ("models", models::run),
     ("sinks", sinks::run),
 ];
 

@@ -94,6 +94,11 @@ impl Material {
         Self { matte: Matte::new(color), specular, shininess, two_sided: false }
     }
 
+    /// Returns the material without highlights, lit on one side.
+    pub const fn body(&self) -> Matte {
+        self.matte
+    }
+
     /// Sets the colour under ambient light; otherwise it is the material's.
     pub fn with_ambient(self, color: impl Into<Rgb888>) -> Self {
         Self { matte: self.matte.with_ambient(color), ..self }

@@ -32,7 +32,7 @@ pub(crate) use division::{divide, divide_modulo, divided};
 pub use error::ProjectionError;
 pub(crate) use exponential::exp_negative;
 pub use format::{Pixels, SaturatingScalar, Scalar, Wide};
-pub(crate) use inverse_sqrt::{unit_vector, unit_vector_of_any_length};
+pub(crate) use inverse_sqrt::{inverse_sqrt, unit_vector, unit_vector_of_any_length};
 #[cfg(feature = "micromath")]
 pub use micromath::FloatError;
 pub use precision::{DepthPrecision, PrecisionError};

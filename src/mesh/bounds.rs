@@ -74,6 +74,12 @@ pub struct BoundsNode {
     pub triangles: u16,
 }
 
+impl BoundsNode {
+    /// A node without triangles, to fill an array with.
+    pub const EMPTY: Self =
+        Self { bounds: Bounds { center: Vec3::ZERO, half: Vec3::ZERO }, skip: 0, first_triangle: 0, triangles: 0 };
+}
+
 /// Returns whether a half size is negative.
 pub(super) const fn is_negative(bounds: &Bounds) -> bool {
     let [x, y, z] = bounds.half.to_bits();

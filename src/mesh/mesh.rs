@@ -362,6 +362,11 @@ impl<'a> Mesh<'a> {
         }
     }
 
+    /// Makes a mesh of slices that were checked before, and whose bounds are known.
+    pub(crate) const fn of_checked(data: MeshData<'a>, bounds: Bounds, triangles: u16) -> Self {
+        Self { data, bounds, triangles }
+    }
+
     /// Makes a `const` or `static` mesh as [`new`](Self::new) does. A mesh with a mistake does not compile.
     ///
     /// # Panics

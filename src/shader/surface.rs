@@ -38,6 +38,14 @@ pub trait Surface {
     /// Returns the colour at a vertex.
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor;
 
+    /// Returns the colour at a vertex with a unit normal, 2.14, that is not the mesh's: one that is packed, or
+    /// computed. Surfaces that know no normals, as by default, return [`vertex`](Self::vertex).
+    #[inline]
+    fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
+        let _ = normal;
+        self.vertex(vertex)
+    }
+
     /// Returns the colour of a face; by default that of its provoking vertex, lit by the normal of that vertex.
     #[inline]
     fn face(&self, face: &Face<'_>) -> Rgb888 {
@@ -55,6 +63,11 @@ impl<S: Surface + ?Sized> Surface for &S {
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
         S::vertex(self, vertex)
+    }
+
+    #[inline]
+    fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
+        S::vertex_with(self, vertex, normal)
     }
 
     #[inline]
@@ -102,10 +115,20 @@ impl Surface for Unlit {
 impl Surface for Sunlit {
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
+        // The normal is looked up last. Shared with `vertex_with`, this code would be slower or larger.
         if self.has_vertex_colors() {
             self.colored(vertex.color()).shade(self.turned(vertex.normal()))
         } else {
             self.shade(self.turned(vertex.normal()))
+        }
+    }
+
+    #[inline]
+    fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
+        if self.has_vertex_colors() {
+            self.colored(vertex.color()).shade(self.turned(normal))
+        } else {
+            self.shade(self.turned(normal))
         }
     }
 
@@ -127,7 +150,11 @@ impl Surface for Sunlit {
 /// viewer, because the vertex may belong to faces of both sides.
 impl<const D: usize, const P: usize> Surface for LitMaterial<D, P> {
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
-        let mut normal = long(self.turned(vertex.normal()));
+        self.vertex_with(vertex, vertex.normal())
+    }
+
+    fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
+        let mut normal = long(self.turned(normal));
         let turns_by_place = self.is_two_sided() && self.is_seen_from_close_by();
         let p = if self.depends_on_place() || turns_by_place { self.local(vertex.position()) } else { [0; 3] };
         if self.is_two_sided() {

@@ -1,0 +1,14 @@
+//! Models: containers as bytes, pictures beside those of draws by hand, poses beside those in double precision.
+
+mod builder;
+mod bytes;
+mod clusters;
+mod exact;
+mod figures;
+mod pictures;
+mod places;
+mod poses;
+#[path = "../reference/mod.rs"]
+mod reference;
+#[path = "../support/mod.rs"]
+mod support;
