@@ -213,18 +213,25 @@ impl<'a> Records<'a> {
     /// Stores a vertex of the current draw, for whose vertices there is room.
     #[inline(never)]
     pub(crate) fn store_vertex<S: VertexShader>(&mut self, index: usize, packed: PackedVertex, varyings: &S::Varyings) {
+        // A constant length: otherwise, copying would link `memcpy`.
+        S::store(varyings, self.store_position(index, packed, S::WORDS).get_mut(..S::WORDS).unwrap_or_default());
+    }
+
+    /// Stores the position of a vertex, and returns the words from its varyings on, which the caller fills in.
+    #[inline(never)]
+    fn store_position(&mut self, index: usize, packed: PackedVertex, varyings: usize) -> &mut [u32] {
         let (position, rest) = self.words_of(index);
         let [a, b] = packed.0;
         self.set(position, a);
         self.set(position + 1, b);
-        S::store(varyings, self.words.get_mut(rest..).and_then(|rest| rest.get_mut(..S::WORDS)).unwrap_or_default());
         // Those that the clipper added are not asked for by their marks.
         let Layout { marks, vertices, .. } = *self.layout;
-        if S::WORDS > 0
+        if varyings > 0
             && let Some(mark) = self.words.get_mut(marks..vertices).and_then(|marks| marks.get_mut(index / 32))
         {
             *mark |= 1 << (index & 31);
         }
+        self.words.get_mut(rest..).unwrap_or_default()
     }
 
     /// Returns the varyings of a vertex of the current draw.
