@@ -94,10 +94,10 @@ mod tests {
             let mut taken: Vec<(Place, u32)> = Vec::new();
             for number in 1..300 {
                 if rng.below(3) == 0 && !taken.is_empty() {
-                    let (place, number) = taken.swap_remove(rng.below(taken.len() as u32) as usize);
+                    let (place, number) = taken.swap_remove(rng.below(taken.len() as u64) as usize);
                     assert!(place.words(&mut all).expect("words").iter().all(|word| *word == number), "case {case}");
                     pool.give_back(&mut all, place);
-                } else if let Some(place) = pool.take(&mut all, STATE_UNIT * (1 + rng.below(SIZES as u32) as usize)) {
+                } else if let Some(place) = pool.take(&mut all, STATE_UNIT * (1 + rng.below(SIZES as u64) as usize)) {
                     assert_eq!(Place::of_word(place.word()), place);
                     place.words(&mut all).expect("words").fill(number);
                     taken.push((place, number));
