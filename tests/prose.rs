@@ -69,7 +69,9 @@ fn is_verb(word: &str) -> bool {
 #[test]
 fn comments_keep_to_the_width_of_code() {
     let mut wide = Vec::new();
-    for path in sources(&["src", "tests", "examples", "boards/rp2040/src"]) {
+    let tool = ["src", "tests", "examples"].map(|folder| format!("tools/zstrip-assets/{folder}"));
+    let folders = ["src", "tests", "examples", "boards/rp2040/src"].into_iter().chain(tool.iter().map(String::as_str));
+    for path in sources(&folders.collect::<Vec<_>>()) {
         let text = fs::read_to_string(&path).expect("a source");
         for (k, line) in text.lines().enumerate() {
             // A row of a table cannot be broken.
@@ -85,7 +87,7 @@ fn comments_keep_to_the_width_of_code() {
 #[test]
 fn summaries_say_what_they_are_about() {
     let (mut wrong, mut functions) = (Vec::new(), 0);
-    for path in sources(&["src"]) {
+    for path in sources(&["src", "tools/zstrip-assets/src"]) {
         let text = fs::read_to_string(&path).expect("a source");
         for (number, summary, item) in summaries(&text) {
             let word = summary.split([' ', ',', ':', ';', '.']).next().unwrap_or_default();
