@@ -55,11 +55,15 @@ mod ply;
 mod pose;
 mod process;
 mod report;
+mod save;
+mod script;
 mod simplify;
+mod source;
 mod stl;
 mod triangulate;
 mod vertices;
 mod weld;
+mod write;
 
 use std::path::Path as FilePath;
 
@@ -70,6 +74,10 @@ pub use model::{
 };
 pub use options::{Center, Limits, Normals, Options, UpAxis, Winding};
 pub use report::{Counts, Note, Report};
+pub use save::save;
+pub use script::{build, build_with};
+pub use source::write_rust;
+pub use write::{Errors, TextureKind, UvSize, WriteError, WriteNote, WriteOptions, WriteReport, Written, write};
 
 use draft::Context;
 use files::Files;
@@ -199,6 +207,7 @@ pub fn import_with_progress(
     }
 
     let mut report = context.report;
+    report.files = context.files.read;
     report.add(Note::Mirrored { nodes: import.mirrored() });
     report.after = Counts {
         vertices: import.meshes.iter().map(|mesh| mesh.vertices.len()).sum(),
