@@ -30,6 +30,7 @@ Geometry:
   --budget TRIANGLES      simplifies the model to so many triangles
 
 Textures:
+  --texture FILE          an image for materials without one, as for OBJ without MTL
   --textures rgb565|palette|palette16|gray|mask   the format; rgb565
   --max-texture N         the most texels per side; 256
   --no-mips               no smaller levels of textures
@@ -84,6 +85,7 @@ impl Arguments {
                 Long("crease") => import.crease_angle = parser.value()?.parse()?,
                 Long("weld") => import.weld_distance = parser.value()?.parse()?,
                 Long("budget") => import.max_triangles = Some(parser.value()?.parse()?),
+                Long("texture") => import.texture = Some(parser.value()?.into()),
                 Long("textures") => {
                     let kinds = [
                         ("rgb565", TextureKind::Rgb565),

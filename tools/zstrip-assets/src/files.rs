@@ -42,6 +42,11 @@ impl Files {
         self.read(&path)
     }
 
+    /// Reads a file that the caller names.
+    pub fn read_named(&mut self, path: &Path) -> Result<Vec<u8>, Error> {
+        self.read(path)
+    }
+
     /// Reads a file that the model names.
     ///
     /// The name is a path below the folder of the model, with `/` or `\`. A path that leads out of it, by `..`, from

@@ -171,6 +171,7 @@ pub fn import_with_progress(
     }
 
     let mut import = scene.import;
+    let image = options.texture.as_deref().map(|path| context.read_texture(path)).transpose()?;
     import.images = std::mem::take(&mut context.images.list);
     // Drafts that a node shows together are parts of one shape.
     let mut groups = Vec::new();
@@ -199,6 +200,9 @@ pub fn import_with_progress(
             import.meshes.extend(meshes);
         }
     }
+    if let Some(image) = image {
+        paint(&mut import, image);
+    }
     for node in &mut import.nodes {
         node.meshes = node.meshes.iter().flat_map(|draft| meshes_of_drafts[*draft].clone()).collect();
     }
@@ -216,4 +220,15 @@ pub fn import_with_progress(
     };
     report.bounds = import.bounds();
     Ok((import, report))
+}
+
+/// Gives an image to all materials that have no texture, and a material to all meshes that have none.
+fn paint(import: &mut Import, image: usize) {
+    if import.meshes.iter().any(|mesh| mesh.material.is_none()) {
+        let white = import.materials.len();
+        import.materials.push(Material::default());
+        import.meshes.iter_mut().for_each(|mesh| mesh.material = mesh.material.or(Some(white)));
+    }
+    let texture = Texture { image, wrap: [Wrap::Repeat; 2], nearest: false };
+    import.materials.iter_mut().for_each(|material| material.texture = material.texture.or(Some(texture)));
 }
