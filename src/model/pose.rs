@@ -52,7 +52,9 @@ impl<'a> Model<'a> {
         'a: 'p,
     {
         let (found, needed) = (memory.len(), self.header.pose_words as usize);
-        let Some(words) = memory.get_mut(..needed) else { return Err(MemoryError::Pose { found, needed }) };
+        let Some((words, _)) = memory.split_at_mut_checked(needed) else {
+            return Err(MemoryError::Pose { found, needed });
+        };
         let mut pose = Pose { model: *self, words };
         pose.rest();
         Ok(pose)

@@ -157,15 +157,17 @@ impl Joints<'_> {
     fn blend(&self, influence: &Influence, mean: &mut Rows) {
         let [first, others @ ..] = influence.joints;
         let left = influence.weights.iter().fold(256, |left, weight| left - i32::from(*weight));
-        for (to, entry) in mean.iter_mut().zip(self.rows(first)) {
-            *to = entry.wrapping_mul(left);
+        let rows = self.rows(first);
+        for (k, to) in mean.iter_mut().enumerate() {
+            *to = rows.get(k).map_or(0, |entry| entry.wrapping_mul(left));
         }
         for (joint, weight) in others.into_iter().zip(influence.weights) {
             if weight == 0 {
                 break;
             }
-            for (to, entry) in mean.iter_mut().zip(self.rows(joint)) {
-                *to = to.wrapping_add(entry.wrapping_mul(weight.into()));
+            let rows = self.rows(joint);
+            for (k, to) in mean.iter_mut().enumerate() {
+                *to = rows.get(k).map_or(0, |entry| to.wrapping_add(entry.wrapping_mul(weight.into())));
             }
         }
         for entry in mean {
@@ -217,7 +219,8 @@ impl Cube {
 /// Returns words as matrices.
 fn matrices(words: &mut [u32]) -> &mut [[u32; MATRIX_WORDS]] {
     let whole = words.len() / MATRIX_WORDS * MATRIX_WORDS;
-    bytemuck::try_cast_slice_mut(words.get_mut(..whole).unwrap_or_default()).unwrap_or_default()
+    let (words, _) = words.split_at_mut_checked(whole).unwrap_or_default();
+    bytemuck::try_cast_slice_mut(words).unwrap_or_default()
 }
 
 /// Morph targets and their weights.

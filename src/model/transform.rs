@@ -43,12 +43,12 @@ impl Local {
     pub(super) fn matrix(&self) -> Affine {
         let mut rows = rotation_rows(&self.rotation);
         if self.scale != [1 << 16; 3] {
-            for row in &mut rows {
-                for (entry, factor) in row.iter_mut().zip(&self.scale) {
-                    let product = (mul_wide(*entry, *factor) + (1 << 15)) >> 16;
-                    *entry = product.clamp(i32::MIN.into(), i32::MAX.into()) as i32;
-                }
-            }
+            let times = |entry: i32, factor: i32| {
+                let product = (mul_wide(entry, factor) + (1 << 15)) >> 16;
+                product.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+            };
+            let [x, y, z] = self.scale;
+            rows = rows.map(|[a, b, c]| [times(a, x), times(b, y), times(c, z)]);
         }
         let [x, y, z] = rows;
         Affine::from_rows(Vec3::from_bits(x), Vec3::from_bits(y), Vec3::from_bits(z), Vec3::from_bits(self.translation))
@@ -117,7 +117,8 @@ pub(super) fn rotation_rows(&[x, y, z, w]: &[i32; 4]) -> [[i32; 3]; 3] {
 /// the angle.
 #[inline(never)]
 pub(super) fn arc(a: &[i32; 4], b: &[i32; 4], factor: i32) -> [i32; 4] {
-    let cosine: i32 = a.iter().zip(b).map(|(a, b)| (a * b) >> 16).sum();
+    let ([ax, ay, az, aw], [bx, by, bz, bw]) = (*a, *b);
+    let cosine = ((ax * bx) >> 16) + ((ay * by) >> 16) + ((az * bz) >> 16) + ((aw * bw) >> 16);
     let d = cosine.abs().min(ONE);
     let times = |a: i32, b: i32| (a * b) >> 14;
     let slope = 17_865 + times(d, -53_169 + times(d, 58_269 - times(d, 23_514)));
@@ -125,12 +126,11 @@ pub(super) fn arc(a: &[i32; 4], b: &[i32; 4], factor: i32) -> [i32; 4] {
     let middle = factor - ONE / 2;
     let k = times(slope, times(middle, middle)) + base;
     let factor = factor + times(times(times(factor, middle), factor - ONE), k);
-    let mut result = *a;
-    for (to, b) in result.iter_mut().zip(b) {
-        let b = if cosine < 0 { -b } else { *b };
-        *to += ((b - *to) * factor + (1 << 13)) >> 14;
-    }
-    result
+    let between = |from: i32, to: i32| {
+        let to = if cosine < 0 { -to } else { to };
+        from + (((to - from) * factor + (1 << 13)) >> 14)
+    };
+    [between(ax, bx), between(ay, by), between(az, bz), between(aw, bw)]
 }
 
 /// Returns the transform that was kept in words.
@@ -146,14 +146,17 @@ pub(super) fn from_words(words: &[u32; 12]) -> Affine {
 /// Entries are rounded to nearest. They wrap where they leave 16.16, instead of saturating.
 #[inline(never)]
 pub(super) fn compose(outer: &[[i32; 4]; 3], inner: &[[i32; 4]; 3], words: &mut [u32; 12]) {
-    let [x, y, z] = inner;
+    let [[xa, ya, za, ta], [xb, yb, zb, tb], [xc, yc, zc, tc]] = *inner;
     for ([a, b, c, t], words) in outer.iter().zip(words.chunks_exact_mut(4)) {
-        for (((word, x), y), z) in words.iter_mut().zip(x).zip(y).zip(z) {
-            let sum = mul_wide(*a, *x).wrapping_add(mul_wide(*b, *y)).wrapping_add(mul_wide(*c, *z));
-            *word = (sum.wrapping_add(1 << 15) >> 16) as u32;
-        }
-        if let Some(moved) = words.last_mut() {
-            *moved = moved.wrapping_add(*t as u32);
+        let entry = |x: i32, y: i32, z: i32| {
+            let sum = mul_wide(*a, x).wrapping_add(mul_wide(*b, y)).wrapping_add(mul_wide(*c, z));
+            (sum.wrapping_add(1 << 15) >> 16) as u32
+        };
+        // One by one: a zip of words and numbers is a loop that shaders have too, and would then be compiled apart from
+        // them.
+        if let [x, y, z, moved] = words {
+            (*x, *y, *z) = (entry(xa, xb, xc), entry(ya, yb, yc), entry(za, zb, zc));
+            *moved = entry(ta, tb, tc).wrapping_add(*t as u32);
         }
     }
 }
@@ -165,9 +168,7 @@ pub(super) fn rows(words: &[u32; 12]) -> &[[i32; 4]; 3] {
 
 /// Keeps a transform in words.
 pub(super) fn to_words(transform: &Affine, words: &mut [u32; 12]) {
-    for (word, entry) in words.iter_mut().zip(transform.to_rows().as_flattened()) {
-        *word = *entry as u32;
-    }
+    *words = bytemuck::cast(transform.to_rows());
 }
 
 #[cfg(test)]

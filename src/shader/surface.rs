@@ -115,10 +115,15 @@ impl Surface for Unlit {
 impl Surface for Sunlit {
     #[inline]
     fn vertex(&self, vertex: &VertexRef<'_>) -> LitColor {
-        self.vertex_with(vertex, vertex.normal())
+        // The normal is looked up last. Shared with `vertex_with`, this code would be slower or larger.
+        if self.has_vertex_colors() {
+            self.colored(vertex.color()).shade(self.turned(vertex.normal()))
+        } else {
+            self.shade(self.turned(vertex.normal()))
+        }
     }
 
-    #[inline(always)]
+    #[inline]
     fn vertex_with(&self, vertex: &VertexRef<'_>, normal: [i16; 3]) -> LitColor {
         if self.has_vertex_colors() {
             self.colored(vertex.color()).shade(self.turned(normal))
