@@ -1,4 +1,6 @@
-//! Reads 3-D files for zstrip: OBJ, STL, PLY, glTF and GLB, with PNG, JPEG and BMP.
+//! Converts 3-D files for zstrip: OBJ, STL, PLY, glTF and GLB, with PNG, JPEG and BMP.
+//!
+//! [`build()`] does it in a build script. [`import()`] and [`write()`] are its two halves.
 //!
 //! [`import()`] reads a file, repairs it, and gives it back as plain data, an [`Import`], with a [`Report`] of what was
 //! repaired, dropped or noticed. It is for programs on a host, such as `build.rs`; nothing of it runs on the
@@ -28,6 +30,19 @@
 //! | simplify | triangles, a budget | fewer triangles | `simplify.rs` |
 //! | normals | faces | a normal per vertex | `normals.rs` |
 //! | cluster | triangles | clusters, meshes of at most 65,535 vertices | `cluster.rs` |
+//!
+//! # From meshes to a container
+//!
+//! | step | in | out | file |
+//! |---|---|---|---|
+//! | check | an import | one without numbers that lead nowhere | `write/check.rs` |
+//! | nodes | transforms | translations, rotations, scales | `write/nodes.rs` |
+//! | textures | images | texels of few bits, in levels | `write/textures.rs` |
+//! | parts | meshes | 16-bit positions, packed attributes, cones of clusters | `write/parts.rs` |
+//! | skins | joints | those that move something, with boxes | `write/skins.rs` |
+//! | clips | channels | few keys of 16 bits | `write/clips.rs` |
+//! | verify | bytes | worst errors | `write/verify.rs` |
+//! | save | bytes | a file that is whole or not there | `save.rs` |
 //!
 //! # Files of strangers
 //!

@@ -32,17 +32,26 @@ struct Track {
     interpolation: Interpolation,
 }
 
-/// Writes all clips. `size` is the largest side of the model, `bounds` is asked for the box of a clip.
+/// The model that clips move.
+pub(super) struct Moved<'a> {
+    pub import: &'a Import,
+    /// Its largest side.
+    pub size: f64,
+    /// Numbers of nodes in the container.
+    pub nodes: &'a [u16],
+    /// Weights of morph targets of each node.
+    pub weights: &'a [Range<usize>],
+}
+
+/// Writes all clips. `bounds` is asked for the box of each.
 pub(super) fn clips(
-    import: &Import,
+    moved: &Moved<'_>,
     options: &WriteOptions,
-    size: f64,
-    nodes: &[u16],
-    weights: &[Range<usize>],
     bounds: impl Fn(&Animation) -> Extent,
     to: &mut Sections,
     report: &mut WriteReport,
 ) -> Result<(), WriteError> {
+    let Moved { import, size, nodes, weights } = *moved;
     let mut timelines: HashMap<Vec<u16>, u32> = HashMap::new();
     let [mut merged, mut cut, mut limited, mut dropped] = [0; 4];
     for (k, animation) in import.animations.iter().enumerate() {

@@ -87,7 +87,8 @@ pub fn write(import: &Import, options: &WriteOptions) -> Result<Written, WriteEr
     skins::write(import, &pieces.list, &written, &skins, &nodes.numbers, &mut to)?;
     report.note(pieces.list.iter().filter(|piece| piece.is_posed()).count(), |parts| WriteNote::NoClusters { parts });
     let bounds = |animation: &Animation| clip_extent(import, animation);
-    clips::clips(import, options, size, &nodes.numbers, &pieces.weights, bounds, &mut to, &mut report)?;
+    let moved = clips::Moved { import, size, nodes: &nodes.numbers, weights: &pieces.weights };
+    clips::clips(&moved, options, bounds, &mut to, &mut report)?;
 
     let weights_at_rest: Vec<i16> = import
         .nodes

@@ -23,7 +23,11 @@ pub(super) fn nodes(import: &Import, to: &mut Sections, report: &mut WriteReport
     for (k, node) in import.nodes.iter().enumerate() {
         let place = |what: &str| format!("nodes[{k}], {what}");
         let mut parent = node.parent.map_or(NONE, |parent| numbers[parent]);
-        let name = &node.name.as_bytes()[..node.name.floor_char_boundary(0xFFFF)];
+        let mut end = node.name.len().min(0xFFFF);
+        while !node.name.is_char_boundary(end) {
+            end -= 1;
+        }
+        let name = &node.name.as_bytes()[..end];
         let (first, name_length) = (to.add(SectionKind::Bytes, name), name.len() as u16);
         let mut push = |translation: Vector, rotation, scale: Vector, is_named: bool| {
             let [translation, scale] = [(translation, "translation"), (scale, "scale")].map(|(v, what)| {

@@ -33,8 +33,8 @@ impl Extent {
     pub const EMPTY: Self = Self { low: [f64::INFINITY; 3], high: [f64::NEG_INFINITY; 3] };
 
     pub fn add(&mut self, p: Vector) {
-        for k in 0..3 {
-            (self.low[k], self.high[k]) = (self.low[k].min(p[k]), self.high[k].max(p[k]));
+        for ((low, high), c) in self.low.iter_mut().zip(&mut self.high).zip(p) {
+            (*low, *high) = (low.min(c), high.max(c));
         }
     }
 

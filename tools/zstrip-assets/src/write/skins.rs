@@ -1,6 +1,5 @@
 //! Skins: joints that move vertices, without those that move none.
 
-use bytemuck::Zeroable;
 use zstrip::model::container::{Influence, Joint, SectionKind, Skin};
 
 use super::parts::Piece;
@@ -108,7 +107,7 @@ pub(super) fn write(
             to.add(SectionKind::Joints, &[item]);
         }
         let joints = to.count(SectionKind::Joints) - first_joint;
-        to.add(SectionKind::Skins, &[Skin { first_joint, joints, ..Skin::zeroed() }]);
+        to.add(SectionKind::Skins, &[Skin { first_joint, joints }]);
     }
     Ok(())
 }

@@ -2,7 +2,6 @@
 
 use std::collections::HashMap;
 
-use bytemuck::Zeroable;
 use color_quant::NeuQuant;
 use image::imageops::{FilterType, resize};
 use image::{ImageBuffer, Rgba};
@@ -114,7 +113,6 @@ fn write(image: &Image, alpha: bool, options: &WriteOptions, to: &mut Sections, 
         texels,
         palette,
         alpha: if alpha { to.add(SectionKind::Bytes, &alpha_bytes) } else { NONE_LONG },
-        ..Texture::zeroed()
     };
     report.texture_bytes += data.len() + 3 * encoder.palette.len() + alpha_bytes.len();
     to.add(SectionKind::Textures, &[item]);
