@@ -21,28 +21,25 @@ use crate::write::WriteOptions;
 /// [`write_rust`]. The script runs again when the model or a file that it uses has changed. Textures are those of
 /// [`WriteOptions::default`]; [`build_with`] takes others.
 ///
-/// # Panics
-///
-/// With the text of the error, if there is one: a build script fails so.
+/// If there is an error, it is printed, and the process ends with exit code 1: the build fails with that text.
 pub fn build(path: impl AsRef<Path>, options: &Options) {
     build_with(path, options, &WriteOptions::default());
 }
 
 /// Does what [`build`] does, with options for the container.
-///
-/// # Panics
-///
-/// As [`build`] does.
 pub fn build_with(path: impl AsRef<Path>, options: &Options, write_options: &WriteOptions) {
     let path = path.as_ref();
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed={}", path.display());
-    let Some(folder) = std::env::var_os("OUT_DIR") else { panic!("OUT_DIR is not set: call this from build.rs") };
-    match convert(path, Path::new(&folder), options, write_options) {
+    let converted = match std::env::var_os("OUT_DIR") {
+        Some(folder) => convert(path, Path::new(&folder), options, write_options),
+        None => Err("OUT_DIR is not set: call this from build.rs".to_owned()),
+    };
+    match converted {
         Ok(files) => files.iter().for_each(|file| println!("cargo::rerun-if-changed={}", file.display())),
         Err(error) => {
             println!("cargo::error={}", error.replace('\n', " "));
-            panic!("{error}");
+            std::process::exit(1);
         }
     }
 }
