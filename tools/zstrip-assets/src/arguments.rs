@@ -42,7 +42,7 @@ Animation:
 Exit codes: 0 done, 1 the file cannot be converted, 2 the command line is wrong.
 ";
 
-/// What to do.
+/// The thing to do.
 pub enum Command {
     Help,
     Run(Box<Arguments>),

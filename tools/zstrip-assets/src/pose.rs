@@ -3,7 +3,7 @@
 use crate::geometry::{IDENTITY, Matrix, Vector, determinant, matrix, point, times, trs};
 use crate::model::{Animation, Bounds, Channel, Import, Interpolation, Mesh, Path, Transform};
 
-/// Where everything is at a time.
+/// The places of everything at a time.
 #[derive(Clone, Debug)]
 pub(crate) struct Posed {
     /// The matrices of all nodes to the model.

@@ -14,8 +14,8 @@ impl Drop for Part {
     }
 }
 
-/// Writes a file. Whenever it is interrupted, the path has the old file, or none, or the new one: the bytes go to a file
-/// beside it, which takes its place when it is complete.
+/// Writes a file. Whenever it is interrupted, the path has the old file, or none, or the new one: the bytes go to a
+/// file beside it, which takes its place when it is complete.
 ///
 /// # Errors
 ///

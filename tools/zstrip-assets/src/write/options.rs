@@ -7,7 +7,7 @@ pub struct WriteOptions {
     pub textures: TextureKind,
     /// The most texels per side of a texture; larger images are shrunk. Sides become powers of two.
     pub max_texture: u32,
-    /// Whether textures have smaller levels, for models that are far away: a third more bytes.
+    /// True for textures with smaller levels, for models that are far away: a third more bytes.
     pub mips: bool,
     /// The size of texture coordinates.
     pub uvs: UvSize,

@@ -34,7 +34,7 @@ pub(super) struct Piece {
     pub clusters: Vec<usize>,
     pub skin: Option<usize>,
     pub first_weight: u32,
-    /// How far weights of morph targets go, beyond 0 and 1.
+    /// The least and the largest weight of each morph target, 0 and 1 included.
     pub weights: Vec<[f64; 2]>,
     pub material: usize,
 }
@@ -188,7 +188,7 @@ fn weight_ranges(import: &Import, node: usize, mesh: &Mesh) -> Vec<[f64; 2]> {
     ranges
 }
 
-/// What parts need to know of the rest.
+/// Everything that parts need to know of the rest.
 pub(super) struct Around<'a> {
     pub import: &'a Import,
     pub uvs: UvSize,

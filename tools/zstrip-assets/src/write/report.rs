@@ -34,7 +34,7 @@ pub struct WriteReport {
     pub clips: Vec<(String, u32, usize, usize)>,
     /// The worst errors, of the container as it was read back.
     pub errors: Errors,
-    /// What was left out or changed.
+    /// Everything that was left out or changed.
     pub notes: Vec<WriteNote>,
 }
 
@@ -49,7 +49,7 @@ pub struct Errors {
     pub normal: f64,
     /// Largest difference of a texture coordinate, where 1 is the whole texture.
     pub uv: f64,
-    /// The same in texels of the texture as it was written.
+    /// That difference in texels of the texture as it was written.
     pub uv_texels: f64,
     /// Largest difference of a vertex colour, of 255.
     pub color: f64,
