@@ -1,6 +1,7 @@
 //! Meshes as readers hand them on, before they are repaired and ordered.
 
 use std::collections::BTreeMap;
+use std::path::Path;
 
 use crate::error::{Error, Kind, Place};
 use crate::files::Files;
@@ -64,6 +65,16 @@ impl<'o> Context<'o> {
     /// Returns an error in the model's file.
     pub fn error(&self, place: Place, kind: Kind, message: impl Into<String>) -> Error {
         Error::new(&self.files.model, place, kind, message)
+    }
+
+    /// Reads an image that the options name, and returns its number.
+    pub fn read_texture(&mut self, path: &Path) -> Result<usize, Error> {
+        let bytes = self.files.read_named(path)?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        // No file of a model is named by the path from here, so the key is its own.
+        let key = format!("option {}", path.display());
+        let number = self.images.of_file(&key, &name, &self.options.limits, || Ok(bytes.into()));
+        number.map_err(|message| Error::new(path, Place::File, Kind::Unsupported, message))
     }
 
     /// Takes `count` numbers from what the limits allow, before memory for them is taken.

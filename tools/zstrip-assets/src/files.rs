@@ -20,6 +20,8 @@ const BASE64: GeneralPurpose = GeneralPurpose::new(
 pub(crate) struct Files {
     /// The model's file.
     pub model: PathBuf,
+    /// The files that were read.
+    pub read: Vec<PathBuf>,
     /// The folder, without links in its path; or why there is none.
     folder: Result<PathBuf, String>,
     left: u64,
@@ -31,13 +33,18 @@ impl Files {
     pub fn new(model: &Path, limit: u64) -> Self {
         let folder = model.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let folder = folder.canonicalize().map_err(|error| format!("the folder cannot be opened: {error}"));
-        Self { model: model.to_path_buf(), folder, left: limit, limit }
+        Self { model: model.to_path_buf(), read: Vec::new(), folder, left: limit, limit }
     }
 
     /// Reads the model itself.
     pub fn read_model(&mut self) -> Result<Vec<u8>, Error> {
         let path = self.model.clone();
         self.read(&path)
+    }
+
+    /// Reads a file that the caller names.
+    pub fn read_named(&mut self, path: &Path) -> Result<Vec<u8>, Error> {
+        self.read(path)
     }
 
     /// Reads a file that the model names.
@@ -104,6 +111,7 @@ impl Files {
                 return Err(fail(Kind::Limit, message));
             }
         }
+        self.read.push(path.to_path_buf());
         Ok(bytes)
     }
 }

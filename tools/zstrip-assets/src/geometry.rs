@@ -56,8 +56,7 @@ pub(crate) fn times(a: &Matrix, b: &Matrix) -> Matrix {
     b.map(|column| std::array::from_fn(|row| (0..4).map(|k| a[k][row] * column[k]).sum()))
 }
 
-pub(crate) fn point(m: &Matrix, p: [f32; 3]) -> Vector {
-    let p = p.map(f64::from);
+pub(crate) fn point(m: &Matrix, p: Vector) -> Vector {
     std::array::from_fn(|row| m[0][row] * p[0] + m[1][row] * p[1] + m[2][row] * p[2] + m[3][row])
 }
 
@@ -71,20 +70,26 @@ pub(crate) fn matrix(transform: &Transform) -> Matrix {
     match transform {
         Transform::Matrix(columns) => columns.map(|column| column.map(f64::from)),
         Transform::Parts { translation, rotation, scale } => {
-            let [x, y, z, w] = rotation.map(f64::from);
-            let columns = [
-                [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],
-                [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],
-                [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)],
-            ];
-            let axis = |k: usize| {
-                let [a, b, c] = columns[k].map(|v| v * f64::from(scale[k]));
-                [a, b, c, 0.0]
-            };
-            let [a, b, c] = translation.map(f64::from);
-            [axis(0), axis(1), axis(2), [a, b, c, 1.0]]
+            trs(translation.map(f64::from), rotation.map(f64::from), scale.map(f64::from))
         }
     }
+}
+
+/// The matrix that scales, then turns by a quaternion of any length but 0, then moves.
+pub(crate) fn trs(translation: Vector, rotation: [f64; 4], scale: Vector) -> Matrix {
+    let length = rotation.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let [x, y, z, w] = rotation.map(|c| if length > 0.0 { c / length } else { c });
+    let columns = [
+        [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + z * w), 2.0 * (x * z - y * w)],
+        [2.0 * (x * y - z * w), 1.0 - 2.0 * (x * x + z * z), 2.0 * (y * z + x * w)],
+        [2.0 * (x * z + y * w), 2.0 * (y * z - x * w), 1.0 - 2.0 * (x * x + y * y)],
+    ];
+    let axis = |k: usize| {
+        let [a, b, c] = columns[k].map(|v| v * scale[k]);
+        [a, b, c, 0.0]
+    };
+    let [a, b, c] = translation;
+    [axis(0), axis(1), axis(2), [a, b, c, 1.0]]
 }
 
 /// The quaternion brought to length 1, and whether it was further from it than rounding explains.

@@ -1,4 +1,6 @@
-//! Reads 3-D files for zstrip: OBJ, STL, PLY, glTF and GLB, with PNG, JPEG and BMP.
+//! Converts 3-D files for zstrip: OBJ, STL, PLY, glTF and GLB, with PNG, JPEG and BMP.
+//!
+//! [`build()`] does it in a build script. [`import()`] and [`write()`] are its two halves.
 //!
 //! [`import()`] reads a file, repairs it, and gives it back as plain data, an [`Import`], with a [`Report`] of what was
 //! repaired, dropped or noticed. It is for programs on a host, such as `build.rs`; nothing of it runs on the
@@ -29,6 +31,19 @@
 //! | normals | faces | a normal per vertex | `normals.rs` |
 //! | cluster | triangles | clusters, meshes of at most 65,535 vertices | `cluster.rs` |
 //!
+//! # From meshes to a container
+//!
+//! | step | in | out | file |
+//! |---|---|---|---|
+//! | check | an import | one without numbers that lead nowhere | `write/check.rs` |
+//! | nodes | transforms | translations, rotations, scales | `write/nodes.rs` |
+//! | textures | images | texels of few bits, in levels | `write/textures.rs` |
+//! | parts | meshes | 16-bit positions, packed attributes, cones of clusters | `write/parts.rs` |
+//! | skins | joints | those that move something, with boxes | `write/skins.rs` |
+//! | clips | channels | few keys of 16 bits | `write/clips.rs` |
+//! | verify | bytes | worst errors | `write/verify.rs` |
+//! | save | bytes | a file that is whole or not there | `save.rs` |
+//!
 //! # Files of strangers
 //!
 //! Whatever a file holds, the result is an import or an [`Error`] that says where the file is wrong. Paths in it lead
@@ -55,11 +70,15 @@ mod ply;
 mod pose;
 mod process;
 mod report;
+mod save;
+mod script;
 mod simplify;
+mod source;
 mod stl;
 mod triangulate;
 mod vertices;
 mod weld;
+mod write;
 
 use std::path::Path as FilePath;
 
@@ -70,6 +89,10 @@ pub use model::{
 };
 pub use options::{Center, Limits, Normals, Options, UpAxis, Winding};
 pub use report::{Counts, Note, Report};
+pub use save::save;
+pub use script::{build, build_with};
+pub use source::write_rust;
+pub use write::{Errors, TextureKind, UvSize, WriteError, WriteNote, WriteOptions, WriteReport, Written, write};
 
 use draft::Context;
 use files::Files;
@@ -163,6 +186,7 @@ pub fn import_with_progress(
     }
 
     let mut import = scene.import;
+    let image = options.texture.as_deref().map(|path| context.read_texture(path)).transpose()?;
     import.images = std::mem::take(&mut context.images.list);
     // Drafts that a node shows together are parts of one shape.
     let mut groups = Vec::new();
@@ -191,6 +215,9 @@ pub fn import_with_progress(
             import.meshes.extend(meshes);
         }
     }
+    if let Some(image) = image {
+        paint(&mut import, image);
+    }
     for node in &mut import.nodes {
         node.meshes = node.meshes.iter().flat_map(|draft| meshes_of_drafts[*draft].clone()).collect();
     }
@@ -199,6 +226,7 @@ pub fn import_with_progress(
     }
 
     let mut report = context.report;
+    report.files = context.files.read;
     report.add(Note::Mirrored { nodes: import.mirrored() });
     report.after = Counts {
         vertices: import.meshes.iter().map(|mesh| mesh.vertices.len()).sum(),
@@ -207,4 +235,15 @@ pub fn import_with_progress(
     };
     report.bounds = import.bounds();
     Ok((import, report))
+}
+
+/// Gives an image to all materials that have no texture, and a material to all meshes that have none.
+fn paint(import: &mut Import, image: usize) {
+    if import.meshes.iter().any(|mesh| mesh.material.is_none()) {
+        let white = import.materials.len();
+        import.materials.push(Material::default());
+        import.meshes.iter_mut().for_each(|mesh| mesh.material = mesh.material.or(Some(white)));
+    }
+    let texture = Texture { image, wrap: [Wrap::Repeat; 2], nearest: false };
+    import.materials.iter_mut().for_each(|material| material.texture = material.texture.or(Some(texture)));
 }

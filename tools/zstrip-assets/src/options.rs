@@ -1,5 +1,7 @@
 //! Choices of the caller, and limits of what a file may ask for.
 
+use std::path::PathBuf;
+
 /// Choices for [`import`](crate::import()).
 ///
 /// ```
@@ -34,6 +36,8 @@ pub struct Options {
     pub cluster_vertices: usize,
     /// The most triangles of a cluster: a multiple of 4, up to 512.
     pub cluster_triangles: usize,
+    /// An image for all materials that have no texture, as for OBJ files without MTL. It may lie anywhere.
+    pub texture: Option<PathBuf>,
     /// Limits of what a file may ask for.
     pub limits: Limits,
 }
@@ -52,6 +56,7 @@ impl Default for Options {
             max_vertices: 65_535,
             cluster_vertices: 64,
             cluster_triangles: 124,
+            texture: None,
             limits: Limits::default(),
         }
     }

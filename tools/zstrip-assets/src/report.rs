@@ -1,6 +1,7 @@
 //! The report of an import: what was repaired, dropped or noticed.
 
 use std::fmt;
+use std::path::PathBuf;
 
 use crate::model::Bounds;
 
@@ -24,6 +25,8 @@ pub struct Report {
     pub after: Counts,
     /// The box around the model in its pose without animation, after options moved it.
     pub bounds: Option<Bounds>,
+    /// The files that were read, the model's own first.
+    pub files: Vec<PathBuf>,
     /// Everything that was repaired, dropped or noticed, in the order in which it was found.
     pub notes: Vec<Note>,
 }

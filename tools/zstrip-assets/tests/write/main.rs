@@ -1,0 +1,12 @@
+//! Containers that the tool writes: read back, drawn, and refused.
+
+mod command;
+mod failures;
+mod figures;
+mod pictures;
+#[path = "../../../../tests/reference/mod.rs"]
+mod reference;
+mod round_trip;
+#[allow(dead_code, reason = "these tests use a part of it")]
+#[path = "../import/support.rs"]
+mod support;
