@@ -21,6 +21,9 @@
 //! reads `FOLDER/m0+.counts` and so on, and writes `costs.csv` and tables into the folder.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
+#[cfg(not(target_os = "none"))]
+#[path = "costs/calls.rs"]
+mod calls;
 #[cfg(target_os = "none")]
 #[path = "firmware/count.rs"]
 mod count;

@@ -1,0 +1,244 @@
+//! A model, a panel and a format of pixels come in; frames go out, drawn as firmware draws them: in strips, with a depth
+//! buffer, records and a pose in memory that is lent.
+
+use super::turntable::{self, BACKGROUND, Panel, Step, Turntable};
+use super::{Picture, PreviewError};
+use std::path::Path;
+use zstrip::bytemuck::{Pod, Zeroable, cast_slice, cast_slice_mut};
+use zstrip::color::{Dithered, PixelFormat, Rgb565Be};
+use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888};
+use zstrip::frame::Renderer;
+use zstrip::light::Sunlit;
+use zstrip::mesh::Mesh;
+use zstrip::model::container::{Header, Section, SectionKind};
+use zstrip::model::{Model, Placed, Pose};
+use zstrip::scene::Scene;
+use zstrip::target::{Stats, Strip, WithDepth, WithRecords, records_len};
+use zstrip::vertex::Viewport;
+
+/// The bytes of a container, which begin at a multiple of 4.
+#[derive(Clone, Debug)]
+pub struct Container {
+    words: Vec<u32>,
+    length: usize,
+}
+
+impl Container {
+    /// Copies bytes. Whether they are a container shows when a [`Stage`] is made of them.
+    #[must_use]
+    pub fn new(bytes: &[u8]) -> Self {
+        let mut words = vec![0; bytes.len().div_ceil(4)];
+        cast_slice_mut(&mut words)[..bytes.len()].copy_from_slice(bytes);
+        Self { words, length: bytes.len() }
+    }
+
+    /// Reads a file.
+    ///
+    /// # Errors
+    ///
+    /// If the file cannot be read.
+    pub fn read(path: &Path) -> Result<Self, PreviewError> {
+        let bytes = std::fs::read(path).map_err(|error| PreviewError::Io(path.to_owned(), error))?;
+        Ok(Self::new(&bytes))
+    }
+
+    /// Returns the bytes.
+    #[must_use]
+    pub fn bytes(&self) -> &[u8] {
+        &cast_slice(&self.words)[..self.length]
+    }
+}
+
+/// A format of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// 16 bits in the processor's byte order.
+    Rgb565,
+    /// 16 bits, the higher byte first, as most panels take them.
+    Rgb565Be,
+    /// 24 bits.
+    Rgb888,
+    /// Grey of 8 bits.
+    Gray8,
+    /// 16 bits, dithered.
+    Dithered,
+}
+
+impl Format {
+    /// All formats whose costs are known, with their names on the command line and in the table of costs.
+    pub const ALL: [(Self, &'static str, &'static str); 5] = [
+        (Self::Rgb565, "rgb565", "Rgb565"),
+        (Self::Rgb565Be, "rgb565be", "Rgb565Be"),
+        (Self::Rgb888, "rgb888", "Rgb888"),
+        (Self::Gray8, "gray8", "Gray8"),
+        (Self::Dithered, "dithered", "Dithered<Rgb565>"),
+    ];
+
+    /// Returns the bytes of a pixel.
+    #[must_use]
+    pub const fn bytes(self) -> usize {
+        match self {
+            Self::Rgb565 | Self::Rgb565Be | Self::Dithered => 2,
+            Self::Rgb888 => 3,
+            Self::Gray8 => 1,
+        }
+    }
+}
+
+/// The most words of records that a frame is drawn with: 64 MB.
+const MOST_RECORDS: usize = 1 << 24;
+
+/// A checked model, ready to be drawn on a panel.
+#[derive(Clone, Copy, Debug)]
+pub struct Stage<'m> {
+    pub(super) bytes: &'m [u8],
+    pub(super) model: Model<'m>,
+    pub(super) panel: Panel,
+    pub(super) format: Format,
+    pub(super) table: Turntable,
+    /// Words of records that the model takes at most, unless triangles are clipped.
+    pub(super) most_records: usize,
+}
+
+/// The closure of a frame.
+pub(super) type DrawScene<'d, P> = dyn FnMut(&mut Scene<'_, Strip<'_, P, WithDepth, WithRecords>>) + 'd;
+
+impl<'m> Stage<'m> {
+    /// Checks a model and a panel.
+    ///
+    /// # Errors
+    ///
+    /// If the bytes are not a container, a number of the panel is out of its range, or the model is beyond the range
+    /// of the library's numbers.
+    pub fn new(container: &'m Container, panel: Panel, format: Format) -> Result<Self, PreviewError> {
+        let most = u32::from(Viewport::MAX_SIZE);
+        for (what, number, most) in [
+            ("a screen's width", panel.width, most),
+            ("a screen's height", panel.height, most),
+            ("a strip's height", panel.rows, panel.height),
+            ("a zoom", panel.zoom, 10_000),
+        ] {
+            if !(1..=most).contains(&number) {
+                return Err(PreviewError::Panel(what, number, 1..=most));
+            }
+        }
+        let bytes = container.bytes();
+        let model = Model::from_bytes(bytes)?;
+        let table = Turntable::new(&model, &panel)?;
+        let mut stage = Self { bytes, model, panel, format, table, most_records: 0 };
+        let strips = panel.height.div_ceil(panel.rows) as usize;
+        stage.most_records = stage.nodes_parts().fold(strips, |words, part| {
+            let mesh = stage.model.mesh(part);
+            let (vertices, triangles) = mesh.map_or((0, 0), |mesh| (mesh.vertex_count(), mesh.triangle_count()));
+            words.saturating_add(records_len(0, 1, vertices, 4, triangles)).min(MOST_RECORDS)
+        });
+        Ok(stage)
+    }
+
+    /// Returns the model.
+    #[must_use]
+    pub const fn model(&self) -> Model<'m> {
+        self.model
+    }
+
+    /// Returns the number of frames in which the model turns round and plays its clips.
+    #[must_use]
+    pub fn steps(&self) -> u32 {
+        turntable::steps(&self.model)
+    }
+
+    /// Returns one of these frames.
+    #[must_use]
+    pub fn step(&self, number: u32) -> Step {
+        turntable::step(&self.model, number)
+    }
+
+    /// Draws a frame.
+    ///
+    /// # Errors
+    ///
+    /// If the library does not draw it, which is a fault.
+    pub fn picture(&self, step: &Step) -> Result<(Picture, Stats), PreviewError> {
+        match self.format {
+            Format::Rgb565 => self.picture_in::<Rgb565>(step),
+            Format::Rgb565Be => self.picture_in::<Rgb565Be>(step),
+            Format::Rgb888 => self.picture_in::<Rgb888>(step),
+            Format::Gray8 => self.picture_in::<Gray8>(step),
+            Format::Dithered => self.picture_in::<Dithered<Rgb565>>(step),
+        }
+    }
+
+    fn picture_in<P: PixelFormat>(&self, step: &Step) -> Result<(Picture, Stats), PreviewError> {
+        let mut picture = Picture::new(self.panel.width, self.panel.height);
+        let stats = self.posed(step, |placed, _| {
+            self.frame::<P>(self.panel.rows, &mut |row, pixels| picture.put(row, pixels), &mut |scene| {
+                placed.draw(scene)
+            })
+        })??;
+        Ok((picture, stats))
+    }
+
+    /// Places the model in a frame, and hands it on with the meshes of its pose.
+    pub(super) fn posed<T>(
+        &self,
+        step: &Step,
+        then: impl for<'p> FnOnce(&Placed<'p, Sunlit>, &dyn Fn(usize) -> Option<Mesh<'p>>) -> T,
+    ) -> Result<T, PreviewError> {
+        let mut places = vec![None; Model::draws(self.bytes)];
+        let world = self.table.world(step.turn);
+        let (camera, sun) = (&self.table.camera, &self.table.sun);
+        match step.motion {
+            Some(motion) => {
+                let mut words = vec![0; Pose::words(self.bytes)];
+                let mut pose = self.model.pose(&mut words)?;
+                pose.play(motion);
+                let placed = pose.place(&world, camera, sun, &mut places)?;
+                Ok(then(&placed, &|part| pose.mesh(part)))
+            }
+            None => {
+                let placed = self.model.place(&world, camera, sun, &mut places)?;
+                Ok(then(&placed, &|part| self.model.mesh(part)))
+            }
+        }
+    }
+
+    /// Draws a frame in strips of `rows` rows, and hands on their colours with the number of their first row.
+    pub(super) fn frame<P: PixelFormat>(
+        &self,
+        rows: u32,
+        put: &mut dyn FnMut(u32, &mut dyn Iterator<Item = [u8; 3]>),
+        draw: &mut DrawScene<'_, P>,
+    ) -> Result<Stats, PreviewError> {
+        let fault = |error: &dyn std::fmt::Display| PreviewError::Frame(error.to_string());
+        let pixels = self.panel.width as usize * rows as usize;
+        let (mut color, mut depth) = (vec![P::Raw::zeroed(); pixels], vec![0; pixels]);
+        let mut records = vec![0; self.most_records];
+        let renderer = Renderer::<P>::new(self.panel.screen()).map_err(|error| fault(&error))?;
+        let renderer = renderer.with_depth(&mut depth).map_err(|error| fault(&error))?;
+        let mut renderer = renderer.with_records(&mut records);
+        let mut frame = renderer.begin(BACKGROUND);
+        while let Some(strip) = frame.next_strip(&mut color, &mut *draw).map_err(|error| fault(&error))? {
+            let first = strip.area().top_left.y as u32;
+            put(first, &mut strip.pixels().iter().map(|raw| P::unpack(*raw)));
+        }
+        Ok(frame.stats())
+    }
+
+    /// Returns the items of a section, which the library has checked.
+    pub(super) fn items<T: Pod>(&self, kind: SectionKind) -> &'m [T] {
+        let Section { offset, count } = self.header().table[kind as usize];
+        let items = self.bytes.get(offset as usize..).and_then(|rest| rest.get(..count as usize * size_of::<T>()));
+        items.and_then(|bytes| zstrip::bytemuck::try_cast_slice(bytes).ok()).unwrap_or_default()
+    }
+
+    pub(super) fn header(&self) -> Header {
+        let head = self.bytes.get(..size_of::<Header>());
+        head.map_or_else(Header::zeroed, zstrip::bytemuck::pod_read_unaligned)
+    }
+
+    /// Returns the parts that nodes draw, one for each draw.
+    pub(super) fn nodes_parts(&self) -> impl Iterator<Item = usize> {
+        let nodes = self.items::<zstrip::model::container::Node>(SectionKind::Nodes);
+        nodes.iter().flat_map(|node| (0..node.parts).map(|k| usize::from(node.first_part) + usize::from(k)))
+    }
+}
