@@ -1,5 +1,5 @@
-//! A model, a panel and a format of pixels come in; frames go out, drawn as firmware draws them: in strips, with a depth
-//! buffer, records and a pose in memory that is lent.
+//! A model, a panel and a format of pixels come in; frames go out, drawn as firmware draws them: in strips, with a
+//! depth buffer, records and a pose in memory that is lent.
 
 use super::turntable::{self, BACKGROUND, Panel, Step, Turntable};
 use super::{Picture, PreviewError};
@@ -99,6 +99,9 @@ pub struct Stage<'m> {
     /// Words of records that the model takes at most, unless triangles are clipped.
     pub(super) most_records: usize,
 }
+
+/// Takes the colours of a strip, and the number of its first row.
+type PutStrip<'p> = dyn FnMut(u32, &mut dyn Iterator<Item = [u8; 3]>) + 'p;
 
 /// The closure of a frame.
 pub(super) type DrawScene<'d, P> = dyn FnMut(&mut Scene<'_, Strip<'_, P, WithDepth, WithRecords>>) + 'd;
@@ -206,7 +209,7 @@ impl<'m> Stage<'m> {
     pub(super) fn frame<P: PixelFormat>(
         &self,
         rows: u32,
-        put: &mut dyn FnMut(u32, &mut dyn Iterator<Item = [u8; 3]>),
+        put: &mut PutStrip<'_>,
         draw: &mut DrawScene<'_, P>,
     ) -> Result<Stats, PreviewError> {
         let fault = |error: &dyn std::fmt::Display| PreviewError::Frame(error.to_string());

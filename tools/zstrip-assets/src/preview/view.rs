@@ -37,7 +37,7 @@ const FRAME: u64 = 50;
 /// Heights of strips that keys choose; the height of the screen is the last one.
 const ROWS: [u32; 6] = [1, 4, 8, 16, 32, 64];
 
-/// What a window shows, and what keys change.
+/// The picture in a window, as keys change it.
 struct Show {
     settings: Settings,
     clip: usize,
@@ -170,7 +170,7 @@ fn write_gif(stage: &Stage<'_>, show: &Show, path: &Path) -> Result<u64, Preview
 
 /// Frames of a file, at most.
 const MOST_FRAMES: u64 = 240;
-/// How fast colours are chosen, from 1, the best, to 30.
+/// The speed of choosing colours, from 1, the best, to 30.
 const SPEED: i32 = 10;
 
 /// Opens a window, or returns why there is none.

@@ -110,7 +110,7 @@ impl Ram {
     }
 }
 
-/// What a model costs on a panel.
+/// The cost of a model on a panel.
 #[derive(Clone, Debug)]
 pub struct Estimate {
     /// Width, height and rows of a strip.
