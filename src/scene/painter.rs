@@ -104,7 +104,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let Range { start: mut y, end } = rows.of(v);
         while y < end {
             // Not moved out: that would link `memcpy`.
-            let mut place = rows.place(self.target, Some(y), &mut []);
+            let mut place = rows.place(self.target, Some(y), None);
             let Some(target) = &mut place else { break };
             y = target.rows.end;
             let triangle = SmallTriangle { target, v: [a, b, c], state: None, test };

@@ -7,9 +7,7 @@ use super::scene::{Scene, Target};
 use super::small_rows::{Raw, SmallRows};
 use super::state::State;
 use crate::raster::PixelRect;
-use crate::span::{
-    BiasSteps, DepthTest, MOST_CARRIED, Shader, SmallResult, SmallTarget, SmallTriangle, face_of, goes_on,
-};
+use crate::span::{BiasSteps, DepthTest, LeftState, Shader, SmallResult, SmallTarget, SmallTriangle, face_of, goes_on};
 use crate::target::{DrawTriangles, Framebuffer, TriangleRecord, Triangles};
 use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, PackedVertex, ScreenVertex, Varyings, VertexShader};
 
@@ -147,13 +145,15 @@ impl<F: Framebuffer> DrawTriangles for SmallDrawer<'_, '_, '_, F> {
 
     #[inline(always)]
     fn take_state(&mut self) -> &[u32] {
-        let Some(place) = self.place else { return &[] };
-        place.state.get(..core::mem::take(&mut place.state_words)).unwrap_or_default()
+        match self.place.as_mut().and_then(|place| place.state.as_mut()) {
+            Some(left) => left.words.get(..core::mem::take(&mut left.length)).unwrap_or_default(),
+            None => &[],
+        }
     }
 
     #[inline(always)]
     fn go_on(&mut self, state: &mut [u32]) -> Option<bool> {
-        let place = self.place.as_mut().filter(|place| !place.state.is_empty())?;
+        let place = self.place.as_mut().filter(|place| place.state.is_some())?;
         self.drawer.go_on(place, state);
         Some(goes_on(state))
     }
@@ -185,9 +185,9 @@ impl<F: Framebuffer> Scene<'_, F> {
         let fits = drawer.fits();
         // States are carried on if the rows of the next strip follow those that are drawn here.
         let carries = F::CARRIES && !waiting && clip.y.end == target.rows.end;
-        let mut state = [0; MOST_CARRIED];
+        let mut state = LeftState::NONE;
         loop {
-            let state: &mut [u32] = if carries { &mut state } else { &mut [] };
+            let state = if carries { Some(&mut state) } else { None };
             let mut place = if fits { rows.place(target, None, state) } else { None };
             let tried = place.is_some();
             let draw = &mut SmallDrawer { place: &mut place, drawer };

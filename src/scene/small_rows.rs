@@ -4,7 +4,7 @@ use super::scene::Target;
 use super::state::{State, Winding};
 use crate::color::PixelFormat;
 use crate::raster::{PixelRect, first_centre};
-use crate::span::{BiasSteps, DepthBias, SmallTarget};
+use crate::span::{BiasSteps, DepthBias, LeftState, SmallTarget};
 use crate::target::Framebuffer;
 use crate::vertex::ScreenVertex;
 use core::ops::Range;
@@ -45,7 +45,7 @@ impl<'p> SmallRows<'p> {
         &self,
         target: &'t mut Target<'_, F>,
         row: Option<i32>,
-        state: &'t mut [u32],
+        state: Option<&'t mut LeftState>,
     ) -> Option<SmallTarget<'t, Raw<F>>> {
         let (width, first) = (usize::from(self.screen.0), target.rows.start);
         let length = width.wrapping_mul((target.rows.end - first) as usize);
@@ -59,17 +59,6 @@ impl<'p> SmallRows<'p> {
             (target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, y..y + 1)
         };
         let Self { screen, clip, clockwise_fronts, bias } = *self;
-        Some(SmallTarget {
-            color,
-            depth,
-            first,
-            columns: clip.x.clone(),
-            rows,
-            screen,
-            clockwise_fronts,
-            bias,
-            state,
-            state_words: 0,
-        })
+        Some(SmallTarget { color, depth, first, columns: clip.x.clone(), rows, screen, clockwise_fronts, bias, state })
     }
 }

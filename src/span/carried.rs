@@ -26,6 +26,18 @@ pub(crate) const STATE_UNIT: usize = 12;
 /// Most words of a state.
 pub(crate) const MOST_CARRIED: usize = 4 * STATE_UNIT;
 
+/// The state that a triangle has left for the next strip.
+pub struct LeftState {
+    pub(crate) words: [u32; MOST_CARRIED],
+    /// Number of words that it takes; 0 if there is none.
+    pub(crate) length: usize,
+}
+
+impl LeftState {
+    /// No state.
+    pub(crate) const NONE: Self = Self { words: [0; MOST_CARRIED], length: 0 };
+}
+
 /// Bit of word 0 that is set if the bend is on the right.
 const RIGHT: u32 = 1 << 15;
 

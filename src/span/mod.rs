@@ -21,7 +21,7 @@ mod texels;
 mod textured;
 mod uv_stepper;
 
-pub(crate) use carried::{CARRIED, MOST_CARRIED, STATE_UNIT, face_of, goes_on};
+pub(crate) use carried::{CARRIED, LeftState, MOST_CARRIED, STATE_UNIT, face_of, goes_on};
 pub(crate) use channels::ChannelBrush;
 pub use color_setup::ColorSetup;
 pub use depth::{Carrying, Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff, DepthState, DepthTest};

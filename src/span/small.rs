@@ -14,8 +14,8 @@
 //! part in the decision. Coverage and depth are, bit for bit, those of the way that large triangles take.
 
 use super::carried::{
-    CARRIED, Outline, STATE_UNIT, column_and_slopes, count_row, edge_from_bend, edges_and_depth, set_edges_and_depth,
-    take_rows,
+    CARRIED, LeftState, Outline, STATE_UNIT, column_and_slopes, count_row, edge_from_bend, edges_and_depth,
+    set_edges_and_depth, take_rows,
 };
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
@@ -39,10 +39,8 @@ pub struct SmallTarget<'a, R> {
     pub(crate) clockwise_fronts: bool,
     /// Depth bias, if there may be one, and how it is computed.
     pub(crate) bias: Option<(BiasSteps, DepthBias)>,
-    /// Words in which a triangle leaves its state for the next strip; none if it is not to.
-    pub(crate) state: &'a mut [u32],
-    /// Number of words that it has filled in.
-    pub(crate) state_words: usize,
+    /// Words in which a triangle leaves its state for the next strip; `None` if it is not to.
+    pub(crate) state: Option<&'a mut LeftState>,
 }
 
 /// A triangle that may be small, as [`Shader::small`](crate::span::Shader::small) gets it: its target, and its corners,
@@ -202,10 +200,12 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     {
         let below = target.rows.end - row;
         let outline = Outline { sides, x: start, p, column, edges: [left, right], depth, dz: (dz_dx, dz_dy) };
-        if let Some((words, state)) = target.state.split_first_chunk_mut() {
+        if let Some(left) = &mut target.state
+            && let Some((words, state)) = left.words.split_first_chunk_mut()
+        {
             outline.store(below, words);
             rows.save(below as u32, state);
-            target.state_words = (CARRIED + length).next_multiple_of(STATE_UNIT);
+            left.length = (CARRIED + length).next_multiple_of(STATE_UNIT);
         }
     }
     let width = usize::from(target.screen.0);

@@ -1,7 +1,7 @@
 //! Triangles whose state is carried on from strip to strip. The record of such a triangle has the place of the state in
 //! the word of its face, and `NONE` for its third vertex; both are kept in the state.
 
-use super::layout::NONE;
+use super::layout::{NONE, TRIANGLE};
 use super::state_pool::Place;
 use super::triangles::{DrawTriangles, TriangleRecord, Triangles, halves};
 use crate::span::{CARRIED, STATE_UNIT};
@@ -11,7 +11,8 @@ impl Triangles<'_> {
     #[inline(never)]
     pub(super) fn keep(&mut self, number: u16, triangle: &TriangleRecord, state: &[u32]) {
         let [_, _, k] = triangle.corners;
-        let Some(place) = self.layout.pool.take(self.triangles, state.len()) else { return };
+        let taken = TRIANGLE * usize::from(self.count);
+        let Some(place) = self.layout.pool.take(self.triangles, taken, state.len()) else { return };
         let Some(words) = place.words(self.triangles) else { return };
         for (words, state) in words.chunks_exact_mut(STATE_UNIT).zip(state.chunks_exact(STATE_UNIT)) {
             // Arrays: a copy of slices would link `memcpy`.

@@ -290,8 +290,7 @@ impl<'a> Records<'a> {
 
     /// Makes the words that recording has left a pool for the states of triangles.
     pub(crate) fn begin_carrying(&mut self) {
-        let (front, triangles) = (self.layout.front, TRIANGLE * usize::from(self.layout.triangles));
-        self.layout.pool = StatePool::new(self.words.len().saturating_sub(front), triangles);
+        self.layout.pool = StatePool::new(self.words.len().saturating_sub(self.layout.front));
     }
 
     /// Starts replaying a strip of the band.

@@ -37,21 +37,21 @@ impl Place {
 /// The places that are free: a part of the records' layout.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct StatePool {
-    /// The first word that was never taken, and the first one after the free words, as [`Place`]s have them.
+    /// The first word that was never taken, as [`Place`]s have it.
     front: u32,
-    end: u32,
     /// The first free place of each size; 0 if there is none. The first word of a free place tells the next one.
     free: [u32; SIZES],
 }
 
 impl StatePool {
-    /// Makes a pool of free words, which begin and end so many words before the end of all.
-    pub(super) const fn new(front: usize, end: usize) -> Self {
-        Self { front: front as u32, end: end as u32, free: [0; SIZES] }
+    /// Makes a pool of free words, which begin so many words before the end of all.
+    pub(super) const fn new(front: usize) -> Self {
+        Self { front: front as u32, free: [0; SIZES] }
     }
 
-    /// Takes a place for a number of words, a multiple of [`STATE_UNIT`], if there is one.
-    pub(super) fn take(&mut self, all: &mut [u32], words: usize) -> Option<Place> {
+    /// Takes a place for a number of words, a multiple of [`STATE_UNIT`], if there is one. The last `taken` words are
+    /// not free.
+    pub(super) fn take(&mut self, all: &mut [u32], taken: usize, words: usize) -> Option<Place> {
         let size = (words / STATE_UNIT).checked_sub(1)?;
         let free = self.free.get_mut(size)?;
         if *free != 0 {
@@ -60,7 +60,7 @@ impl StatePool {
             return Some(place);
         }
         let front = self.front.min(all.len() as u32);
-        if front < self.end + words as u32 {
+        if front < (taken + words) as u32 {
             return None;
         }
         self.front = front - words as u32;
@@ -90,14 +90,16 @@ mod tests {
         for case in 0..200 {
             let (before, free, after) = (rng.below(50) as usize, rng.below(600) as usize, rng.below(50) as usize);
             let mut all = vec![0; before + free + after];
-            let mut pool = StatePool::new(free + after, after);
+            let mut pool = StatePool::new(free + after);
             let mut taken: Vec<(Place, u32)> = Vec::new();
             for number in 1..300 {
                 if rng.below(3) == 0 && !taken.is_empty() {
                     let (place, number) = taken.swap_remove(rng.below(taken.len() as u64) as usize);
                     assert!(place.words(&mut all).expect("words").iter().all(|word| *word == number), "case {case}");
                     pool.give_back(&mut all, place);
-                } else if let Some(place) = pool.take(&mut all, STATE_UNIT * (1 + rng.below(SIZES as u64) as usize)) {
+                } else if let Some(place) =
+                    pool.take(&mut all, after, STATE_UNIT * (1 + rng.below(SIZES as u64) as usize))
+                {
                     assert_eq!(Place::of_word(place.word()), place);
                     place.words(&mut all).expect("words").fill(number);
                     taken.push((place, number));
@@ -116,13 +118,13 @@ mod tests {
     fn all_words_are_used() {
         for missing in [0, 5] {
             let mut all = vec![0; 10 * STATE_UNIT + 7 - missing];
-            let mut pool = StatePool::new(10 * STATE_UNIT + 7, 7);
+            let mut pool = StatePool::new(10 * STATE_UNIT + 7);
             for _ in 0..3 {
-                let places: Vec<_> = core::iter::from_fn(|| pool.take(&mut all, STATE_UNIT)).collect();
+                let places: Vec<_> = core::iter::from_fn(|| pool.take(&mut all, 7, STATE_UNIT)).collect();
                 assert_eq!(places.len(), if missing > 0 { 9 } else { 10 });
                 places.into_iter().for_each(|place| pool.give_back(&mut all, place));
             }
         }
-        assert_eq!(StatePool::new(0, 0).take(&mut [], 0), None);
+        assert_eq!(StatePool::new(0).take(&mut [], 0, 0), None);
     }
 }
