@@ -2,9 +2,9 @@
 //! the records have left. The next strip has nothing to set up again.
 //!
 //! ```text
-//! word   31 .. 16   15 .. 0 0      bend       rows        rows to the bend, where one side gets another edge, negative
-//! below it; rows to the end,
-//!                               and bit 15 if the bend is on the right
+//! word   31 .. 16   15 .. 0
+//! 0      bend       rows        rows to the bend, where one side gets another edge, negative below it; rows to the
+//!                               end, and bit 15 if the bend is on the right
 //! 1      vertex     column      number of the third vertex, for the records; the first column
 //! 2, 3   left edge              see `ShortEdge`
 //! 4, 5   right edge
@@ -48,7 +48,7 @@ const fn pair(low: i32, high: i32) -> u32 {
 }
 
 /// A triangle at a row.
-pub(crate) struct Outline {
+pub(crate) struct TriangleAtRow {
     /// The corners on the left and on the right, relative to the highest one, x and y of each, 24.8.
     pub(crate) sides: [i32; 4],
     /// The highest corner, relative to the first column.
@@ -64,7 +64,7 @@ pub(crate) struct Outline {
     pub(crate) dz: (i32, i32),
 }
 
-impl Outline {
+impl TriangleAtRow {
     /// Puts the triangle into words, `down` rows further down. It has rows left there.
     ///
     /// # Format

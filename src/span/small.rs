@@ -14,8 +14,8 @@
 //! part in the decision. Coverage and depth are, bit for bit, those of the way that large triangles take.
 
 use super::carried::{
-    CARRIED, LeftState, Outline, STATE_UNIT, column_and_slopes, count_row, edge_from_bend, edges_and_depth,
-    set_edges_and_depth, take_rows,
+    CARRIED, LeftState, STATE_UNIT, TriangleAtRow, column_and_slopes, count_row, edge_from_bend, edges_and_depth,
+    goes_on, set_edges_and_depth, take_rows,
 };
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
@@ -199,11 +199,11 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         && let Some(length) = B::Rows::WORDS
     {
         let below = target.rows.end - row;
-        let outline = Outline { sides, x: start, p, column, edges: [left, right], depth, dz: (dz_dx, dz_dy) };
+        let triangle = TriangleAtRow { sides, x: start, p, column, edges: [left, right], depth, dz: (dz_dx, dz_dy) };
         if let Some(left) = &mut target.state
             && let Some((words, state)) = left.words.split_first_chunk_mut()
         {
-            outline.store(below, words);
+            triangle.store(below, words);
             rows.save(below as u32, state);
             left.length = (CARRIED + length).next_multiple_of(STATE_UNIT);
         }
@@ -238,13 +238,9 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
                 left = ShortEdge::outlined(start + bx, cx - bx, cy - by, p - by);
             }
         }
-        let (from, past) = (left.column(), right.column());
-        if from < past {
-            let (start, length) = (at.wrapping_add(from as usize), (past - from) as usize);
-            let Some(depths) = subslice(depths, start, length) else { return SmallResult::Drawn };
-            let Some(colors) = subslice(colors, start, length) else { return SmallResult::Drawn };
-            let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
-            rows.span(colors, depths, z, dz_dx, from as i32, test);
+        let columns = left.column()..right.column();
+        if draw_span(&rows, (colors, depths), at, columns, (depth, dz_dx), test).is_none() {
+            return SmallResult::Drawn;
         }
         left.step();
         right.step();
@@ -279,13 +275,9 @@ fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         if let Some((edge, is_right)) = edge_from_bend(words) {
             *if is_right { &mut right } else { &mut left } = edge;
         }
-        let (from, past) = (left.column(), right.column());
-        if from < past {
-            let (start, length) = (at.wrapping_add(from as usize), (past - from) as usize);
-            let Some(depths) = subslice(depths, start, length) else { break };
-            let Some(colors) = subslice(colors, start, length) else { break };
-            let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
-            rows.span(colors, depths, z, dz_dx, from as i32, test);
+        let columns = left.column()..right.column();
+        if draw_span(&rows, (colors, depths), at, columns, (depth, dz_dx), test).is_none() {
+            break;
         }
         left.step();
         right.step();
@@ -295,8 +287,32 @@ fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         count_row(words);
         count -= 1;
     }
-    set_edges_and_depth(words, left, right, depth);
-    rows.save(0, state);
+    if goes_on(words) {
+        set_edges_and_depth(words, left, right, depth);
+        rows.save(0, state);
+    }
+}
+
+/// Draws the span of a row in which the first column is pixel `at`. `depth` is the depth there, and its change. Returns
+/// `None` if the target ends before the span does.
+#[inline(always)]
+fn draw_span<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
+    rows: &R,
+    (colors, depths): (&mut [P::Raw], &mut [D::Depth]),
+    at: usize,
+    columns: Range<u32>,
+    (depth, dz_dx): (u32, i32),
+    test: D,
+) -> Option<()> {
+    let Range { start: from, end: past } = columns;
+    if from < past {
+        let (start, length) = (at.wrapping_add(from as usize), (past - from) as usize);
+        let depths = subslice(depths, start, length)?;
+        let colors = subslice(colors, start, length)?;
+        let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
+        rows.span(colors, depths, z, dz_dx, from as i32, test);
+    }
+    Some(())
 }
 
 /// Returns whether a triangle covers a pixel in some rows. Its highest corner is at `x`, relative to the first column;
