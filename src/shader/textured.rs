@@ -5,11 +5,11 @@ use super::surface::Surface;
 use crate::color::PixelFormat;
 use crate::math::leading_zeros;
 use crate::span::{
-    DepthTest, Fragment, Light, Primitive, STEP, Shader, SmallResult, SmallTriangle, SpanOf, TexelSource,
-    TriangleSetup, UvStepper, draw_fragments, texture_span,
+    DepthTest, Fragment, Light, Primitive, STEP, Shader, SmallResult, SmallTriangle, Span, SpanOf, TexelSource,
+    TriangleSetup, UvStepper, draw_fragments, lit_texture_span, texture_span,
 };
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
-use crate::vertex::{PackedCorners, Perspective, VertexRef, VertexShader};
+use crate::vertex::{PackedCorners, Perspective, Varyings, VertexRef, VertexShader};
 use core::marker::PhantomData;
 use embedded_graphics_core::geometry::Size;
 
@@ -118,10 +118,14 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
 
     /// Returns the texture for a fragment.
     #[inline(always)]
-    fn texture<const K: usize>(&self, fragment: &Fragment<'_, Perspective<2, K>, L::Scale>) -> Option<&'a T> {
+    fn texture<const K: usize, U>(
+        &self,
+        fragment: &Fragment<'_, Perspective<2, K>, U>,
+        scale: &L::Scale,
+    ) -> Option<&'a T> {
         let values: &[i32] = fragment.varyings.as_ref();
         let q = values.last().copied().unwrap_or(0);
-        self.level(L::level(fragment.setup, fragment.position, q))
+        self.level(L::level(scale, fragment.position, q))
     }
 }
 
@@ -158,7 +162,7 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
 
     #[inline(always)]
     fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>, L::Scale>) -> Option<P::Raw> {
-        let (texture, uv) = (self.texture(fragment)?, fragment.varyings.corrected());
+        let (texture, uv) = (self.texture(fragment, fragment.setup)?, fragment.varyings.corrected());
         if P::ALPHA || P::DITHER.is_some() {
             return visible::<P>(F::rgba::<T, W>(texture, uv), fragment.position);
         }
@@ -170,17 +174,15 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
         if P::ALPHA || P::DITHER.is_some() || !W::REPEATS || !F::NEAREST || N == 1 {
             return draw_fragments(self, span, test);
         }
-        if !L::MANY {
-            let Some(texture) = self.level(0) else { return };
-            return self.texels::<P, D>(texture, span, test);
-        }
-        let (primitive, mut span) = (span.primitive, span);
-        while !span.color.is_empty() {
-            let (texture, pixels) = self.level_run(primitive, span.position, span.color.len());
-            let (Some(texture), Some((part, rest))) = (texture, span.split_at(pixels)) else { return };
-            self.texels::<P, D>(texture, part, test);
-            span = rest;
-        }
+        let scale = &span.primitive.setup;
+        self.each_level(span, scale, |texture, part| {
+            let draw = |part: SpanOf<'_, P, Self, D>, stepper: &mut UvStepper| {
+                texture_span(texture, part, test, stepper);
+            };
+            if let Some(bent) = UvStepper::each_straight_part(part, N, draw) {
+                draw_fragments(self, bent, test);
+            }
+        });
     }
 
     const PACKS_SMALL: bool = !L::MANY;
@@ -219,18 +221,41 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
 }
 
 impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a, T, W, F, L, N> {
+    /// Hands a span to `draw` with its texture, in parts that have one texture each.
+    #[inline(always)]
+    fn each_level<'s, P: PixelFormat, V: Varyings, U, Z>(
+        &self,
+        mut span: Span<'s, P, V, U, Z>,
+        scale: &L::Scale,
+        mut draw: impl FnMut(&'a T, Span<'s, P, V, U, Z>),
+    ) {
+        if !L::MANY {
+            if let Some(texture) = self.level(0) {
+                draw(texture, span);
+            }
+            return;
+        }
+        while !span.color.is_empty() {
+            let (texture, pixels) = self.level_run(span.primitive, scale, span.position, span.color.len());
+            let (Some(texture), Some((part, rest))) = (texture, span.split_at(pixels)) else { return };
+            draw(texture, part);
+            span = rest;
+        }
+    }
+
     /// Returns the texture of the pixels from `position` on, and the number of pixels, up to `length`, that share it.
     #[inline(never)]
-    fn level_run(
+    fn level_run<V: Varyings, U>(
         &self,
-        primitive: &Primitive<Perspective<2, 3>, L::Scale>,
+        primitive: &Primitive<V, U>,
+        scale: &L::Scale,
         (x, y): (i32, i32),
         length: usize,
     ) -> (Option<&'a T>, usize) {
         let level = |x: i32| {
             let values = primitive.at((x, y));
             let q: &[i32] = values.as_ref();
-            L::level(&primitive.setup, (x, y), q.last().copied().unwrap_or(0))
+            L::level(scale, (x, y), q.last().copied().unwrap_or(0))
         };
         let (first, end) = (level(x), x.wrapping_add(length as i32));
         let mut next = (x | (BLOCK - 1)) + 1;
@@ -239,32 +264,6 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
         }
         (self.level(first), next.min(end).wrapping_sub(x) as usize)
     }
-
-    /// Draws a span of nearest, repeated texels of one level.
-    #[inline(always)]
-    fn texels<P: PixelFormat, D: DepthTest>(&self, texture: &T, span: SpanOf<'_, P, Self, D>, test: D) {
-        let mut span = span;
-        // Half the step may do at one end of the span, if coordinates are not straight enough there.
-        let mut log_step = UvStepper::log_step(span.primitive, N);
-        let longest = log_step;
-        while log_step > 0 {
-            let length = span.color.len().min(span.depth.len());
-            let halvings = longest - log_step;
-            let mut stepper = UvStepper::begin(span.primitive, span.position, length, log_step, halvings);
-            let straight = stepper.length();
-            if straight == length {
-                return texture_span(texture, span, test, &mut stepper);
-            }
-            if straight > 0 {
-                let Some((first, rest)) = span.split_at(stepper.before()) else { return };
-                let Some((straight, last)) = rest.split_at(straight) else { return };
-                texture_span(texture, straight, test, &mut stepper);
-                span = if first.color.is_empty() { last } else { first };
-            }
-            log_step -= 1;
-        }
-        draw_fragments(self, span, test);
-    }
 }
 
 /// A texture on a [`Surface`] under light: see [`Textured::lit`].
@@ -272,6 +271,15 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
 pub struct LitTexture<'a, T, S, W = Repeat, F = Nearest, L = OneLevel, const N: usize = STEP> {
     texture: Textured<'a, T, W, F, L, N>,
     surface: S,
+}
+
+/// Data of a triangle with a texture under light.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct LitSetup<X> {
+    /// Sizes of texels on it.
+    scale: X,
+    /// Set if light is in 0..=255 at all corners. That of a canvas may be anything.
+    is_in_range: bool,
 }
 
 /// Texture coordinates 16.16; red, green and blue of the surface, 8.16, linear on the screen.
@@ -340,19 +348,37 @@ impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, cons
 {
     const STEP: usize = N;
 
-    /// Sizes of texels on the triangle.
-    type Setup = L::Scale;
+    type Setup = LitSetup<L::Scale>;
 
     #[inline]
-    fn setup(&self, triangle: &TriangleSetup<'_, LitVaryings>) -> L::Scale {
-        L::scale(self.texture.levels, triangle)
+    fn setup(&self, triangle: &TriangleSetup<'_, LitVaryings>) -> LitSetup<L::Scale> {
+        let is_light = |c: &i32| (0..=255 << 16).contains(c);
+        let is_in_range = triangle.corners.iter().all(|corner| corner.linear().iter().take(3).all(is_light));
+        LitSetup { scale: L::scale(self.texture.levels, triangle), is_in_range }
     }
 
     #[inline(always)]
-    fn fragment(&self, fragment: &Fragment<'_, LitVaryings, L::Scale>) -> Option<P::Raw> {
-        let [r, g, b, a] = F::rgba::<T, W>(self.texture.texture(fragment)?, fragment.varyings.corrected());
+    fn fragment(&self, fragment: &Fragment<'_, LitVaryings, LitSetup<L::Scale>>) -> Option<P::Raw> {
+        let texture = self.texture.texture(fragment, &fragment.setup.scale)?;
+        let [r, g, b, a] = F::rgba::<T, W>(texture, fragment.varyings.corrected());
         let [lr, lg, lb] = fragment.varyings.linear() else { return None };
         visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
+    }
+
+    #[inline]
+    fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        let LitSetup { scale, is_in_range } = &span.primitive.setup;
+        if P::ALPHA || P::DITHER.is_some() || !W::REPEATS || !F::NEAREST || N == 1 || !is_in_range {
+            return draw_fragments(self, span, test);
+        }
+        self.texture.each_level(span, scale, |texture, part| {
+            let draw = |part: SpanOf<'_, P, Self, D>, stepper: &mut UvStepper| {
+                lit_texture_span::<P, Self, D, _, _>(texture, part, test, stepper);
+            };
+            if let Some(bent) = UvStepper::each_straight_part(part, N, draw) {
+                draw_fragments(self, bent, test);
+            }
+        });
     }
 
     const PACKS_SMALL: bool = !L::MANY;

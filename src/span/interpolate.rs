@@ -166,8 +166,9 @@ pub(crate) fn interpolate<P: PixelFormat, S: Shader<P> + ?Sized>(
 }
 
 /// Lets the shader set up a triangle, whose first vertex is at `v`, after its planes: the end of stage 8 of [the
-/// pipeline](crate#the-pipeline).
-#[inline(always)]
+/// pipeline](crate#the-pipeline). Out of line, so that its frame is not on the stack while planes are computed; where
+/// there is nothing to set up, the call is dropped.
+#[inline(never)]
 pub(crate) fn set_up_shader<P: PixelFormat, S: Shader<P> + ?Sized>(
     shader: &S,
     v: [i32; 2],

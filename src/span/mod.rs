@@ -7,6 +7,7 @@ mod color_setup;
 mod depth;
 mod depth_bias;
 mod interpolate;
+mod lit_textured;
 mod luma;
 #[cfg(test)]
 mod naive;
@@ -28,6 +29,7 @@ pub use depth::{Carrying, Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff
 pub(crate) use depth_bias::BiasSteps;
 pub use depth_bias::DepthBias;
 pub(crate) use interpolate::{interpolate, set_up_shader};
+pub(crate) use lit_textured::lit_texture_span;
 pub(crate) use luma::luma_span;
 pub(crate) use packed::packed_span;
 pub use perspective::Corrected;

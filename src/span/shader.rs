@@ -288,13 +288,11 @@ fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     test: D,
 ) {
     const { assert!(S::STEP.is_power_of_two() && S::STEP <= 32, "steps are 1, 2, 4, 8, 16 or 32 pixels") };
-    let linear = span.varyings();
     let mut stretch = Stretch {
         change: span.primitive.d_dx,
         span: &mut span,
-        linear,
-        varyings: linear,
-        divided: linear,
+        varyings: S::Varyings::ZERO,
+        divided: S::Varyings::ZERO,
         column: None,
         test,
     };
@@ -305,12 +303,19 @@ fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     }
 }
 
+/// Computes the values at a pixel that are linear on the screen. In place: an array would be copied when it is returned.
+#[inline(never)]
+fn linear_at<V: Varyings, T>(primitive: &Primitive<V, T>, (x, y): (i32, i32), to: &mut V) {
+    *to = primitive.at_origin;
+    to.advance(&primitive.d_dy, y);
+    to.advance(&primitive.d_dx, x);
+}
+
 /// A part of a span: one pixel whose varyings are divided, or the pixels between two columns at which they are divided.
 struct Stretch<'a, 's, P: PixelFormat, V: Varyings, T, D: DepthTest> {
     /// Pixels of the span that are not drawn yet.
     span: &'a mut Span<'s, P, V, T, D::Depth>,
-    /// Values that are linear on the screen, at the first of these pixels.
-    linear: V,
+    /// Varyings at the first of the pixels that are drawn next, and their change per pixel.
     varyings: V,
     change: V,
     /// Varyings at the column that was divided last.
@@ -326,40 +331,40 @@ impl<P: PixelFormat, V: Varyings, T, D: DepthTest> Stretch<'_, '_, P, V, T, D> {
     /// it, and so on, where they are not straight enough.
     #[inline(never)]
     fn aim(&mut self, log_step: u32) -> usize {
-        let Self { span, linear, varyings, change, divided, column, .. } = self;
+        let Self { span, varyings, change, divided, column, .. } = self;
         let Primitive { perspective, d_dx, .. } = span.primitive;
         let (x, y) = span.position;
-        *varyings = *linear;
+        // Linear on the screen until they are corrected.
+        linear_at(span.primitive, span.position, varyings);
         let log_step = match log_step {
             0 => 0,
-            _ => straight_log_step(span.primitive, linear, span.position, log_step),
+            _ => straight_log_step(span.primitive, varyings, span.position, log_step),
         };
         if log_step == 0 {
             correct_at::<V>(perspective, span.position, varyings);
-            linear.advance(d_dx, 1);
             return 1;
         }
         let step = 1 << log_step;
         let back = x & (step - 1);
         let (first, next) = (x.wrapping_sub(back), x.wrapping_sub(back).wrapping_add(step));
         if *column != Some(first) {
-            *divided = *linear;
+            *divided = *varyings;
             divided.advance(d_dx, back.wrapping_neg());
             correct_at::<V>(perspective, (first, y), divided);
         }
-        let from = *divided;
-        *divided = *linear;
+        for (value, from) in varyings.as_mut().iter_mut().zip(divided.as_ref()).take(V::PERSPECTIVE) {
+            *value = *from;
+        }
+        linear_at(span.primitive, span.position, divided);
         divided.advance(d_dx, step.wrapping_sub(back));
         correct_at::<V>(perspective, (next, y), divided);
         *column = Some(next);
-        let ends = from.as_ref().iter().zip(divided.as_ref()).take(V::PERSPECTIVE);
-        for ((value, change), (from, to)) in varyings.as_mut().iter_mut().zip(change.as_mut()).zip(ends) {
-            *change = to.wrapping_sub(*from).wrapping_add(step >> 1) >> log_step;
-            *value = from.wrapping_add(change.wrapping_mul(back));
+        let ends = varyings.as_mut().iter_mut().zip(divided.as_ref()).take(V::PERSPECTIVE);
+        for ((value, to), change) in ends.zip(change.as_mut()) {
+            *change = to.wrapping_sub(*value).wrapping_add(step >> 1) >> log_step;
+            *value = value.wrapping_add(change.wrapping_mul(back));
         }
-        let pixels = span.color.len().min(step.wrapping_sub(back) as usize);
-        linear.advance(d_dx, pixels as i32);
-        pixels
+        span.color.len().min(step.wrapping_sub(back) as usize)
     }
 
     /// Draws that many pixels. Out of line, so that the frame of the division is not on the stack meanwhile.

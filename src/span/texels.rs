@@ -79,6 +79,23 @@ pub(crate) struct Light(pub(crate) [u32; 2]);
 const MARGIN: i32 = 48;
 
 impl Light {
+    /// Makes light of channels in 8.16. `for_rgb565` says that it is for [`on_rgb565`](Self::on_rgb565).
+    ///
+    /// Channels in -64..2⁸ - 1/2, and a little beyond them at pixels that are not drawn: words are modulo 2³², so that
+    /// steps lead from there to the right values.
+    #[inline(always)]
+    pub(crate) fn of_channels(channels: [i32; 3], for_rgb565: bool) -> Self {
+        let [r, g, b] = channels.map(|c| ((scaled(c, for_rgb565) >> 9) + MARGIN) as u32);
+        Self([(r << 16).wrapping_add(g), b << 16])
+    }
+
+    /// Returns what light changes by where channels change by these numbers, 8.16, rounded to nearest.
+    #[inline(always)]
+    pub(crate) fn of_changes(changes: [i32; 3], for_rgb565: bool) -> [u32; 2] {
+        let [r, g, b] = changes.map(|c| (scaled(c, for_rgb565).wrapping_add(1 << 8) >> 9) as u32);
+        [(r << 16).wrapping_add(g), b << 16]
+    }
+
     /// Returns the channels in 8.16.
     #[inline(always)]
     pub(crate) const fn channels(self) -> [i32; 3] {
@@ -101,6 +118,12 @@ impl Light {
         let g = (texel >> 5 & 63).wrapping_mul(red_green & 0xFFFF) >> 15;
         (r << 11 | g << 5 | b) as u16
     }
+}
+
+/// Returns a channel, 1/64 more for RGB565.
+#[inline(always)]
+const fn scaled(channel: i32, for_rgb565: bool) -> i32 {
+    if for_rgb565 { channel.wrapping_add(channel >> 6) } else { channel }
 }
 
 /// Draws small triangles with the texels of a source.

@@ -3,7 +3,8 @@
 
 use super::depth::RUN;
 use super::perspective::{MOST_STRAIGHT, is_straight, longest_log_step};
-use super::span::Primitive;
+use super::span::{Primitive, Span};
+use crate::color::PixelFormat;
 use crate::math::{CoarseDivisor, SMALL_CORE};
 use crate::vertex::{PerspectiveClass, PerspectivePlane, PerspectiveSetup, Varyings};
 
@@ -153,6 +154,37 @@ impl UvStepper {
             z: 0,
             dz_dx: primitive.dz_dx,
         }
+    }
+
+    /// Hands the parts of a span whose coordinates are straight enough to `draw`, with their steppers, in a shader that
+    /// divides every `step` pixels. Returns what is left, if anything is: pixels that have to be divided one by one.
+    #[inline(always)]
+    pub(crate) fn each_straight_part<'s, P: PixelFormat, V: Varyings, U, Z>(
+        mut span: Span<'s, P, V, U, Z>,
+        step: usize,
+        mut draw: impl FnMut(Span<'s, P, V, U, Z>, &mut Self),
+    ) -> Option<Span<'s, P, V, U, Z>> {
+        // Half the step may do at one end of the span, if coordinates are not straight enough there.
+        let mut log_step = Self::log_step(span.primitive, step);
+        let longest = log_step;
+        while log_step > 0 {
+            let length = span.color.len().min(span.depth.len());
+            let halvings = longest - log_step;
+            let mut stepper = Self::begin(span.primitive, span.position, length, log_step, halvings);
+            let straight = stepper.length();
+            if straight == length {
+                draw(span, &mut stepper);
+                return None;
+            }
+            if straight > 0 {
+                let (first, rest) = span.split_at(stepper.before())?;
+                let (straight, last) = rest.split_at(straight)?;
+                draw(straight, &mut stepper);
+                span = if first.color.is_empty() { last } else { first };
+            }
+            log_step -= 1;
+        }
+        Some(span)
     }
 
     /// Returns the number of pixels of the span before those that the stepper is for.
