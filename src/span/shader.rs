@@ -146,6 +146,8 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 
     /// Draws a triangle, if it is small: by [`span`](Self::span), unless the shader knows a shorter way. A shader whose
     /// spans are another shader's may pass the call on to that shader.
+    ///
+    /// A triangle that goes on from the strip above brings its state along: its corners' varyings say nothing then.
     #[inline(always)]
     fn small<D: DepthTest>(
         &self,
@@ -162,6 +164,8 @@ pub trait Shader<P: PixelFormat>: VertexShader {
 
     /// Draws a triangle, if it is small, from the words that [`store`](VertexShader::store) packed at its corners. A
     /// shader whose spans are another shader's may pass the call on to that shader.
+    ///
+    /// A triangle that goes on from the strip above brings its state along: its corners' words say nothing then.
     #[inline(always)]
     fn small_packed<D: DepthTest>(
         &self,
@@ -303,7 +307,8 @@ fn corrected_fragments<P: PixelFormat, S: Shader<P> + ?Sized, D: DepthTest>(
     }
 }
 
-/// Computes the values at a pixel that are linear on the screen. In place: an array would be copied when it is returned.
+/// Computes the values at a pixel that are linear on the screen. In place, because an array would be copied when it is
+/// returned.
 #[inline(never)]
 fn linear_at<V: Varyings, T>(primitive: &Primitive<V, T>, (x, y): (i32, i32), to: &mut V) {
     *to = primitive.at_origin;
