@@ -149,7 +149,8 @@ struct Placing<'f, 'm, L> {
 }
 
 impl<L: Light> Placing<'_, '_, L> {
-    /// Returns the draw of a part, and whether it is blended. `None` for a part without triangles.
+    /// Returns the draw of a part, and whether it is blended. `None` for a part without triangles, and for one whose
+    /// alpha is below the cutoff everywhere.
     #[inline(never)]
     fn place(&mut self, node: usize, number: u16) -> Option<(Place<L::Surface>, bool)> {
         let model = self.model;
@@ -192,6 +193,12 @@ impl<L: Light> Placing<'_, '_, L> {
             return None;
         }
         let material = model.material_of(part)?;
+        // Without a texture, alpha is the same everywhere.
+        let [.., alpha] = material.color;
+        let masked = material.alpha_mode == AlphaMode::Mask as u8 && material.texture == NONE;
+        if masked && alpha < material.cutoff {
+            return None;
+        }
         let blends = material.alpha_mode == AlphaMode::Blend as u8;
         let bounds = model.bounds_in(self.pose, number);
         let surface = self.surface(part, material, &to_world, &bounds);

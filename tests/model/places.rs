@@ -143,18 +143,18 @@ fn blended_parts_come_last_from_back_to_front() {
     let mut places = vec![None; Model::draws(container.bytes())];
     let placed = model.place(&Affine::IDENTITY, &camera, &sun(), &mut places).expect("enough places");
     let parts: Vec<usize> = placed.draws().map(|(_, part)| part).collect();
-    assert_eq!(parts.len(), 13);
-    // Textures number 2 and 5 are blended, and the fourth part without a texture.
+    assert_eq!(parts.len(), 14);
+    // Textures number 2 and 5 are blended, and the fourth and sixth part without a texture.
     let mut blended = parts[10..].to_vec();
     blended.sort_unstable();
-    assert_eq!(blended, [2, 5, 11]);
+    assert_eq!(blended, [2, 5, 11, 13]);
     let depth = |place: usize| {
         let (mvp, part) = placed.draws().nth(place).expect("a draw");
         zstrip::mesh::view_depth(mvp, model.mesh(part).expect("a part").bounds())
     };
-    assert!((10..12).all(|place| depth(place) >= depth(place + 1)));
+    assert!((10..13).all(|place| depth(place) >= depth(place + 1)));
     let error = model.place(&Affine::IDENTITY, &camera, &sun(), &mut [None; 3]).expect_err("too few places");
-    assert_eq!(error.to_string(), "3 places, but the model has 13 draws");
+    assert_eq!(error.to_string(), "3 places, but the model has 14 draws");
 }
 
 #[test]
