@@ -2,7 +2,8 @@
 //!
 //! A tool writes with these definitions what [`Model::from_bytes`](crate::model::Model::from_bytes) reads with them.
 //! All numbers are little-endian. Structures have no padding, and are read where they lie. `docs/container.md` shows
-//! the layout, and [`Model::from_bytes`](crate::model::Model::from_bytes) checks every rule that stands here.
+//! the layout. It lists the rules that [`Model::from_bytes`](crate::model::Model::from_bytes) checks, and those that it
+//! does not: a container that breaks one of these is drawn wrong, and nothing else happens.
 
 use bytemuck::{Pod, Zeroable};
 
