@@ -63,6 +63,20 @@ fn models_are_accepted_and_drawn() {
 }
 
 #[test]
+fn fuzzing_begins_with_whole_containers() {
+    // Ten bytes say how the model is drawn.
+    for input in [
+        &include_bytes!("../../fuzz/corpus/models/7612a63bc1de")[..],
+        &include_bytes!("../../fuzz/corpus/models/bdd9bc58041e")[..],
+    ] {
+        let container = Container::of(&input[10..]);
+        let model = Model::from_bytes(container.bytes()).expect("a model");
+        assert_eq!((Model::draws(container.bytes()), model.clips().count()), (1, 1));
+        draw(&model, container.bytes());
+    }
+}
+
+#[test]
 fn truncated_bytes_are_errors() {
     for (name, builder) in models() {
         let container = builder.build();
