@@ -6,7 +6,7 @@
 //! again.
 
 use super::normal::long;
-use crate::math::{Affine, Vec3, unit_vector_of_any_length};
+use crate::math::{Affine, Vec3, mul_wide, unit_vector_of_any_length};
 use crate::mesh::Bounds;
 
 /// The inverse transpose of a model's matrix, in any scale: 2.14, with the widest entry in 1/2..=1.
@@ -41,7 +41,7 @@ scaling!(scale_wide, i64);
 /// Returns the product of two columns: below 3 · 2⁵⁸.
 #[inline(never)]
 const fn product([x, y, z]: &[[i32; 3]; 3], i: usize, j: usize) -> i64 {
-    x[i] as i64 * x[j] as i64 + y[i] as i64 * y[j] as i64 + z[i] as i64 * z[j] as i64
+    mul_wide(x[i], x[j]) + mul_wide(y[i], y[j]) + mul_wide(z[i], z[j])
 }
 
 /// Returns whether the columns of a matrix are at right angles and of one length: within 1/256 of the length, and twice
@@ -92,7 +92,7 @@ impl NormalMatrix {
             let (i, j) = (k / 3, k % 3);
             let (a, b) = (&rows[(i + 1) % 3], &rows[(i + 2) % 3]);
             let (p, q) = ((j + 1) % 3, (j + 2) % 3);
-            cofactors[i][j] = a[p] as i64 * b[q] as i64 - a[q] as i64 * b[p] as i64;
+            cofactors[i][j] = mul_wide(a[p], b[q]) - mul_wide(a[q], b[p]);
             k += 1;
         }
         scale_wide(&mut cofactors, 30);

@@ -3,6 +3,7 @@
 use super::angle::Angle16;
 use super::error::ProjectionError;
 use super::format::Scalar;
+use super::reciprocal::mul_wide;
 use super::vector::{Vec3, saturate};
 use core::ops::Mul;
 
@@ -311,7 +312,7 @@ impl Affine {
     /// leave over.
     const fn row_times(&self, i: usize, v: [i32; 3]) -> i64 {
         let r = &self.rows[i];
-        let (a, b, c) = (r[0] as i64 * v[0] as i64, r[1] as i64 * v[1] as i64, r[2] as i64 * v[2] as i64);
+        let (a, b, c) = (mul_wide(r[0], v[0]), mul_wide(r[1], v[1]), mul_wide(r[2], v[2]));
         let left = ((a & 3) + (b & 3) + (c & 3)) >> 2;
         ((a >> 2) + (b >> 2) + (c >> 2) + left + (1 << 13)) >> 14
     }

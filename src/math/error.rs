@@ -39,6 +39,11 @@ pub enum ProjectionError {
         /// Right or top plane.
         high: Scalar,
     },
+    /// A box is too large, or too far from the origin, for a camera that shows all of it.
+    BoxOutOfRange {
+        /// The largest coordinate or distance that the camera would need, in whole units, rounded down.
+        reach: i64,
+    },
     /// Eye and target coincide, or up is zero or parallel to the view direction.
     DegenerateView,
 }
@@ -60,6 +65,9 @@ impl fmt::Display for ProjectionError {
             Self::FieldOfView { angle } => write!(f, "field of view of {angle} is not between 0° and 180°"),
             Self::Aspect { width, height } => write!(f, "aspect ratio {width}:{height} has an empty side"),
             Self::EmptyBox { low, high } => write!(f, "orthographic box is empty between {low} and {high}"),
+            Self::BoxOutOfRange { reach } => {
+                write!(f, "the camera that shows the box needs numbers up to {reach}, must be below 32768")
+            }
             Self::DegenerateView => f.write_str("eye and target coincide, or up is zero or parallel to the view"),
         }
     }

@@ -39,7 +39,7 @@ pub use precision::{DepthPrecision, PrecisionError};
 pub use projective::Projective;
 pub(crate) use reciprocal::{
     CoarseDivisor, Divisor, SMALL_CORE, ShortDivisor, byte_zeros, leading_zeros, leading_zeros_long, mul_high,
-    mul_high_outlined, mul_high_signed, mul_wide, reciprocal,
+    mul_high_outlined, mul_high_signed, mul_long, mul_wide, reciprocal,
 };
 pub(crate) use root::isqrt;
 pub use vector::Vec3;

@@ -5,6 +5,7 @@ use super::angle::Angle16;
 use super::error::ProjectionError;
 use super::format::{Scalar, Wide};
 use super::long::Long;
+use super::reciprocal::mul_long;
 use super::vector::Vec3;
 use core::ops::Mul;
 use embedded_graphics_core::geometry::Size;
@@ -256,7 +257,28 @@ impl Projective {
     #[inline(never)]
     #[must_use]
     pub const fn compose_affine(&self, model: &Affine) -> Self {
-        self.compose(&Self::from_affine(model))
+        let (a, mut rows) = (model.to_rows(), [[0; 4]; 4]);
+        let mut i = 0;
+        while i < 4 {
+            let row = &self.rows[i];
+            let mut j = 0;
+            while j < 4 {
+                // Products have 64 + 32 bits.
+                let mut sum = if j == 3 { (row[3] as i128) << 16 } else { 0 };
+                let mut k = 0;
+                while k < 3 {
+                    // Most entries of a lens are 0.
+                    if row[k] != 0 {
+                        sum += mul_long(row[k], a[k][j]);
+                    }
+                    k += 1;
+                }
+                rows[i][j] = saturate((sum + (1 << 15)) >> 16);
+                j += 1;
+            }
+            i += 1;
+        }
+        Self { rows }
     }
 
     /// Returns the clip coordinates x, y, z, w of a point, rounded to nearest and saturating. Divided by w, they are
@@ -314,5 +336,30 @@ impl Mul<Affine> for Projective {
 impl From<Affine> for Projective {
     fn from(model: Affine) -> Self {
         Self::from_affine(&model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Vec3;
+    use crate::math::random::Rng;
+
+    #[test]
+    fn affine_transforms_are_composed_as_matrices_are() {
+        let mut rng = Rng::new(6);
+        for case in 0..5000 {
+            let rows = core::array::from_fn(|_| {
+                core::array::from_fn(|_| if rng.below(3) == 0 { 0 } else { rng.signed_bits(1 + case % 64) })
+            });
+            let lens = Projective::from_rows(rows);
+            let mut vector = || Vec3::from_bits(core::array::from_fn(|_| rng.signed_bits(1 + case / 64 % 32) as i32));
+            let model = Affine::from_rows(vector(), vector(), vector(), vector());
+            assert_eq!(
+                lens.compose_affine(&model),
+                lens.compose(&Projective::from_affine(&model)),
+                "{lens:?} {model:?}"
+            );
+        }
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! A tool writes with these definitions what [`Model::from_bytes`](crate::model::Model::from_bytes) reads with them.
 //! All numbers are little-endian. Structures have no padding, and are read where they lie. `docs/container.md` shows
-//! the layout, and [`Model::from_bytes`](crate::model::Model::from_bytes) checks every rule that stands here.
+//! the layout. It lists the rules that [`Model::from_bytes`](crate::model::Model::from_bytes) checks, and those that it
+//! does not: a container that breaks one of these is drawn wrong, and nothing else happens.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -17,12 +18,6 @@ pub const NONE: u16 = u16::MAX;
 
 /// The number that stands for "none" in fields of 32 bits.
 pub const NONE_LONG: u32 = u32::MAX;
-
-/// Weight 1 of a morph target: weights are 2.14.
-pub const WEIGHT_ONE: i16 = 1 << 14;
-
-/// The tick at which a clip ends.
-pub const LAST_TICK: u16 = u16::MAX;
 
 /// Kinds of sections, in the order of [`Header::table`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -104,7 +99,7 @@ pub struct Header {
     pub length: u32,
     /// Number of draws: the sum of [`Node::parts`], at most 65,535.
     pub draws: u32,
-    /// Number of words that a pose takes; see [`pose_words`](crate::model::Pose::words).
+    /// Number of words that a pose takes; see [`Pose::words`](crate::model::Pose::words).
     pub pose_words: u32,
     /// Number of weights of morph targets.
     pub weights: u32,
@@ -228,11 +223,11 @@ pub struct Cluster {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u8)]
 pub enum AlphaMode {
-    /// Alpha is ignored.
+    /// Alpha is ignored, that of the texture too.
     Opaque,
-    /// Texels below the cutoff are not drawn.
+    /// Pixels whose alpha is below the cutoff are not drawn. Alpha is that of the texture times that of the material.
     Mask,
-    /// Colours are blended with what is there, and depth is not written.
+    /// Colours are blended by alpha with what is there, and depth is not written.
     Blend,
 }
 
@@ -293,7 +288,7 @@ pub enum TextureFormat {
     Palette1,
     /// Grey, 8 bits.
     Gray8,
-    /// 1 bit: 0 is transparent, 1 is white.
+    /// White, with 1 bit of alpha: 0 is transparent.
     Mask,
 }
 

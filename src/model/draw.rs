@@ -23,6 +23,8 @@ impl<S: Surface + Copy> Placed<'_, S> {
     /// | with [`AlphaMode::Mask`] | [`AlphaTest`] of that |
     /// | with [`AlphaMode::Blend`] | [`Blend`] of that by [`Alpha`], without texture by [`Opacity`] |
     ///
+    /// Alpha is that of the texture times that of the material. [`AlphaMode::Opaque`] ignores both.
+    ///
     /// A program links all of them, because the bytes of a model decide.
     /// [`draw_opaque`](Self::draw_opaque) links less.
     pub fn draw<F: Framebuffer>(&self, scene: &mut Scene<'_, F>) {
@@ -53,7 +55,10 @@ impl<S: Surface + Copy> Placed<'_, S> {
         let part = model.parts.get(usize::from(place.part))?;
         let material = model.materials.get(usize::from(part.material))?;
         let texels = match model.textures.get(usize::from(material.texture)) {
-            Some(texture) => Some(model.level(texture, place.level)?),
+            Some(texture) => {
+                let with_alpha = material.alpha_mode != AlphaMode::Opaque as u8;
+                Some(model.level(texture, place.level, with_alpha)?)
+            }
             None => None,
         };
         let (first, count) = place.nodes;
@@ -157,7 +162,7 @@ impl<S: Surface + Copy> PartDraw<'_, S> {
         let mode = AlphaMode::of(self.material.alpha_mode);
         match &self.texels {
             Some(texels) => {
-                let texels = texels.any(if mode == Some(AlphaMode::Blend) { opacity } else { 255 });
+                let texels = texels.any(if mode == Some(AlphaMode::Opaque) { None } else { Some(opacity) });
                 let shader = self.unpacked(Textured::new(&texels).lit(surface));
                 match mode {
                     Some(AlphaMode::Mask) => {
@@ -167,7 +172,10 @@ impl<S: Surface + Copy> PartDraw<'_, S> {
                     _ => self.by(scene, DepthState::LESS, shader),
                 }
             }
-            None => self.by(scene, DepthState::TEST, Blend::new(Gouraud::new(surface), Opacity(opacity))),
+            None if self.has_normals => {
+                self.by(scene, DepthState::TEST, Blend::new(Gouraud::new(surface), Opacity(opacity)));
+            }
+            None => self.by(scene, DepthState::TEST, Blend::new(Flat::new(surface), Opacity(opacity))),
         }
     }
 }

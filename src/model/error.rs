@@ -17,7 +17,7 @@ pub enum ModelError {
     Short {
         /// Number of bytes.
         found: usize,
-        /// Number of bytes that a container of this kind has.
+        /// Number of bytes that the container has: those of its header, if that is incomplete.
         needed: usize,
     },
     /// The bytes do not begin as a container does: they are something else, or in another byte order.
@@ -55,8 +55,23 @@ pub enum ModelError {
         found: i64,
         /// The least number that is allowed.
         least: i64,
-        /// The greatest number that is allowed.
+        /// The greatest number that is allowed. If it is below `least`, none is.
         most: i64,
+    },
+    /// Items of another section, or of a part, are not there: their range ends past the last item.
+    Items {
+        /// Kind of the section that speaks of them; `None` for the header.
+        section: Option<SectionKind>,
+        /// Number of the item that speaks of them.
+        item: usize,
+        /// Name of the field with the number of the first one.
+        field: &'static str,
+        /// Number of the first one.
+        first: u32,
+        /// Number of items from the first one on.
+        count: u64,
+        /// Number of items that there are.
+        length: usize,
     },
     /// A vertex is outside of the box of its cluster or of a joint that moves it.
     Outside {
@@ -91,31 +106,43 @@ impl fmt::Display for ModelError {
             Self::Misaligned { past } => {
                 write!(f, "the bytes begin {past} past a multiple of 4: put them into a static by include_model!")
             }
-            Self::Short { found, needed } => write!(f, "{found} bytes, but the container has {needed}"),
+            Self::Short { found, needed } => write!(f, "{found} bytes, but the container has at least {needed}"),
             Self::Magic { found } => write!(f, "the bytes begin with {found:?}, a container with b\"ZSTM\""),
             Self::Version { found, needed } => {
                 write!(f, "version {found} of the container, must be {needed}: write it anew")
             }
             Self::Section { section, offset, count, length } => write!(
                 f,
-                "section {section:?}: {count} items from byte {offset} do not lie at a multiple of 4 in the {length} bytes"
+                "section {section:?}: {count} items from byte {offset} on must begin at a multiple of 4 after the header, \
+                 and end by byte {length}"
             ),
             Self::Number { section, item, field, found, least, most } => {
-                match section {
-                    Some(section) => write!(f, "{section:?}, item {item}: ")?,
-                    None => f.write_str("the header: ")?,
-                }
+                write_place(f, section, item)?;
                 if least == most {
                     write!(f, "{field} is {found}, must be {least}")
+                } else if least > most {
+                    write!(f, "{field} is {found}, but no number is allowed here")
                 } else {
                     write!(f, "{field} is {found}, must be in {least}..={most}")
                 }
+            }
+            Self::Items { section, item, field, first, count, length } => {
+                write_place(f, section, item)?;
+                write!(f, "{field} is {first}, and {count} from there on end past the last of {length}")
             }
             Self::Outside { section, item, part, vertex } => {
                 write!(f, "the box of item {item} of {section:?} does not hold vertex {vertex} of part {part}")
             }
             Self::Mesh { part, error } => write!(f, "part {part}: {error}"),
         }
+    }
+}
+
+/// Writes which item an error is in.
+fn write_place(f: &mut fmt::Formatter<'_>, section: Option<SectionKind>, item: usize) -> fmt::Result {
+    match section {
+        Some(section) => write!(f, "{section:?}, item {item}: "),
+        None => f.write_str("the header: "),
     }
 }
 

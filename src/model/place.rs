@@ -9,8 +9,9 @@ use super::read::{MATRIX_WORDS, Model, bounds_of};
 use super::shader::{Light, PartSurface};
 use super::transform::{Local, from_words};
 use crate::light::Material;
-use crate::math::{Affine, Projective, Vec3};
-use crate::mesh::{Bounds, BoundsNode, sort_back_to_front, view_depth};
+use crate::math::{Affine, Projective, Vec3, mul_long, mul_wide};
+use crate::mesh::{Bounds, BoundsNode, view_depth};
+use core::cmp::Reverse;
 use embedded_graphics_core::pixelcolor::Rgb888;
 
 /// A draw of a model in a frame: a part, its matrix and its surface. A frame's places are lent to
@@ -24,8 +25,10 @@ pub struct Place<S> {
     pub(super) level: u8,
     /// Set if the transform turns front faces round.
     pub(super) mirrored: bool,
-    /// The eye in object space, for parts with clusters and a camera with perspective.
-    pub(super) eye: Option<Vec3>,
+    /// The node whose transform the part has, or [`NONE`].
+    node: u16,
+    /// Depth of a blended part.
+    depth: i64,
     /// Nodes of the part's clusters: the first, and their number. 0 if all of the part is drawn.
     pub(super) nodes: (u32, u16),
 }
@@ -39,13 +42,16 @@ pub struct Placed<'p, S> {
     /// Opaque draws, then blended ones from back to front.
     pub(super) places: &'p mut [Option<Place<S>>],
     pub(super) nodes: &'p [BoundsNode],
+    /// The transforms to the world and to the eye, if the camera has an eye.
+    to_eye: Option<[Affine; 2]>,
 }
 
 impl<'a> Model<'a> {
     /// Places the model at rest in a frame: `world` takes it to the world, where the camera and the light are.
     ///
-    /// Call it once per frame, outside of the closure that draws: it takes some thousand instructions per draw. The
-    /// places are as many as the model's [`draws`](Self::draws).
+    /// Call it once per frame, outside of the closure that draws: it takes some 20,000 instructions per draw on a
+    /// Cortex-M0+, and some thousand more for each node above that of the draw. A pose keeps the transforms of nodes
+    /// instead, and so places deep trees in less time. The places are as many as the model's [`draws`](Self::draws).
     ///
     /// # Errors
     /// If there are fewer places than draws.
@@ -91,12 +97,11 @@ impl<'a> Model<'a> {
         if let Some(between) = places.get_mut(first..end) {
             between.fill(None);
         }
-        let depth = |place: &Option<Place<L::Surface>>| match place {
-            Some(place) => view_depth(&place.mvp, &self.bounds_in(pose, place.part)),
-            None => i64::MAX,
-        };
-        sort_back_to_front(places.get_mut(end..).unwrap_or_default(), depth);
-        Ok(Placed { model: *self, pose, places, nodes: &[] })
+        // Parts of one depth in an order of their own, because the sort is not stable.
+        let order = |place: &Place<L::Surface>| (Reverse(place.depth), place.node, place.part);
+        sort_by_heap(places.get_mut(end..).unwrap_or_default(), |place| place.as_ref().map(order));
+        let to_eye = if camera.has_eye() { Some([*world, camera.view]) } else { None };
+        Ok(Placed { model: *self, pose, places, nodes: &[], to_eye })
     }
 
     /// Returns the box of a part as it is drawn.
@@ -110,14 +115,20 @@ impl<'a> Model<'a> {
         }
     }
 
+    /// Returns the transform of a node: that of the pose, if there is one.
+    fn transform(&self, pose: &[u32], node: usize) -> Affine {
+        let words = pose.get(MATRIX_WORDS * node..).and_then(|rest| rest.first_chunk());
+        words.map_or_else(|| self.at_rest(node), from_words)
+    }
+
     /// Returns the transform of a node at rest: those of the nodes above it, one after the other.
     fn at_rest(&self, number: usize) -> Affine {
-        let mut transform = Affine::IDENTITY;
-        let mut next = self.nodes.get(number);
-        // A parent has a lower number, so this ends.
-        while let Some(node) = next {
-            transform = Local::of(node).matrix() * transform;
-            next = if node.parent == NONE { None } else { self.nodes.get(usize::from(node.parent)) };
+        let Some(mut node) = self.nodes.get(number) else { return Affine::IDENTITY };
+        let mut transform = Local::of(node).matrix();
+        // There is no node of the number NONE. A parent has a lower number, so this ends.
+        while let Some(parent) = self.nodes.get(usize::from(node.parent)) {
+            transform = Local::of(parent).matrix() * transform;
+            node = parent;
         }
         transform
     }
@@ -134,12 +145,14 @@ struct Placing<'f, 'm, L> {
     world: &'f Affine,
     camera: &'f Camera,
     light: &'f L,
-    /// The node that was placed last, [`NONE`] for parts with a skin, with its transform and its matrix.
-    last: Option<(usize, Affine, Projective)>,
+    /// The node that was placed last, [`NONE`] for parts with a skin, with its transform and its matrix, and whether it
+    /// is a mirror.
+    last: Option<(usize, Affine, Projective, bool)>,
 }
 
 impl<L: Light> Placing<'_, '_, L> {
-    /// Returns the draw of a part, and whether it is blended. `None` for a part without triangles.
+    /// Returns the draw of a part, and whether it is blended. `None` for a part without triangles, and for one whose
+    /// alpha is below the cutoff everywhere.
     #[inline(never)]
     fn place(&mut self, node: usize, number: u16) -> Option<(Place<L::Surface>, bool)> {
         let model = self.model;
@@ -147,13 +160,18 @@ impl<L: Light> Placing<'_, '_, L> {
         let posed = PosedPart::of(self.pose, part).is_some();
         // A skin has the transforms of its joints in its vertices.
         let node = if posed && part.skin != NONE { usize::from(NONE) } else { node };
-        let (to_world, mvp) = match self.last {
-            Some((last, to_world, mvp)) if last == node => (to_world, mvp),
+        let (to_world, mvp, mirrored) = match self.last {
+            Some((last, to_world, mvp, mirrored)) if last == node => (to_world, mvp, mirrored),
             _ => {
-                let to_world = if node == usize::from(NONE) { *self.world } else { *self.world * self.transform(node) };
+                let to_world = if node == usize::from(NONE) {
+                    *self.world
+                } else {
+                    *self.world * model.transform(self.pose, node)
+                };
                 let mvp = self.camera.lens.compose_affine(&(self.camera.view * to_world));
-                self.last = Some((node, to_world, mvp));
-                (to_world, mvp)
+                let mirrored = is_mirrored(&to_world);
+                self.last = Some((node, to_world, mvp, mirrored));
+                (to_world, mvp, mirrored)
             }
         };
         let mut number = number;
@@ -161,7 +179,7 @@ impl<L: Light> Placing<'_, '_, L> {
         let texture = model.textures.get(usize::from(material.texture));
         let mut level = 0;
         if part.coarser != NONE || texture.is_some_and(|texture| texture.levels > 1) {
-            let pixels = self.pixels_per_unit(&to_world, &bounds_of(part.center, part.half));
+            let pixels = self.pixels_per_unit(&to_world, &mvp, &bounds_of(part.center, part.half));
             // 16.16 · 24.8: a pixel is 2²⁴.
             while let Some(coarser) = model.parts.get(usize::from(part.coarser)) {
                 if u64::from(coarser.error).saturating_mul(pixels) > 1 << 24 {
@@ -178,28 +196,22 @@ impl<L: Light> Placing<'_, '_, L> {
             return None;
         }
         let material = model.material_of(part)?;
+        // Without a texture, alpha is the same everywhere.
+        let [.., alpha] = material.color;
+        let masked = material.alpha_mode == AlphaMode::Mask as u8 && material.texture == NONE;
+        if masked && alpha < material.cutoff {
+            return None;
+        }
         let blends = material.alpha_mode == AlphaMode::Blend as u8;
         let bounds = model.bounds_in(self.pose, number);
-        let perspective = !matches!(self.camera.lens.to_rows(), [.., [0, 0, 0, _]]);
-        let eye = if part.clusters > 0 && perspective {
-            (self.camera.view * to_world).inverse().map(|back| back.transform_point(Vec3::ZERO))
-        } else {
-            None
-        };
         let surface = self.surface(part, material, &to_world, &bounds);
-        let mirrored = is_mirrored(&to_world);
-        Some((Place { mvp, surface, part: number, level, mirrored, eye, nodes: (0, 0) }, blends))
-    }
-
-    /// Returns the transform of a node: that of the pose, if there is one.
-    fn transform(&self, node: usize) -> Affine {
-        let words = self.pose.get(MATRIX_WORDS * node..).and_then(|rest| rest.first_chunk());
-        words.map_or_else(|| self.model.at_rest(node), from_words)
+        let (node, depth) = (node as u16, if blends { view_depth(&mvp, &bounds) } else { 0 });
+        Some((Place { mvp, surface, part: number, level, mirrored, node, depth, nodes: (0, 0) }, blends))
     }
 
     /// Returns the number of pixels, 24.8, that a unit of a mesh takes in the middle of its box.
-    fn pixels_per_unit(&self, to_world: &Affine, bounds: &Bounds) -> u64 {
-        let pixels = self.camera.pixels_per_unit(to_world.transform_point(bounds.center));
+    fn pixels_per_unit(&self, to_world: &Affine, mvp: &Projective, bounds: &Bounds) -> u64 {
+        let pixels = self.camera.pixels_per_unit(view_depth(mvp, bounds));
         let length = to_world.transform_vector(Vec3::X).length();
         (u64::from(pixels) * u64::from(length.to_bits().unsigned_abs())) >> 16
     }
@@ -222,14 +234,76 @@ impl<L: Light> Placing<'_, '_, L> {
     }
 }
 
+/// Sorts by a heap, in n log n comparisons at most. It adds 0.3 KB to a program; `sort_unstable_by_key` adds 5 KB.
+fn sort_by_heap<T, K: Ord>(items: &mut [T], key: impl Fn(&T) -> K) {
+    let length = items.len();
+    // The upper steps make a heap, whose root is the greatest item. The lower ones take its root away.
+    for step in (0..length + length / 2).rev() {
+        let (mut node, end) = if step < length { (0, step) } else { (step - length, length) };
+        if step < length {
+            swap(items, 0, step);
+        }
+        let Some(heap) = items.get_mut(..end) else { return };
+        loop {
+            let child = 2 * node + 1;
+            let key_at = |k: usize| heap.get(k).map(&key);
+            let greater = child + usize::from(key_at(child + 1) > key_at(child));
+            if key_at(greater) <= key_at(node) {
+                break;
+            }
+            swap(heap, node, greater);
+            node = greater;
+        }
+    }
+}
+
+fn swap<T>(items: &mut [T], a: usize, b: usize) {
+    if let Ok([a, b]) = items.get_disjoint_mut([a, b]) {
+        core::mem::swap(a, b);
+    }
+}
+
+/// Returns the minor a b - c d of a matrix: below 2⁶³.
+fn minor(a: i32, b: i32, c: i32, d: i32) -> i64 {
+    mul_wide(a, b) - mul_wide(c, d)
+}
+
+/// Returns the cofactors of a row of a matrix, of the two other rows in cyclic order.
+fn cofactors([a, b, c]: [i32; 3], [d, e, f]: [i32; 3]) -> [i64; 3] {
+    [minor(b, f, c, e), minor(c, d, a, f), minor(a, e, b, d)]
+}
+
+/// Returns the sum of three products, exactly: below 3 · 2⁹⁴.
+fn dot([a, b, c]: [i64; 3], [x, y, z]: [i32; 3]) -> i128 {
+    mul_long(a, x) + mul_long(b, y) + mul_long(c, z)
+}
+
 /// Returns whether a transform is a mirror: its determinant is negative.
+fn is_mirrored(transform: &Affine) -> bool {
+    let [x, y, z] = transform.to_rows().map(|[x, y, z, _]| [x, y, z]);
+    dot(cofactors(y, z), x) < 0
+}
+
+/// Returns the point, raw 16.16, that a transform brings to the origin. `None` if there is no such point, or if it is
+/// beyond the range of numbers.
 ///
 /// # Format
-/// Products of three numbers of 31 bits: six of them are below 2⁹⁶.
-fn is_mirrored(transform: &Affine) -> bool {
-    let [x, y, z] = transform.to_rows().map(|[x, y, z, _]| [i128::from(x), i128::from(y), i128::from(z)]);
-    let minor = |j: usize, k: usize| y[j] * z[k] - y[k] * z[j];
-    x[0] * minor(1, 2) + x[1] * minor(2, 0) + x[2] * minor(0, 1) < 0
+/// By Cramer's rule, a coordinate is a quotient of a sum of three products and the determinant, both of at most 96
+/// bits. They are cut until the determinant has 32 bits. Coordinates are within 2⁻¹⁵ of the exact ones.
+fn origin_of(transform: &Affine) -> Option<[i32; 3]> {
+    let rows = transform.to_rows();
+    let ([x, y, z], t) = (rows.map(|[x, y, z, _]| [x, y, z]), rows.map(|[.., t]| t));
+    let [a, b, c] = [cofactors(y, z), cofactors(z, x), cofactors(x, y)];
+    let determinant = dot(a, x);
+    let cut = 96_u32.saturating_sub(determinant.unsigned_abs().leading_zeros());
+    let divisor = (determinant.unsigned_abs() >> cut) as u64;
+    let coordinate = |k: usize| {
+        let numerator = dot([a[k], b[k], c[k]], t);
+        let quotient = u64::try_from((numerator.unsigned_abs() << 16) >> cut).ok()?.checked_div(divisor)?;
+        let quotient = i32::try_from(quotient).ok()?;
+        Some(if (numerator < 0) == (determinant < 0) { -quotient } else { quotient })
+    };
+    Some([coordinate(0)?, coordinate(1)?, coordinate(2)?])
 }
 
 impl<'p, S> Placed<'p, S> {
@@ -243,14 +317,24 @@ impl<'p, S> Placed<'p, S> {
     #[must_use]
     pub fn cull_clusters(mut self, nodes: &'p mut [BoundsNode]) -> Self {
         let mut used = 0;
-        for place in self.places.iter_mut().flatten() {
+        for to in self.places.iter_mut() {
+            let Some(place) = to else { continue };
+            place.nodes = (0, 0);
             let Some(part) = self.model.parts.get(usize::from(place.part)) else { continue };
             let clusters = self.model.clusters_of(part);
             let Some(room) = nodes.get_mut(used..).and_then(|rest| rest.get_mut(..clusters.len())) else { continue };
             let two_sided = self.model.material_of(part).is_some_and(|m| m.flags & MaterialItem::DOUBLE_SIDED != 0);
+            let eye = match &self.to_eye {
+                Some([world, view]) if !clusters.is_empty() && !two_sided => {
+                    // As the matrix of the draw was made, so that both round alike.
+                    let to_world = *world * self.model.transform(self.pose, place.node.into());
+                    origin_of(&(*view * to_world))
+                }
+                _ => None,
+            };
             let mut count = 0;
             for cluster in clusters {
-                if !two_sided && place.eye.is_some_and(|eye| cluster.shows_back(part, eye)) {
+                if eye.is_some_and(|eye| cluster.shows_back(part, eye)) {
                     continue;
                 }
                 if let Some(node) = room.get_mut(count) {
@@ -266,7 +350,7 @@ impl<'p, S> Placed<'p, S> {
             place.nodes = (used as u32, count as u16);
             if count == 0 && !clusters.is_empty() {
                 // Not a single triangle is drawn.
-                place.part = NONE;
+                *to = None;
             }
             used += count;
         }
@@ -282,38 +366,113 @@ impl<'p, S> Placed<'p, S> {
 }
 
 impl Cluster {
-    /// Returns the box of the cluster, rounded outwards.
-    fn bounds(&self, part: &Part) -> Bounds {
-        let scale = i64::from(part.scale);
-        let along = |q: i16, offset: i32| {
-            let at = ((i64::from(q) * scale + (1 << 14)) >> 15) + i64::from(offset);
-            at.clamp(i32::MIN.into(), i32::MAX.into()) as i32
-        };
-        let half = |q: u16| (((i64::from(q) * scale) >> 15) + 2).min(i32::MAX.into()) as i32;
-        let ([x, y, z], [ox, oy, oz]) = (self.center, part.offset);
-        bounds_of([along(x, ox), along(y, oy), along(z, oz)], self.half.map(half))
-    }
-
-    /// Returns whether all triangles show their back to an eye in object space: the rule of the container, with all
-    /// lengths multiplied by 127.
+    /// Returns the middle of the box and half its size, raw 16.16, rounded outwards.
     ///
     /// # Format
-    /// Distances are cut to 20 bits: their products with the axis are below 2²⁹, and squares are below 2⁵⁸. What is cut
-    /// counts against culling.
-    fn shows_back(&self, part: &Part, eye: Vec3) -> bool {
+    /// Below 2³³, which is more than [`Bounds`] have.
+    fn exact_box(&self, part: &Part) -> ([i64; 3], [i64; 3]) {
+        let along = |q: i16, offset: i32| ((mul_wide(part.scale, q.into()) + (1 << 14)) >> 15) + i64::from(offset);
+        let half = |q: u16| (mul_wide(part.scale, q.into()) >> 15) + 2;
+        let ([x, y, z], [ox, oy, oz]) = (self.center, part.offset);
+        ([along(x, ox), along(y, oy), along(z, oz)], self.half.map(half))
+    }
+
+    /// Returns the box of the cluster, rounded outwards.
+    fn bounds(&self, part: &Part) -> Bounds {
+        let (mut center, mut half) = ([0; 3], [0; 3]);
+        let (exact_center, exact_half) = self.exact_box(part);
+        for ((to, half), (c, h)) in center.iter_mut().zip(&mut half).zip(exact_center.into_iter().zip(exact_half)) {
+            let saturated = c.clamp(i32::MIN.into(), i32::MAX.into());
+            *to = saturated as i32;
+            *half = (h + (c - saturated).abs()).min(i32::MAX.into()) as i32;
+        }
+        bounds_of(center, half)
+    }
+
+    /// Returns whether all triangles show their back to an eye in object space, raw 16.16: the rule of the container,
+    /// with all lengths multiplied by 127.
+    ///
+    /// # Format
+    /// Distances, below 2³⁴, are cut to 20 bits: their products with the axis are below 2²⁹, and squares are below 2⁵⁸.
+    /// The distance is off by at most 1 for what is cut, 1 for the middle of the box, and 2 for the eye on each axis.
+    /// That is 7 of length, which counts against culling on both sides of the rule.
+    fn shows_back(&self, part: &Part, eye: [i32; 3]) -> bool {
         if self.cutoff == i8::MAX {
             return false;
         }
-        let Bounds { center, half } = self.bounds(part);
-        let (distance, half) = ((center - eye).to_bits(), half.to_bits());
+        let ([x, y, z], half) = self.exact_box(part);
+        let [ex, ey, ez] = eye.map(i64::from);
+        let distance = [x - ex, y - ey, z - ez];
         let all = distance.iter().chain(&half).fold(0, |all, c| all | c.unsigned_abs());
-        let shift = 12_u32.saturating_sub(all.leading_zeros());
-        let distance = distance.map(|c| i64::from(c >> shift));
-        let square = |v: [i64; 3]| v.iter().map(|c| c * c).sum::<i64>();
-        let radius = square(half.map(|c| i64::from(c >> shift) + 1)).unsigned_abs().isqrt() as i64 + 1;
-        let dot: i64 = distance.iter().zip(&self.axis).map(|(d, a)| d * i64::from(*a)).sum();
-        let beyond = dot - 127 * radius - 3 * 127;
+        let shift = 44_u32.saturating_sub(all.leading_zeros());
+        let distance = distance.map(|c| (c >> shift) as i32);
+        let square = |v: [i32; 3]| v.iter().map(|c| mul_wide(*c, *c)).sum::<i64>();
+        let radius = square(half.map(|c| (c >> shift) as i32 + 1)).unsigned_abs().isqrt() as i64 + 1;
+        let [dx, dy, dz] = distance;
+        let [ax, ay, az] = self.axis.map(i32::from);
+        let beyond = i64::from(dx * ax + dy * ay + dz * az) - 127 * radius - 2 * 7 * 127;
         let cutoff = i64::from(self.cutoff.max(0));
         beyond >= 0 && beyond * beyond >= cutoff * cutoff * (square(distance) + 1)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::Scalar;
+    use crate::math::random::Rng;
+
+    fn random(rng: &mut Rng, bits: u32, moved: u32) -> Affine {
+        let mut vector = |bits| Vec3::from_bits(core::array::from_fn(|_| rng.signed_bits(bits) as i32));
+        Affine::from_rows(vector(bits), vector(bits), vector(bits), vector(moved))
+    }
+
+    #[test]
+    fn the_origin_of_a_transform_is_that_of_its_inverse() {
+        let mut rng = Rng::new(4);
+        let mut found = 0;
+        for case in 0..20_000 {
+            let transform = random(&mut rng, 4 + case % 28, 1 + case / 7 % 31);
+            let Some(origin) = origin_of(&transform) else { continue };
+            let Some(inverse) = transform.inverse() else { continue };
+            found += 1;
+            let exact = inverse.transform_point(Vec3::ZERO).to_bits();
+            let is_near = origin.iter().zip(exact).all(|(a, b)| a.abs_diff(b) <= 2);
+            assert!(is_near, "{origin:?}, not {exact:?}: {transform:?}");
+        }
+        assert!(found > 5000, "{found}");
+        assert_eq!(origin_of(&Affine::scale(Scalar::ZERO)), None);
+        let far = Affine::translation(Vec3::from_ints(20_000, 0, 0)) * Affine::scale(Scalar::from_num(0.5));
+        assert_eq!(origin_of(&far), None);
+        let ends = Affine::from_rows(Vec3::X, Vec3::Y, Vec3::Z, Vec3::from_bits([i32::MIN, i32::MAX, 1]));
+        assert_eq!(origin_of(&ends), None);
+    }
+
+    #[test]
+    fn heaps_sort_as_the_standard_library_does() {
+        let mut rng = Rng::new(9);
+        for length in 0..70 {
+            for spread in [1, 3, 50, 1 << 40] {
+                let mut items: std::vec::Vec<_> = (0..length).map(|_| rng.below(spread)).collect();
+                let mut expected = items.clone();
+                expected.sort_unstable_by_key(|item| Reverse(*item));
+                sort_by_heap(&mut items, |item| Reverse(*item));
+                assert_eq!(items, expected);
+            }
+        }
+    }
+
+    #[test]
+    fn mirrors_have_a_negative_determinant() {
+        let mut rng = Rng::new(5);
+        for case in 0..20_000 {
+            let transform = random(&mut rng, 2 + case % 31, 5);
+            let [[a, b, c, _], [d, e, f, _], [g, h, i, _]] = transform.to_rows().map(|row| row.map(i128::from));
+            let determinant = a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g);
+            assert_eq!(is_mirrored(&transform), determinant < 0, "{transform:?}");
+        }
+        let least = Vec3::from_bits([i32::MIN; 3]);
+        assert!(!is_mirrored(&Affine::from_rows(least, least, least, least)));
+        assert!(is_mirrored(&Affine::scale(Scalar::MIN)));
     }
 }

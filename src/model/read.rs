@@ -145,7 +145,7 @@ impl<'a> Model<'a> {
         let count = SectionKind::COUNT as i64;
         in_range(None, 0, "sections", header.sections.into(), count..=count)?;
         let Some(bytes) = bytes.get(..header.length as usize) else { return Err(short(header.length as usize)) };
-        in_range(None, 0, "length", header.length.into(), size_of::<Header>() as i64..=i64::MAX)?;
+        in_range(None, 0, "length", header.length.into(), size_of::<Header>() as i64..=u32::MAX.into())?;
         let from = Sections { bytes, header };
         Ok(Self {
             header,
@@ -175,27 +175,26 @@ impl<'a> Model<'a> {
     }
 
     fn check(&self) -> Result<(), ModelError> {
-        self.check_nodes()?;
-        self.check_materials()?;
-        self.check_skins()?;
-        self.check_parts()?;
-        self.check_clips()?;
         let [x, y, z] = self.header.half;
         in_range(None, 0, "half", x.min(y).min(z).into(), 0..=i64::from(i32::MAX))?;
+        // Others add the number of weights to numbers of their own.
         in_range(None, 0, "weights", self.header.weights.into(), 0..=0xFFFF)?;
         let (first, count) = (self.header.rest_weights, self.header.weights.into());
         within(None, 0, "rest_weights", first, count, self.keys.len())?;
-        in_range(None, 0, "pose_words", self.header.pose_words.into(), exactly(self.words_of_pose(self.parts.len())))
+        self.check_nodes()?;
+        self.check_materials()?;
+        self.check_skins()?;
+        let pose_words = self.check_parts()?;
+        self.check_clips()?;
+        in_range(None, 0, "pose_words", self.header.pose_words.into(), exactly(pose_words))
     }
 
     fn check_nodes(&self) -> Result<(), ModelError> {
         let mut draws = 0;
         for (k, node) in self.nodes.iter().enumerate() {
             let kind = Some(SectionKind::Nodes);
-            if node.parent != NONE {
-                in_range(kind, k, "parent", node.parent.into(), 0..=k as i64 - 1)?;
-            }
-            within(kind, k, "parts", node.first_part.into(), node.parts.into(), self.parts.len())?;
+            number_or_none(kind, k, "parent", node.parent, 0..=k as i64 - 1)?;
+            within(kind, k, "first_part", node.first_part.into(), node.parts.into(), self.parts.len())?;
             within(kind, k, "name", node.name, node.name_length.into(), self.bytes.len())?;
             draws += i64::from(node.parts);
         }
@@ -207,9 +206,7 @@ impl<'a> Model<'a> {
     fn check_materials(&self) -> Result<(), ModelError> {
         for (k, material) in self.materials.iter().enumerate() {
             let kind = Some(SectionKind::Materials);
-            if material.texture != NONE {
-                in_range(kind, k, "texture", material.texture.into(), below(self.textures.len()))?;
-            }
+            number_or_none(kind, k, "texture", material.texture, below(self.textures.len()))?;
             if AlphaMode::of(material.alpha_mode).is_none() {
                 in_range(kind, k, "alpha_mode", material.alpha_mode.into(), 0..=2)?;
             }
@@ -250,7 +247,12 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
-    fn check_parts(&self) -> Result<(), ModelError> {
+    /// Checks parts, and returns the number of words of a pose.
+    ///
+    /// # Format
+    /// Sums of numbers of at most 32 bits, each of an item that is there: below 2⁶⁴.
+    fn check_parts(&self) -> Result<u64, ModelError> {
+        let mut words = self.words_before_parts();
         // Where the next part begins: vertices, indices, clusters, targets, deltas.
         let [mut vertex, mut index, mut cluster, mut target, mut delta] = [0_u64; 5];
         in_range(None, 0, "number of parts", self.parts.len() as i64, 0..=i64::from(NONE))?;
@@ -286,13 +288,12 @@ impl<'a> Model<'a> {
                     within(kind, k, field, first, vertices, length)?;
                 }
             }
-            if part.coarser != NONE {
-                in_range(kind, k, "coarser", part.coarser.into(), k as i64 + 1..=self.parts.len() as i64 - 1)?;
-            }
+            number_or_none(kind, k, "coarser", part.coarser, k as i64 + 1..=self.parts.len() as i64 - 1)?;
             within(kind, k, "first_weight", part.first_weight, part.targets.into(), self.header.weights as usize)?;
-            let pose = if part.is_posed() { self.words_of_pose(k) } else { NONE_LONG.into() };
+            let pose = if part.is_posed() { words } else { NONE_LONG.into() };
             in_range(kind, k, "pose", part.pose.into(), exactly(pose))?;
             if part.is_posed() {
+                words += part.posed_words() as u64;
                 in_range(kind, k, "clusters", part.clusters.into(), 0..=0)?;
                 in_range(kind, k, "coarser", part.coarser.into(), exactly(NONE.into()))?;
             }
@@ -304,17 +305,11 @@ impl<'a> Model<'a> {
                 in_range(kind, n, "first_delta", item.first_delta.into(), exactly(delta))?;
                 delta += u64::from(item.vertices);
                 within(kind, n, "first_delta", item.first_delta, item.vertices.into(), self.deltas.len())?;
-                within(
-                    kind,
-                    n,
-                    "first_vertex",
-                    item.first_vertex.into(),
-                    item.vertices.into(),
-                    part.vertices as usize,
-                )?;
+                let (first, moved) = (item.first_vertex.into(), item.vertices.into());
+                within(kind, n, "first_vertex", first, moved, part.vertices as usize)?;
             }
         }
-        Ok(())
+        Ok(words)
     }
 
     fn check_clusters(&self, number: usize, part: &Part) -> Result<(), ModelError> {
@@ -323,7 +318,9 @@ impl<'a> Model<'a> {
             let k = part.first_cluster as usize + k;
             let kind = Some(SectionKind::Clusters);
             in_range(kind, k, "first_triangle", cluster.first_triangle.into(), exactly(expected))?;
-            in_range(kind, k, "triangles", cluster.triangles.into(), 1..=i64::from(part.triangles) - expected as i64)?;
+            in_range(kind, k, "triangles", cluster.triangles.into(), 1..=0xFFFF)?;
+            let (first, count) = (cluster.first_triangle.into(), cluster.triangles.into());
+            within(kind, k, "first_triangle", first, count, part.triangles as usize)?;
             expected += u64::from(cluster.triangles);
             let first = part.first_index.saturating_add(3 * u32::from(cluster.first_triangle));
             for index in items(self.indices, first, 3 * usize::from(cluster.triangles)) {
@@ -353,10 +350,10 @@ impl<'a> Model<'a> {
             let kind = Some(SectionKind::Influences);
             let item = first as usize + vertex;
             let [b, c, d] = influence.weights.map(i64::from);
-            // The weights fall, and the first one is what is left.
-            in_range(kind, item, "second weight", b, 0..=(256 - b - c - d).min(255))?;
-            in_range(kind, item, "third weight", c, 0..=b)?;
-            in_range(kind, item, "fourth weight", d, 0..=c)?;
+            // The weights fall, and the first one, which is what is left, is not below the second one.
+            in_range(kind, item, "second weight", b, 0..=128)?;
+            in_range(kind, item, "third weight", c, 0..=b.min(256 - 2 * b))?;
+            in_range(kind, item, "fourth weight", d, 0..=c.min(256 - 2 * b - c))?;
             for (joint, weight) in influence.joints.iter().zip([1, b, c, d]) {
                 if weight == 0 {
                     continue;
@@ -395,13 +392,13 @@ impl<'a> Model<'a> {
             let kind = Some(SectionKind::Clips);
             in_range(kind, k, "first_channel", clip.first_channel.into(), exactly(first))?;
             first += u64::from(clip.channels);
-            within(kind, k, "channels", clip.first_channel, clip.channels.into(), self.channels.len())?;
+            within(kind, k, "first_channel", clip.first_channel, clip.channels.into(), self.channels.len())?;
             in_range(kind, k, "duration", clip.duration.into(), 1..=i64::from(u32::MAX))?;
             within(kind, k, "name", clip.name, clip.name_length.into(), self.bytes.len())?;
             let [x, y, z] = clip.half;
             in_range(kind, k, "half", x.min(y).min(z).into(), 0..=i64::from(i32::MAX))?;
             let channels = items(self.channels, clip.first_channel, clip.channels as usize);
-            let mut before = 0;
+            let mut before = Some(0);
             for (n, channel) in channels.iter().enumerate() {
                 before = self.check_channel(clip.first_channel as usize + n, channel, before)?;
             }
@@ -409,8 +406,9 @@ impl<'a> Model<'a> {
         Ok(())
     }
 
-    /// Checks a channel, and returns its place in the order of the channels of a clip, which `before` must not exceed.
-    fn check_channel(&self, number: usize, channel: &Channel, before: i64) -> Result<i64, ModelError> {
+    /// Checks a channel after one that moves the node `before`, or after one of weights if that is `None`. Returns the
+    /// node that the channel moves itself; `None` for weights.
+    fn check_channel(&self, number: usize, channel: &Channel, before: Option<u16>) -> Result<Option<u16>, ModelError> {
         let kind = Some(SectionKind::Channels);
         let path = in_range(kind, number, "path", channel.path.into(), 0..=3).map(|()| Path::of(channel.path))?;
         in_range(kind, number, "interpolation", channel.interpolation.into(), 0..=2)?;
@@ -422,30 +420,30 @@ impl<'a> Model<'a> {
             _ => (3, 0),
         };
         in_range(kind, number, "weights", channel.weights.into(), exactly(weights.into()))?;
-        let is_last = path == Some(Path::Weights);
-        if is_last {
-            let all = self.header.weights as usize;
-            within(kind, number, "target", channel.target.into(), weights.into(), all)?;
-        } else {
-            in_range(kind, number, "target", channel.target.into(), below(self.nodes.len()))?;
-        }
+        let node = match (path, before) {
+            // Weights stand in any order.
+            (Some(Path::Weights), _) => {
+                let all = self.header.weights as usize;
+                within(kind, number, "target", channel.target.into(), weights.into(), all)?;
+                None
+            }
+            // After weights, there are weights only.
+            (_, None) => return in_range(kind, number, "path", channel.path.into(), 3..=3).map(|()| None),
+            (_, Some(before)) => {
+                let nodes = i64::from(before)..=self.nodes.len() as i64 - 1;
+                in_range(kind, number, "target", channel.target.into(), nodes)?;
+                Some(channel.target)
+            }
+        };
         let keys = self.timelines.get(channel.timeline as usize).map_or(0, |line| u64::from(line.times));
         within(kind, number, "first_key", channel.first_key, keys * numbers * values as u64, self.keys.len())?;
-        let place = i64::from(is_last) << 16 | i64::from(channel.target);
-        in_range(kind, number, "target, by the order of channels,", place, before..=i64::MAX)?;
-        // Weights stand in any order.
-        Ok(if is_last { 1 << 16 } else { place })
+        Ok(node)
     }
 
-    /// Returns the number of words of a pose before those of a posed part, or of all parts.
-    ///
-    /// # Format
-    /// 65,535 parts of at most 65,535 vertices, and weights, which are fewer still: below 2³⁶.
-    fn words_of_pose(&self, part: usize) -> u64 {
+    /// Returns the number of words of a pose before those of posed parts: below 2²², as weights are below 2¹⁶.
+    fn words_before_parts(&self) -> u64 {
         let most = self.skins.iter().map(|skin| skin.joints as usize).max().unwrap_or(0);
-        let fixed = MATRIX_WORDS * (self.nodes.len() + most) + self.header.weights as usize;
-        let before = self.parts.iter().take(part).filter(|part| part.is_posed());
-        fixed as u64 + before.map(|part| part.posed_words() as u64).sum::<u64>()
+        (MATRIX_WORDS * (self.nodes.len() + most) + self.header.weights as usize) as u64
     }
 
     /// Returns the joints of a part's skin, and the number of the first one.
@@ -556,6 +554,21 @@ fn in_range(
     Err(ModelError::Number { section, item, field, found, least: *range.start(), most: *range.end() })
 }
 
+/// Returns an error if a number is out of range, and does not stand for "none".
+fn number_or_none(
+    section: Option<SectionKind>,
+    item: usize,
+    field: &'static str,
+    found: u16,
+    range: RangeInclusive<i64>,
+) -> Result<(), ModelError> {
+    if found == NONE {
+        return Ok(());
+    }
+    // Where there is no number, "none" is the one that is left.
+    in_range(section, item, field, found.into(), if range.is_empty() { exactly(NONE.into()) } else { range })
+}
+
 /// Returns an error if `count` items from `first` on end past the last of `length` items.
 fn within(
     section: Option<SectionKind>,
@@ -565,7 +578,10 @@ fn within(
     count: u64,
     length: usize,
 ) -> Result<(), ModelError> {
-    in_range(section, item, field, first.into(), 0..=length as i64 - count.min(1 << 62) as i64)
+    if u64::from(first).saturating_add(count) <= length as u64 {
+        return Ok(());
+    }
+    Err(ModelError::Items { section, item, field, first, count, length })
 }
 
 /// Returns the range of one number.

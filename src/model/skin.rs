@@ -261,7 +261,7 @@ impl Morph<'_> {
         sum.map(|c| (c.wrapping_add(1) >> 1).clamp(i16::MIN.into(), i16::MAX.into()))
     }
 
-    /// Returns a normal that the targets move, 2.14, of any length up to 2.
+    /// Returns a normal that the targets move, 2.14, of any length; each component is below 2.
     #[inline(never)]
     fn normal(&self, vertex: usize, from: [i8; 2]) -> [i32; 3] {
         let mut sum = decode_normal(from).map(i32::from);

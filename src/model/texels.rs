@@ -45,8 +45,8 @@ impl Texture for Texels<'_> {
 pub struct AnyTexels<'a> {
     kind: Kind<'a>,
     alpha: Option<Image<'a, PaletteTexel<'a, 4>>>,
-    /// A factor of alpha, 255 = 1.
-    opacity: u8,
+    /// A factor of alpha, 255 = 1. `None` if alpha is ignored.
+    opacity: Option<u8>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +70,11 @@ impl AnyTexels<'_> {
             Kind::Palette2(image) => image.rgba(x, y),
             Kind::Palette1(image) => image.rgba(x, y),
             Kind::Gray8(image) => image.rgba(x, y),
-            Kind::Mask(image) => image.rgba(x, y),
+            // White, whatever alpha is.
+            Kind::Mask(image) => {
+                let [.., a] = image.rgba(x, y);
+                [255, 255, 255, a]
+            }
         }
     }
 }
@@ -92,12 +96,14 @@ impl Texture for AnyTexels<'_> {
     #[inline(never)]
     fn rgba(&self, x: u32, y: u32) -> [u8; 4] {
         let [r, g, b, mut a] = self.colors(x, y);
+        let Some(opacity) = self.opacity else { return [r, g, b, u8::MAX] };
         if let Some(alpha) = &self.alpha {
             // Each colour of this palette is its number in 15ths.
             [a, ..] = alpha.rgba(x, y);
         }
-        let opacity = u32::from(self.opacity) + u32::from(self.opacity >> 7);
-        [r, g, b, ((u32::from(a) * opacity) >> 8) as u8]
+        // The product / 255, rounded.
+        let product = u32::from(a) * u32::from(opacity) + 128;
+        [r, g, b, ((product + (product >> 8)) >> 8) as u8]
     }
 
     #[inline]
@@ -126,8 +132,8 @@ pub(super) enum LevelTexels<'a> {
 }
 
 impl<'a> LevelTexels<'a> {
-    /// Returns the texture in the type of all formats, with a factor of alpha.
-    pub(super) const fn any(&self, opacity: u8) -> AnyTexels<'a> {
+    /// Returns the texture in the type of all formats, with a factor of alpha, 255 = 1; `None` if alpha is ignored.
+    pub(super) const fn any(&self, opacity: Option<u8>) -> AnyTexels<'a> {
         match *self {
             Self::Rgb565(texels) => AnyTexels { kind: Kind::Rgb565(texels), alpha: None, opacity },
             Self::Other(texels) => AnyTexels { opacity, ..texels },
@@ -136,8 +142,8 @@ impl<'a> LevelTexels<'a> {
 }
 
 impl<'a> Model<'a> {
-    /// Returns a level of a texture. The last level stands for those past it.
-    pub(super) fn level(&self, texture: &TextureItem, level: u8) -> Option<LevelTexels<'a>> {
+    /// Returns a level of a texture, with its alpha if that is asked for. The last level stands for those past it.
+    pub(super) fn level(&self, texture: &TextureItem, level: u8, with_alpha: bool) -> Option<LevelTexels<'a>> {
         let level = level.min(texture.levels.saturating_sub(1));
         let (width, height) = texture.size(level);
         let format = TextureFormat::of(texture.format)?;
@@ -148,7 +154,7 @@ impl<'a> Model<'a> {
         let data = bytes(texture.texels, format)?;
         let size = Size::new(width.into(), height.into());
         let alpha = match texture.alpha {
-            NONE_LONG => None,
+            first if first == NONE_LONG || !with_alpha => None,
             first => Some(image(bytes(first, TextureFormat::Palette4)?, size, PaletteTexel(&ALPHA))?),
         };
         let palette = items(self.bytes, texture.palette, 3 * usize::from(texture.colors));
@@ -168,7 +174,7 @@ impl<'a> Model<'a> {
             TextureFormat::Gray8 => Kind::Gray8(image(data, size, Gray8Texel)?),
             TextureFormat::Mask => Kind::Mask(image(data, size, MaskTexel([255; 3]))?),
         };
-        Some(LevelTexels::Other(AnyTexels { kind, alpha, opacity: u8::MAX }))
+        Some(LevelTexels::Other(AnyTexels { kind, alpha, opacity: None }))
     }
 }
 

@@ -231,10 +231,11 @@ pub fn many_parts() -> Builder {
         }
         builder.parts.push(part);
     }
-    // Without textures: by vertices, by faces, unlit, see-through and seen from both sides, with highlights.
-    for kind in 0..5_u16 {
-        let flags = [0, 0, Material::UNLIT, Material::DOUBLE_SIDED, 0][usize::from(kind)];
-        let alpha_mode = if kind == 3 { AlphaMode::Blend } else { AlphaMode::Opaque } as u8;
+    // Without textures: by vertices, by faces, unlit, see-through and seen from both sides, with highlights,
+    // see-through by faces.
+    for kind in 0..6_u16 {
+        let flags = [0, 0, Material::UNLIT, Material::DOUBLE_SIDED, 0, 0][usize::from(kind)];
+        let alpha_mode = if kind == 3 || kind == 5 { AlphaMode::Blend } else { AlphaMode::Opaque } as u8;
         let shininess = if kind == 4 { 16 } else { 0 };
         let color = [90, 160, 220, 120];
         let item = Material { color, flags, alpha_mode, shininess, specular: [255; 3], ..material() };
@@ -242,7 +243,7 @@ pub fn many_parts() -> Builder {
         part.item.material = builder.materials.len() as u16;
         builder.materials.push(item);
         part.uvs.clear();
-        if kind == 1 {
+        if kind == 1 || kind == 5 {
             part.normals.clear();
         }
         builder.parts.push(part);

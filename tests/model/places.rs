@@ -1,12 +1,15 @@
 //! Cameras that frame a model, levels of detail and of textures, the order of draws.
 
+use super::builder::node;
 use super::figures::{many_parts, textured, tube_part};
+use super::reference::rng::Rng;
 use super::support::{apply, difference, matrix, strips};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::light::Sun;
-use zstrip::math::{Affine, Angle16, Vec3};
+use zstrip::math::{Affine, Angle16, ProjectionError, Vec3};
 use zstrip::mesh::Bounds;
+use zstrip::model::container::{AlphaMode, Node};
 use zstrip::model::{Camera, Model};
 
 fn sun() -> Sun {
@@ -40,6 +43,47 @@ fn a_framed_box_reaches_the_border_of_the_screen() {
     let bounds = Bounds { center: Vec3::ZERO, half: Vec3::X };
     assert!(Camera::framing(&bounds, Angle16::from_degrees(40), Size::new(8, 8), Vec3::ZERO).is_err());
     assert!(Camera::framing(&bounds, Angle16::ZERO, Size::new(8, 8), Vec3::Z).is_err());
+}
+
+#[test]
+fn boxes_that_no_camera_can_show_are_errors() {
+    let screen = Size::new(240, 320);
+    let framing = |center: [i16; 3], half: [i16; 3], direction: Vec3| {
+        let [[a, b, c], [x, y, z]] = [center, half];
+        let bounds = Bounds { center: Vec3::from_ints(a, b, c), half: Vec3::from_ints(x, y, z) };
+        Camera::framing(&bounds, Angle16::from_degrees(40), screen, direction)
+    };
+    // On an upright screen, the camera is 8000 · 4/3 / tan 20° + 8000 units away, and the far plane 1.5 times as far as
+    // the back of the box: 67,959, but for the rounding of the turn.
+    let error = framing([0; 3], [8000; 3], Vec3::Z).expect_err("far");
+    assert_eq!(error.to_string(), "the camera that shows the box needs numbers up to 67958, must be below 32768");
+    // The middle is 30,000 · √3 units away, along the view.
+    assert!(matches!(
+        framing([30_000; 3], [1; 3], Vec3::from_ints(1, 1, 1)),
+        Err(ProjectionError::BoxOutOfRange { .. })
+    ));
+    let directions = [Vec3::X, Vec3::Y, Vec3::Z, Vec3::from_ints(1, 1, 1), Vec3::from_ints(-5, 2, -1)];
+    let (mut rng, mut shown) = (Rng::new(4), 0);
+    for k in 0..3000 {
+        let mut numbers = |bits: u32| core::array::from_fn(|_| rng.signed_bits(1 + k % bits) as i16);
+        let (center, half): ([i16; 3], [i16; 3]) = (numbers(15), numbers(14));
+        let half = half.map(i16::abs);
+        let Ok(camera) = framing(center, half, directions[k as usize % 5]) else { continue };
+        shown += 1;
+        let m = matrix(&(camera.lens * camera.view));
+        for corner in 0..8 {
+            let side = |k: usize| if corner >> k & 1 == 0 { half[k] } else { -half[k] };
+            let p: [f64; 3] = core::array::from_fn(|k| f64::from(center[k]) + f64::from(side(k)));
+            let [x, y, z, w] = apply(&m, [p[0], p[1], p[2], 1.0]);
+            let is_inside = x.abs() < 1.01 * w && y.abs() < 1.01 * w && 0.0 <= z && z <= w;
+            assert!(is_inside || half == [0; 3], "{center:?} {half:?}: {x} {y} {z} {w}");
+        }
+    }
+    for half in [9000, 15_000, i16::MAX] {
+        assert!(framing([0; 3], [half; 3], Vec3::Z).is_err(), "{half}");
+    }
+    println!("{shown} of 3000 boxes shown");
+    assert!((1000..3000).contains(&shown), "{shown}");
 }
 
 #[test]
@@ -99,16 +143,55 @@ fn blended_parts_come_last_from_back_to_front() {
     let mut places = vec![None; Model::draws(container.bytes())];
     let placed = model.place(&Affine::IDENTITY, &camera, &sun(), &mut places).expect("enough places");
     let parts: Vec<usize> = placed.draws().map(|(_, part)| part).collect();
-    assert_eq!(parts.len(), 13);
-    // Textures number 2 and 5 are blended, and the fourth part without a texture.
+    assert_eq!(parts.len(), 14);
+    // Textures number 2 and 5 are blended, and the fourth and sixth part without a texture.
     let mut blended = parts[10..].to_vec();
     blended.sort_unstable();
-    assert_eq!(blended, [2, 5, 11]);
+    assert_eq!(blended, [2, 5, 11, 13]);
     let depth = |place: usize| {
         let (mvp, part) = placed.draws().nth(place).expect("a draw");
         zstrip::mesh::view_depth(mvp, model.mesh(part).expect("a part").bounds())
     };
-    assert!(depth(10) >= depth(11) && depth(11) >= depth(12));
+    assert!((10..13).all(|place| depth(place) >= depth(place + 1)));
     let error = model.place(&Affine::IDENTITY, &camera, &sun(), &mut [None; 3]).expect_err("too few places");
-    assert_eq!(error.to_string(), "3 places, but the model has 13 draws");
+    assert_eq!(error.to_string(), "3 places, but the model has 14 draws");
+}
+
+#[test]
+fn many_blended_draws_are_sorted_in_a_short_time() {
+    let mut builder = textured();
+    builder.materials[0].alpha_mode = AlphaMode::Blend as u8;
+    let mut rng = Rng::new(3);
+    builder.nodes = (0..20_000)
+        .map(|_| Node { translation: [0, 0, rng.below(50) as i32 * -(1 << 16)], parts: 1, ..node() })
+        .collect();
+    let z: Vec<i32> = builder.nodes.iter().map(|node| node.translation[2]).collect();
+    let container = builder.build();
+    let model = Model::from_bytes(container.bytes()).expect("a model");
+    let screen = Size::new(100, 100);
+    let camera = Camera::framing(&model.bounds(), Angle16::from_degrees(53), screen, Vec3::Z).expect("a camera");
+    let mut places = vec![None; z.len()];
+    // Comparing all with all would be 100 million comparisons, each of which some hundred instructions.
+    let start = std::time::Instant::now();
+    let placed = model.place(&Affine::IDENTITY, &camera, &sun(), &mut places).expect("enough places");
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+    let depths: Vec<i64> = placed
+        .draws()
+        .map(|(mvp, part)| zstrip::mesh::view_depth(mvp, model.mesh(part).expect("a part").bounds()))
+        .collect();
+    assert_eq!(depths.len(), z.len());
+    assert!(depths.is_sorted_by(|a, b| a >= b) && depths.first() > depths.last());
+}
+
+#[test]
+fn nodes_are_found_by_name() {
+    let mut builder = many_parts();
+    for (number, name) in [(2, "hat"), (5, "h\u{e4}nd"), (6, "hat")] {
+        let (first, length) = builder.name(name);
+        (builder.nodes[number].name, builder.nodes[number].name_length) = (first, length);
+    }
+    let container = builder.build();
+    let model = Model::from_bytes(container.bytes()).expect("a model");
+    let found = ["hat", "h\u{e4}nd", "", "ha", "hats", "Hat"].map(|name| model.node_named(name));
+    assert_eq!(found, [Some(2), Some(5), Some(0), None, None, None]);
 }
