@@ -201,7 +201,7 @@ impl fmt::Display for WriteReport {
         let Self { bytes, vertices, triangles, parts, .. } = self;
         writeln!(f, "container: {bytes} bytes, {vertices} vertices, {triangles} triangles, {parts} parts")?;
         for (name, items, bytes) in &self.sections {
-            writeln!(f, "  {name:<11} {items:>8} items {bytes:>9} bytes")?;
+            writeln!(f, "  {name:<16} {items:>8} items {bytes:>9} bytes")?;
         }
         writeln!(f, "textures: {} bytes", self.texture_bytes)?;
         writeln!(f, "RAM: {} places, {} words of a pose", self.draws, self.pose_words)?;
