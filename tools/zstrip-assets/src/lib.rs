@@ -227,7 +227,7 @@ pub fn import_with_progress(
     }
 
     let mut report = context.report;
-    report.files = context.files.read;
+    (report.files, report.missing) = (context.files.read, context.files.missing);
     report.add(Note::Mirrored { nodes: import.mirrored() });
     report.after = Counts {
         vertices: import.meshes.iter().map(|mesh| mesh.vertices.len()).sum(),

@@ -27,6 +27,8 @@ pub struct Report {
     pub bounds: Option<Bounds>,
     /// The files that were read, the model's own first.
     pub files: Vec<PathBuf>,
+    /// The files that the model names, and that are not there.
+    pub missing: Vec<PathBuf>,
     /// Everything that was repaired, dropped or noticed, in the order in which it was found.
     pub notes: Vec<Note>,
 }

@@ -271,3 +271,24 @@ fn rust_source_names_the_container_and_clips() {
         assert!(source.contains(text), "{text} is missing in\n{source}");
     }
 }
+
+#[test]
+fn clips_of_one_name_are_told_apart() {
+    let mut import = animated(false);
+    let clip = import.animations[0].clone();
+    let names = ["clip_2", "walk", "walk", "", "Clip_3", "clip_2"];
+    import.animations = names.iter().map(|name| Animation { name: (*name).to_owned(), ..clip.clone() }).collect();
+    let (source, _) = write_rust(&import, "a", "a.zstm", &WriteOptions::default()).expect("a source");
+    let constants: Vec<_> = source.lines().filter_map(|line| line.trim().strip_prefix("pub const ")).skip(2).collect();
+    assert_eq!(
+        constants,
+        [
+            "CLIP_2: usize = 0;",
+            "WALK: usize = 1;",
+            "CLIP_2_: usize = 2;",
+            "CLIP_3: usize = 3;",
+            "CLIP_4: usize = 4;",
+            "CLIP_5: usize = 5;"
+        ]
+    );
+}
