@@ -45,6 +45,8 @@ pub(crate) struct Context<'o> {
     pub files: Files,
     pub images: Images,
     pub report: Report,
+    /// The length in drafts of a unit of the file.
+    pub unit: f64,
     numbers: u64,
     ignored: BTreeMap<String, usize>,
 }
@@ -59,7 +61,7 @@ impl<'o> Context<'o> {
     pub fn new(options: &'o Options, files: Files) -> Self {
         let numbers = options.limits.numbers.min(MOST_NUMBERS);
         let images = Images::default();
-        Self { options, files, images, report: Report::default(), numbers, ignored: BTreeMap::new() }
+        Self { options, files, images, report: Report::default(), unit: 1.0, numbers, ignored: BTreeMap::new() }
     }
 
     /// Returns an error in the model's file.

@@ -184,6 +184,7 @@ pub fn import_with_progress(
     let up = options.up.unwrap_or(custom);
     if scene.is_static {
         place::place_vertices(&mut scene, up, &context)?;
+        context.unit = options.scale;
     }
 
     let mut import = scene.import;
@@ -206,7 +207,7 @@ pub fn import_with_progress(
         return Err(context.error(Place::File, Kind::Empty, message));
     }
     // Each draft keeps the same part of its triangles.
-    let share = |of: usize| options.max_triangles.map(|most| (of * most / triangles.max(most)).max(1));
+    let share = |of: usize| options.max_triangles.map(|most| part(of, most, triangles));
     let count = groups.len();
     let mut meshes_of_drafts = Vec::new();
     for (k, group) in groups.into_iter().enumerate() {
@@ -240,6 +241,12 @@ pub fn import_with_progress(
 
 /// Gives an image to all materials that have no texture, and a material to all meshes that have none.
 fn paint(import: &mut Import, image: usize) {
+/// Returns how many triangles of a draft of `of` stay where `most` of `all` may: 1 or more.
+fn part(of: usize, most: usize, all: usize) -> usize {
+    // The product may need more bits than a `usize` has; the part is at most `of`.
+    (of as u128 * most as u128 / all.max(most) as u128).max(1) as usize
+}
+
     if import.meshes.iter().any(|mesh| mesh.material.is_none()) {
         let white = import.materials.len();
         import.materials.push(Material::default());

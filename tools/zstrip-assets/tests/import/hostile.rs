@@ -258,3 +258,16 @@ fn options_out_of_range_are_errors() {
         assert_eq!(folder().import(name, &options).expect_err(name).kind, Kind::NonFinite);
     }
 }
+    // Whatever else is in range gives a model.
+    let limits = Limits {
+        file_bytes: u64::MAX,
+        numbers: u64::MAX,
+        json_values: u64::MAX,
+        image_side: u32::MAX,
+        texels: u64::MAX,
+    };
+    let options = Options { max_triangles: Some(usize::MAX), limits, ..Options::default() };
+    for name in ["a.obj", "a.glb"] {
+        let (import, report) = folder().import(name, &options).expect(name);
+        assert_eq!(import.images.len(), 1, "{report}");
+    }
