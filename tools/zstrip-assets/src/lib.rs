@@ -221,6 +221,8 @@ pub fn import_with_progress(
         paint(&mut import, image);
     }
     for node in &mut import.nodes {
+        let count: usize = node.meshes.iter().map(|draft| meshes_of_drafts[*draft].len()).sum();
+        context.take_numbers(2 * count as u64, || Place::File)?;
         node.meshes = node.meshes.iter().flat_map(|draft| meshes_of_drafts[*draft].clone()).collect();
     }
     if !scene.is_static {
@@ -239,14 +241,14 @@ pub fn import_with_progress(
     Ok((import, report))
 }
 
-/// Gives an image to all materials that have no texture, and a material to all meshes that have none.
-fn paint(import: &mut Import, image: usize) {
 /// Returns how many triangles of a draft of `of` stay where `most` of `all` may: 1 or more.
 fn part(of: usize, most: usize, all: usize) -> usize {
     // The product may need more bits than a `usize` has; the part is at most `of`.
     (of as u128 * most as u128 / all.max(most) as u128).max(1) as usize
 }
 
+/// Gives an image to all materials that have no texture, and a material to all meshes that have none.
+fn paint(import: &mut Import, image: usize) {
     if import.meshes.iter().any(|mesh| mesh.material.is_none()) {
         let white = import.materials.len();
         import.materials.push(Material::default());
