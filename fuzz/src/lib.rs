@@ -18,18 +18,24 @@ pub mod bytes;
 pub mod clipping;
 pub mod constructors;
 pub mod coverage;
+mod hash;
 pub mod models;
 mod reference;
+pub mod replay;
 pub mod scenes;
 pub mod sinks;
 mod source;
 pub mod strokes;
 mod things;
 
+pub use hash::Hash;
 pub use reference::rng::Rng;
 
-/// All targets: a name, and a function from any bytes to a hash of the results.
-pub const TARGETS: [(&str, fn(&[u8]) -> u64); 8] = [
+/// A name, and a function from any bytes to a hash of the results.
+pub type Target = (&'static str, fn(&[u8]) -> u64);
+
+/// All targets.
+pub const TARGETS: [Target; 8] = [
     ("scenes", scenes::run),
     ("coverage", coverage::run),
     ("clipping", clipping::run),
@@ -39,29 +45,3 @@ pub const TARGETS: [(&str, fn(&[u8]) -> u64); 8] = [
     ("models", models::run),
     ("sinks", sinks::run),
 ];
-
-/// FNV-1a of 64 bits over whatever a target finds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Hash(pub u64);
-
-impl Default for Hash {
-    fn default() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-}
-
-impl Hash {
-    /// Adds a number, eight bytes at a time.
-    pub fn add(&mut self, value: u64) {
-        self.0 = (self.0 ^ value).wrapping_mul(0x0100_0000_01b3).rotate_left(29);
-    }
-
-    /// Adds bytes.
-    pub fn bytes(&mut self, bytes: &[u8]) {
-        for chunk in bytes.chunks(8) {
-            let mut word = [0; 8];
-            word[..chunk.len()].copy_from_slice(chunk);
-            self.add(u64::from_le_bytes(word));
-        }
-    }
-}

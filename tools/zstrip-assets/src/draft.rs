@@ -45,6 +45,8 @@ pub(crate) struct Context<'o> {
     pub files: Files,
     pub images: Images,
     pub report: Report,
+    /// The length in drafts of a unit of the file.
+    pub unit: f64,
     numbers: u64,
     ignored: BTreeMap<String, usize>,
 }
@@ -55,11 +57,14 @@ const MOST_NUMBERS: u64 = 1 << 31;
 /// Kinds of ignored things that are told apart.
 const MOST_IGNORED: usize = 24;
 
+/// The first letters of ignored things, by which they are told apart.
+const IGNORED_LETTERS: usize = 40;
+
 impl<'o> Context<'o> {
     pub fn new(options: &'o Options, files: Files) -> Self {
         let numbers = options.limits.numbers.min(MOST_NUMBERS);
         let images = Images::default();
-        Self { options, files, images, report: Report::default(), numbers, ignored: BTreeMap::new() }
+        Self { options, files, images, report: Report::default(), unit: 1.0, numbers, ignored: BTreeMap::new() }
     }
 
     /// Returns an error in the model's file.
@@ -92,10 +97,11 @@ impl<'o> Context<'o> {
 
     /// Counts a part of the file that means nothing here.
     pub fn ignore(&mut self, what: &str) {
+        let what = what.char_indices().nth(IGNORED_LETTERS).map_or(what, |(end, _)| &what[..end]);
         if let Some(count) = self.ignored.get_mut(what) {
             *count += 1;
         } else if self.ignored.len() < MOST_IGNORED {
-            self.ignored.insert(what.chars().take(40).collect(), 1);
+            self.ignored.insert(what.to_owned(), 1);
         } else {
             *self.ignored.entry("others".to_owned()).or_default() += 1;
         }

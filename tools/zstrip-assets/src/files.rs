@@ -22,6 +22,8 @@ pub(crate) struct Files {
     pub model: PathBuf,
     /// The files that were read.
     pub read: Vec<PathBuf>,
+    /// Files that the model names, and that are not there.
+    pub missing: Vec<PathBuf>,
     /// The folder, without links in its path; or why there is none.
     folder: Result<PathBuf, String>,
     left: u64,
@@ -33,7 +35,7 @@ impl Files {
     pub fn new(model: &Path, limit: u64) -> Self {
         let folder = model.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let folder = folder.canonicalize().map_err(|error| format!("the folder cannot be opened: {error}"));
-        Self { model: model.to_path_buf(), read: Vec::new(), folder, left: limit, limit }
+        Self { model: model.to_path_buf(), read: Vec::new(), missing: Vec::new(), folder, left: limit, limit }
     }
 
     /// Reads the model itself.
@@ -71,6 +73,7 @@ impl Files {
             Ok(real) if !real.starts_with(folder) => leaves(&self.model),
             Ok(real) => self.read(&real),
             Err(error) => {
+                self.missing.push(path);
                 let message = format!("{name:?} cannot be opened: {error}");
                 Err(Error::new(&self.model, Place::File, Kind::Missing, message))
             }

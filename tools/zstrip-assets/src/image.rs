@@ -50,7 +50,7 @@ impl Images {
             within.max_image_width = Some(limits.image_side);
             within.max_image_height = Some(limits.image_side);
             // Up to 8 bytes per texel are decoded, and 4 are kept.
-            within.max_alloc = Some(16 * (limits.texels - self.texels) + (1 << 20));
+            within.max_alloc = Some((limits.texels - self.texels).saturating_mul(16).saturating_add(1 << 20));
             reader.limits(within);
             Ok(reader)
         };

@@ -184,6 +184,7 @@ pub fn import_with_progress(
     let up = options.up.unwrap_or(custom);
     if scene.is_static {
         place::place_vertices(&mut scene, up, &context)?;
+        context.unit = options.scale;
     }
 
     let mut import = scene.import;
@@ -206,7 +207,7 @@ pub fn import_with_progress(
         return Err(context.error(Place::File, Kind::Empty, message));
     }
     // Each draft keeps the same part of its triangles.
-    let share = |of: usize| options.max_triangles.map(|most| (of * most / triangles.max(most)).max(1));
+    let share = |of: usize| options.max_triangles.map(|most| part(of, most, triangles));
     let count = groups.len();
     let mut meshes_of_drafts = Vec::new();
     for (k, group) in groups.into_iter().enumerate() {
@@ -220,6 +221,8 @@ pub fn import_with_progress(
         paint(&mut import, image);
     }
     for node in &mut import.nodes {
+        let count: usize = node.meshes.iter().map(|draft| meshes_of_drafts[*draft].len()).sum();
+        context.take_numbers(2 * count as u64, || Place::File)?;
         node.meshes = node.meshes.iter().flat_map(|draft| meshes_of_drafts[*draft].clone()).collect();
     }
     if !scene.is_static {
@@ -227,7 +230,7 @@ pub fn import_with_progress(
     }
 
     let mut report = context.report;
-    report.files = context.files.read;
+    (report.files, report.missing) = (context.files.read, context.files.missing);
     report.add(Note::Mirrored { nodes: import.mirrored() });
     report.after = Counts {
         vertices: import.meshes.iter().map(|mesh| mesh.vertices.len()).sum(),
@@ -236,6 +239,12 @@ pub fn import_with_progress(
     };
     report.bounds = import.bounds();
     Ok((import, report))
+}
+
+/// Returns how many triangles of a draft of `of` stay where `most` of `all` may: 1 or more.
+fn part(of: usize, most: usize, all: usize) -> usize {
+    // The product may need more bits than a `usize` has; the part is at most `of`.
+    (of as u128 * most as u128 / all.max(most) as u128).max(1) as usize
 }
 
 /// Gives an image to all materials that have no texture, and a material to all meshes that have none.

@@ -91,6 +91,8 @@ impl Library {
             } else if alpha_map.is_some() && material.alpha == AlphaMode::Opaque {
                 material.alpha = AlphaMode::Mask { cutoff: 0.5 };
             }
+        } else if alpha_map.is_some() {
+            context.ignore("map_d without map_Kd");
         }
         self.by_name.entry(material.name.clone()).or_insert(material);
     }

@@ -3,7 +3,7 @@
 //! Why not by a crate: `tobj` names no line in its errors and divides concave polygons as fans; `obj` does not check
 //! indices; `obj-rs` panics at curves and refuses colours of vertices.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::draft::{Context, Draft, FLAT_GROUP, NO_GROUP, Scene};
 use crate::error::{Error, Kind, Place};
@@ -11,6 +11,12 @@ use crate::model::{Import, Node};
 use crate::mtl::Library;
 use crate::report::Note;
 use crate::triangulate::{MOST_CORNERS, Triangulator};
+
+/// Libraries that a note names. Every missing material has a note.
+const NAMED_LIBRARIES: usize = 4;
+
+/// The first letters of a name, which notes have.
+const NAME_LETTERS: usize = 60;
 
 /// An index that a corner does not have.
 const NONE: u32 = u32::MAX;
@@ -44,7 +50,9 @@ struct Reader {
     part: Option<usize>,
     group: Option<u32>,
     library: Library,
-    libraries: Vec<String>,
+    libraries: HashSet<String>,
+    /// The names of the first libraries, for messages.
+    first_libraries: Vec<String>,
     triangulator: Triangulator,
     /// The corners of the face at hand.
     face: Vec<Corner>,
@@ -120,8 +128,10 @@ impl Reader {
         let is_one = names.split_whitespace().all(|name| !name.ends_with(".mtl")) || names.matches(".mtl").count() == 1;
         let names: Vec<&str> = if is_one { vec![names] } else { names.split_whitespace().collect() };
         for name in names {
-            if !self.libraries.iter().any(|known| known == name) {
-                self.libraries.push(name.to_owned());
+            if self.libraries.insert(name.to_owned()) {
+                if self.first_libraries.len() < NAMED_LIBRARIES {
+                    self.first_libraries.push(name.chars().take(NAME_LETTERS).collect());
+                }
                 self.library.read(name, context);
             }
         }
@@ -203,7 +213,12 @@ impl Reader {
                 }
                 None if part.material.is_empty() => {}
                 None => {
-                    let reason = format!("{:?} is in none of the files {:?}", part.material, self.libraries);
+                    let name: String = part.material.chars().take(NAME_LETTERS).collect();
+                    let more = match self.libraries.len() - self.first_libraries.len() {
+                        0 => String::new(),
+                        more => format!(" and {more} more"),
+                    };
+                    let reason = format!("{name:?} is in none of the files {:?}{more}", self.first_libraries);
                     context.report.add(Note::MaterialMissing { reason });
                 }
             }

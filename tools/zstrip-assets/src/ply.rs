@@ -21,7 +21,8 @@ pub(crate) fn read(bytes: &[u8], context: &mut Context) -> Result<Scene, Error> 
     let header = parser.read_header(&mut reader).map_err(|error| failure(&error, None, context))?;
     let mut draft = Draft::default();
     let mut triangulator = Triangulator::default();
-    let mut faces = Faces::default();
+    let vertices = header.elements.get("vertex").map_or(0, |definition| definition.count);
+    let mut faces = Faces { vertices, ..Faces::default() };
     for (name, definition) in &header.elements {
         let left = reader.get_ref().len();
         let at = bytes.len() - left;
@@ -30,7 +31,7 @@ pub(crate) fn read(bytes: &[u8], context: &mut Context) -> Result<Scene, Error> 
             let at = bytes.len() - reader.get_ref().len();
             failure(&error, (header.encoding != Encoding::Ascii).then_some(at), context)
         })?;
-        let place = |k: usize| element_place(&header, definition, name, k, at, bytes);
+        let place = |k: usize| element_place(header.encoding, definition, k, at, bytes);
         match &name[..] {
             "vertex" => add_vertices(&mut draft, definition, elements, &place, context)?,
             "face" => {
@@ -43,7 +44,7 @@ pub(crate) fn read(bytes: &[u8], context: &mut Context) -> Result<Scene, Error> 
             _ => (0..definition.count.min(1)).for_each(|_| context.ignore(&format!("element \"{name}\""))),
         }
     }
-    faces.put(&mut draft, &mut triangulator, context)?;
+    faces.put(&mut draft, &mut triangulator);
     triangulator.report(&mut context.report);
     let mut import = Import { nodes: vec![Node { meshes: vec![0], ..Node::default() }], ..Import::default() };
     if let Some(material) = material(&header, context) {
@@ -89,16 +90,27 @@ fn kind_size(kind: &ply_rs_bw::ply::ScalarType) -> usize {
     }
 }
 
-/// The place of an element: its line in text, its byte where elements have one size, or else the beginning of all.
-fn element_place(header: &Header, definition: &ElementDef, _: &str, k: usize, at: usize, bytes: &[u8]) -> Place {
-    if header.encoding == Encoding::Ascii {
+/// The place of an element that was read: its line in text, or its first byte.
+fn element_place(encoding: Encoding, definition: &ElementDef, k: usize, at: usize, bytes: &[u8]) -> Place {
+    if encoding == Encoding::Ascii {
         return Place::Line(bytes[..at].iter().filter(|byte| **byte == b'\n').count() + k + 1);
     }
-    let size = definition.properties.values().map(|property| match &property.data_type {
-        PropertyType::Scalar(kind) => Some(kind_size(kind)),
-        PropertyType::List(..) => None,
-    });
-    Place::Byte(at + k * size.sum::<Option<usize>>().unwrap_or(0))
+    // Lists have any length, so the elements before have to be walked over.
+    let mut place = at;
+    for property in (0..k).flat_map(|_| definition.properties.values()) {
+        place += match &property.data_type {
+            PropertyType::Scalar(kind) => kind_size(kind),
+            PropertyType::List(count, kind) => {
+                let size = kind_size(count);
+                let digits = bytes.get(place..place + size).unwrap_or_default().iter();
+                let add = |sum: usize, digit: &u8| sum << 8 | usize::from(*digit);
+                let count =
+                    if encoding == Encoding::BinaryBigEndian { digits.fold(0, add) } else { digits.rfold(0, add) };
+                size + count * kind_size(kind)
+            }
+        };
+    }
+    Place::Byte(place)
 }
 
 fn failure(error: &ParseError, byte: Option<usize>, context: &Context) -> Error {
@@ -228,14 +240,14 @@ fn add_vertices(
 /// Polygons, which may come before the vertices that they number.
 #[derive(Default)]
 struct Faces {
-    /// Corners of all polygons.
-    corners: Vec<i64>,
-    /// u and v of all corners, or nothing.
-    uvs: Vec<[f32; 2]>,
+    /// The number of vertices, as the header says.
+    vertices: usize,
+    /// Corners of all polygons, all of which there are.
+    corners: Vec<u32>,
+    /// u and v of corners that have their own; it may end before the corners do.
+    uvs: Vec<Option<[f32; 2]>>,
     /// The ends of polygons in the corners.
     ends: Vec<usize>,
-    /// The place of the first polygon.
-    places: Vec<Place>,
 }
 
 impl Faces {
@@ -245,7 +257,6 @@ impl Faces {
         place: &dyn Fn(usize) -> Place,
         context: &mut Context,
     ) -> Result<(), Error> {
-        let has_uvs = elements.iter().any(|e| !e.corner_uvs.is_empty());
         for (k, Element { corners, corner_uvs, .. }) in elements.into_iter().enumerate() {
             if corners.len() < 3 {
                 context.ignore("faces of less than 3 corners");
@@ -256,19 +267,19 @@ impl Faces {
                 return Err(context.error(place(k), Kind::Limit, message));
             }
             context.take_numbers(6 * corners.len() as u64, || place(k))?;
-            if has_uvs {
-                if !corner_uvs.iter().all(|x| x.is_finite()) {
-                    return Err(context.error(place(k), Kind::NonFinite, "texture coordinates that are not finite"));
-                }
-                let mut pairs = corner_uvs.as_chunks::<2>().0.to_vec();
-                pairs.resize(corners.len(), [0.0; 2]);
-                self.uvs.extend(pairs.iter().map(|[u, v]| [*u, 1.0 - v]));
+            if !corner_uvs.iter().all(|x| x.is_finite()) {
+                return Err(context.error(place(k), Kind::NonFinite, "texture coordinates that are not finite"));
             }
-            self.corners.extend(corners);
+            let first = self.corners.len();
+            for corner in corners {
+                self.corners.push(self.vertex(corner, || place(k), context)?);
+            }
+            if !corner_uvs.is_empty() {
+                self.uvs.resize(first, None);
+                self.uvs.extend(corner_uvs.as_chunks::<2>().0.iter().map(|[u, v]| Some([*u, 1.0 - v])));
+                self.uvs.resize(self.corners.len(), None);
+            }
             self.ends.push(self.corners.len());
-            if self.places.is_empty() {
-                self.places.push(place(k));
-            }
         }
         Ok(())
     }
@@ -282,7 +293,8 @@ impl Faces {
         for (k, element) in elements.into_iter().enumerate() {
             context.take_numbers(18 * element.corners.len() as u64, || place(k))?;
             for strip in element.corners.split(|corner| *corner == -1) {
-                for (k, window) in strip.windows(3).enumerate() {
+                let vertices = strip.iter().map(|corner| self.vertex(*corner, || place(k), context));
+                for (k, window) in vertices.collect::<Result<Vec<_>, _>>()?.windows(3).enumerate() {
                     // Every second triangle goes the other way around.
                     let [a, b] = if k % 2 == 0 { [0, 1] } else { [1, 0] };
                     self.corners.extend([window[a], window[b], window[2]]);
@@ -293,32 +305,35 @@ impl Faces {
         Ok(())
     }
 
-    fn put(self, draft: &mut Draft, triangulator: &mut Triangulator, context: &Context) -> Result<(), Error> {
-        let count = draft.vertices.len();
-        if let Some(at) = self.corners.iter().position(|corner| usize::try_from(*corner).map_or(true, |v| v >= count)) {
-            let face = self.ends.partition_point(|end| *end <= at);
+    /// Returns the number of a vertex, or an error if there is none of that number.
+    fn vertex(&self, corner: i64, place: impl FnOnce() -> Place, context: &Context) -> Result<u32, Error> {
+        let count = self.vertices;
+        u32::try_from(corner).ok().filter(|vertex| (*vertex as usize) < count).ok_or_else(|| {
             let message = format!(
-                "face {face} names vertex {}, where the file has {count} vertices, 0 is the first; export it again",
-                self.corners[at]
+                "it names vertex {corner}, where the file has {count} vertices, 0 is the first; export it again"
             );
-            let place = self.places.first().cloned().unwrap_or(Place::File);
-            return Err(context.error(place, Kind::Index, message));
+            context.error(place(), Kind::Index, message)
+        })
+    }
+
+    fn put(mut self, draft: &mut Draft, triangulator: &mut Triangulator) {
+        let has_uvs = !self.uvs.is_empty();
+        if has_uvs {
+            // Each corner becomes a vertex, as its texture coordinates may be its own; equal ones are welded later.
+            draft.vertices = draft.vertices.select(&self.corners);
+            self.uvs.resize(self.corners.len(), None);
+            let of_vertex = |k: usize| draft.vertices.uvs.get(k).copied().unwrap_or_default();
+            draft.vertices.uvs =
+                self.uvs.iter().enumerate().map(|(k, uv)| uv.unwrap_or_else(|| of_vertex(k))).collect();
         }
         let mut begin = 0;
-        if !self.uvs.is_empty() {
-            // Each corner becomes a vertex, as its texture coordinates may be its own; equal ones are welded later.
-            let all: Vec<u32> = self.corners.iter().map(|corner| *corner as u32).collect();
-            draft.vertices = draft.vertices.select(&all);
-            draft.vertices.uvs.clone_from(&self.uvs);
-        }
         for end in self.ends {
-            let number = |k: usize| if self.uvs.is_empty() { self.corners[k] as u32 } else { k as u32 };
+            let number = |k: usize| if has_uvs { k as u32 } else { self.corners[k] };
             let corners: Vec<_> = (begin..end).map(|k| draft.vertices.positions[number(k) as usize]).collect();
             let triangles = triangulator.divide(&corners);
             draft.triangles.extend(triangles.iter().map(|t| t.map(|k| number(begin + k as usize))));
             begin = end;
         }
-        Ok(())
     }
 }
 

@@ -18,9 +18,10 @@ use crate::weld::{compact, equal, places};
 /// Drops what shows nothing, welds, and turns triangles over.
 pub(crate) fn repair(group: &mut [Draft], context: &mut Context) {
     let (options, report) = (context.options, &mut context.report);
+    let distance = options.weld_distance * context.unit;
     for draft in &mut *group {
-        let at = places(&draft.vertices, options.weld_distance);
-        if options.weld_distance > 0.0 {
+        let at = places(&draft.vertices, distance);
+        if distance > 0.0 {
             let old = draft.vertices.positions.clone();
             for (position, place) in draft.vertices.positions.iter_mut().zip(&at) {
                 *position = old[*place as usize];
@@ -59,7 +60,8 @@ pub(crate) fn finish(
         // Triangles that are left have other corners, so their groups are those of no triangle of the file.
         draft.groups = Vec::new();
         draft.triangles = left;
-        context.report.add(Note::Simplified { from, to: draft.triangles.len(), budget, error: error * size });
+        let error = (f64::from(error) * f64::from(size) / context.unit) as f32;
+        context.report.add(Note::Simplified { from, to: draft.triangles.len(), budget, error });
         weld(draft);
     }
     make_normals(&mut group, context);

@@ -27,9 +27,14 @@ pub struct Report {
     pub bounds: Option<Bounds>,
     /// The files that were read, the model's own first.
     pub files: Vec<PathBuf>,
+    /// The files that the model names, and that are not there.
+    pub missing: Vec<PathBuf>,
     /// Everything that was repaired, dropped or noticed, in the order in which it was found.
     pub notes: Vec<Note>,
 }
+
+/// The most letters of a reason in a note.
+const REASON_LETTERS: usize = 400;
 
 /// Something that was repaired, dropped or noticed.
 #[derive(Clone, Debug, PartialEq)]
@@ -216,8 +221,9 @@ impl Report {
     /// Adds a note, unless it counts nothing. A note of a kind that is there already adds to that one's count.
     pub(crate) fn add(&mut self, note: Note) {
         use Note::{
-            Crossed, CrowdedPoints, Degenerate, Duplicate, Flipped, Inconsistent, Mirrored, Moved, NonManifold,
-            NormalsMade, NotUtf8, OpenEdges, Opposed, RotationsNormalized, Triangulated, WeightsMissing, Welded,
+            Crossed, CrowdedPoints, Degenerate, Duplicate, Flipped, Inconsistent, MaterialMissing, Mirrored, Moved,
+            NonManifold, NormalsMade, NotUtf8, OpenEdges, Opposed, RotationsNormalized, TextureMissing, Triangulated,
+            WeightsMissing, Welded,
         };
         fn count(note: &mut Note) -> Option<&mut usize> {
             match note {
@@ -242,6 +248,13 @@ impl Report {
             }
         }
         let mut note = note;
+        if let TextureMissing { reason } | MaterialMissing { reason } = &mut note
+            && let Some((end, _)) = reason.char_indices().nth(REASON_LETTERS)
+        {
+            // A file may name one long name in many places.
+            reason.truncate(end);
+            reason.push('…');
+        }
         if let Some(&mut more) = count(&mut note) {
             let same = |other: &&mut Note| std::mem::discriminant(*other) == std::mem::discriminant(&note);
             if more == 0 {

@@ -1,5 +1,6 @@
 //! Rust source of a model: a module that includes a container.
 
+use std::collections::HashSet;
 use std::fmt::Write;
 
 use crate::model::Import;
@@ -8,8 +9,8 @@ use crate::write::{WriteError, WriteOptions, Written, write};
 /// Returns the Rust source that includes the container in the file `container`, which stands beside it, and the
 /// container.
 ///
-/// The source is a module `name` with `BYTES`, `DRAWS`, `POSE_WORDS`, `model()`, and the numbers of clips and named
-/// nodes.
+/// The source is a module `name` with `BYTES`, `DRAWS`, `POSE_WORDS`, `model()`, and the numbers of clips, if there are
+/// any, in a module `clips`.
 ///
 /// # Errors
 ///
@@ -50,17 +51,20 @@ pub mod {name} {{
     );
     if !report.clips.is_empty() {
         source.push_str("\n    /// Numbers of clips.\n    pub mod clips {\n");
-        let mut known = Vec::new();
+        let mut known = HashSet::new();
         for (number, (clip, duration, ..)) in report.clips.iter().enumerate() {
             let mut constant = identifier(clip).to_uppercase();
             if clip.is_empty() || known.contains(&constant) {
                 constant = format!("CLIP_{number}");
             }
+            // Another clip may have that name.
+            while !known.insert(constant.clone()) {
+                constant.push('_');
+            }
             let _ = write!(
                 source,
                 "        /// {clip:?}: {duration} ms.\n        pub const {constant}: usize = {number};\n"
             );
-            known.push(constant);
         }
         source.push_str("    }\n");
     }

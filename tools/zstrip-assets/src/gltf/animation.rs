@@ -56,7 +56,11 @@ fn read_channel(
     let (Checked::Valid(property), Checked::Valid(way)) = (channel.target.path, sampler.interpolation) else {
         return fail(context, Kind::Syntax, "its path or interpolation is unknown".to_owned());
     };
-    let node = numbers[channel.target.node.value()];
+    // Validation does not look at the targets of channels.
+    let Some(&node) = numbers.get(channel.target.node.value()) else {
+        let message = format!("node {}, where there are {}", channel.target.node.value(), numbers.len());
+        return fail(context, Kind::Index, message);
+    };
     let (path, type_, width) = match property {
         Property::Translation => (Path::Translation, Type::Vec3, 3),
         Property::Scale => (Path::Scale, Type::Vec3, 3),

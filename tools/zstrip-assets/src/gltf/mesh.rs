@@ -12,6 +12,12 @@ use crate::error::{Error, Kind, Place};
 use crate::model::{Morph, Vertices};
 use crate::report::Note;
 
+/// Bytes of a number in a mesh.
+const NUMBER_BYTES: u64 = 4;
+
+/// Numbers that a morph target takes at least.
+const TARGET_NUMBERS: u64 = 12;
+
 /// Reads the primitives of a mesh that are triangles.
 pub(super) fn read(json: &Root, number: usize, buffers: &Buffers, context: &mut Context) -> Result<Vec<Draft>, Error> {
     let mesh = &json.meshes[number];
@@ -26,6 +32,8 @@ pub(super) fn read(json: &Root, number: usize, buffers: &Buffers, context: &mut 
         let Some(vertices) = reader.vertices()? else { continue };
         let corners = reader.indices(vertices.len())?;
         let name = mesh.name.clone().unwrap_or_default();
+        let at = || Place::Json(format!("meshes[{number}].name"));
+        context.take_numbers(name.len() as u64 / NUMBER_BYTES, at)?;
         let material = primitive.material.map(|material| material.value());
         drafts.push(Draft { name, material, vertices, triangles: triangles(mode, &corners), groups: Vec::new() });
     }
@@ -107,10 +115,15 @@ impl Reader<'_, '_> {
         }
         self.weights(&mut vertices)?;
         for target in self.primitive.targets.iter().flatten() {
-            let mut morph = Morph { positions: vec![[0.0; 3]; count], normals: Vec::new() };
-            if let Some((positions, _)) = self.list(target.positions, &[Type::Vec3], count)? {
-                morph.positions = positions;
-            }
+            let positions = match self.list(target.positions, &[Type::Vec3], count)? {
+                Some((positions, _)) => positions,
+                None => {
+                    let at = || Place::Json(format!("{}.targets", self.at));
+                    self.context.take_numbers(3 * count as u64 + TARGET_NUMBERS, at)?;
+                    vec![[0.0; 3]; count]
+                }
+            };
+            let mut morph = Morph { positions, normals: Vec::new() };
             if let Some((normals, _)) = self.list(target.normals, &[Type::Vec3], count)? {
                 morph.normals = normals;
             }

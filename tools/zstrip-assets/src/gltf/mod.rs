@@ -64,14 +64,14 @@ fn check_size(bytes: &[u8], context: &Context) -> Result<(), Error> {
     if bytes.starts_with(b"glTF") {
         let length = bytes.get(8..GLB_HEADER).and_then(|rest| rest.first_chunk()).map(|b| u32::from_le_bytes(*b));
         let found = bytes.len();
-        let Some(length) = length.map(|length| length as usize).filter(|n| (GLB_HEADER..=found).contains(n)) else {
-            let message = match length {
-                Some(length) => format!("the header says {length} bytes, and the file has {found}; export it again"),
-                None => format!("{found} bytes, where a GLB has {GLB_HEADER} at least; export it again"),
-            };
-            return Err(context.error(Place::Byte(8.min(found)), Kind::Syntax, message));
+        let message = match length {
+            Some(length) if (GLB_HEADER..=found).contains(&(length as usize)) => None,
+            Some(length) => Some(format!("the header says {length} bytes, and the file has {found}; export it again")),
+            None => Some(format!("{found} bytes, where a GLB has {GLB_HEADER} at least; export it again")),
         };
-        debug_assert!(length <= found);
+        if let Some(message) = message {
+            return Err(context.error(Place::Byte(8.min(found)), Kind::Syntax, message));
+        }
     }
     // Values in JSON are between brackets and commas. In binary data, as many bytes look like them as chance has it.
     let json = match bytes.get(GLB_HEADER..GLB_HEADER + 4).and_then(|rest| rest.first_chunk()) {

@@ -1,5 +1,7 @@
 //! The hierarchy of glTF: nodes, each after its parent, the meshes that they show, and skins.
 
+use std::ops::Range;
+
 use gltf::json::Root;
 use gltf::json::accessor::Type;
 
@@ -32,29 +34,33 @@ pub(super) fn read(
     let mut numbers = vec![0; order.len()];
     order.iter().enumerate().for_each(|(k, node)| numbers[*node] = k);
     // The drafts of each mesh that was read so far.
-    let mut drafts: Vec<Option<Vec<usize>>> = vec![None; json.meshes.len()];
+    let mut drafts: Vec<Option<Range<usize>>> = vec![None; json.meshes.len()];
     for &k in &order {
         let node = &json.nodes[k];
         let mut meshes = Vec::new();
         let mut weights = node.weights.clone().unwrap_or_default();
+        if !weights.iter().all(|weight| weight.is_finite()) {
+            return Err(context.error(place("nodes", k), Kind::NonFinite, "weights that are not finite"));
+        }
         if let Some(number) = node.mesh.filter(|_| shown[k]).map(|mesh| mesh.value()) {
-            meshes = match &drafts[number] {
+            let Range { start, end } = match &drafts[number] {
                 Some(known) => known.clone(),
                 None => {
                     let first = scene.drafts.len();
                     scene.drafts.extend(mesh::read(json, number, buffers, context)?);
-                    (first..scene.drafts.len()).collect()
+                    first..scene.drafts.len()
                 }
             };
-            drafts[number] = Some(meshes.clone());
-            let targets = meshes.iter().map(|mesh| scene.drafts[*mesh].vertices.morphs.len()).max().unwrap_or(0);
+            drafts[number] = Some(start..end);
+            let targets = scene.drafts[start..end].iter().map(|draft| draft.vertices.morphs.len()).max().unwrap_or(0);
+            context.take_numbers((2 * (end - start) + targets) as u64, || place("nodes", k))?;
+            meshes = (start..end).collect();
             if weights.is_empty() {
-                weights = json.meshes[number].weights.clone().unwrap_or_default();
+                let of_mesh = json.meshes[number].weights.iter().flatten();
+                weights = of_mesh.take(targets).copied().collect();
             }
             weights.resize(targets, 0.0);
-        }
-        if !weights.iter().all(|weight| weight.is_finite()) {
-            return Err(context.error(place("nodes", k), Kind::NonFinite, "weights that are not finite"));
+            weights.shrink_to_fit();
         }
         scene.import.nodes.push(Node {
             name: node.name.clone().unwrap_or_default(),

@@ -37,13 +37,12 @@ pub(super) fn check(import: &Import) -> Result<(), WriteError> {
         }
     }
     for (k, image) in import.images.iter().enumerate() {
-        let texels = u64::from(image.width) * u64::from(image.height) * 4;
-        length(format!("images[{k}], bytes"), image.texels.len(), usize::try_from(texels).unwrap_or(usize::MAX))?;
-        index(
-            format!("images[{k}], the smaller side less 1"),
-            image.width.min(image.height).wrapping_sub(1) as usize,
-            1 << 31,
-        )?;
+        let size = [image.width, image.height];
+        if size.contains(&0) {
+            return Err(WriteError::EmptyImage { place: format!("images[{k}]"), size });
+        }
+        let bytes = 4 * u128::from(image.width) * u128::from(image.height);
+        length(format!("images[{k}], bytes"), image.texels.len(), usize::try_from(bytes).unwrap_or(usize::MAX))?;
     }
     for (k, animation) in import.animations.iter().enumerate() {
         for channel in &animation.channels {

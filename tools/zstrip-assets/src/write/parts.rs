@@ -196,7 +196,7 @@ pub(super) struct Around<'a> {
     pub skins: &'a [(Cube, Vec<u16>)],
     /// Columns and rows of each material's texture.
     pub textures: &'a [Option<[u32; 2]>],
-    /// The positions at rest in the model, for the size of texels.
+    /// The texels per unit of length of each piece.
     pub texel_sizes: &'a [f64],
 }
 
@@ -399,7 +399,13 @@ fn influences(vertices: &Vertices, joints: &[u16]) -> Vec<Influence> {
             let last = (0..3).rev().find(|k| stored[*k] > 0).unwrap_or(0);
             stored[last] -= 1;
         }
-        let number = |k: usize| if k == 0 || stored[k - 1] > 0 { joints[usize::from(parts[k].0)] as u8 } else { 0 };
+        // Without weights, a vertex follows the first joint.
+        let first = if parts[0].1 > 0.0 { parts[0].0 } else { 0 };
+        let number = |k: usize| match k {
+            0 => joints[usize::from(first)] as u8,
+            _ if stored[k - 1] > 0 => joints[usize::from(parts[k].0)] as u8,
+            _ => 0,
+        };
         Influence { joints: [number(0), number(1), number(2), number(3)], weights: stored.map(|w| w as u8), zero: 0 }
     };
     vertices.joints.iter().zip(&vertices.weights).map(influence).collect()

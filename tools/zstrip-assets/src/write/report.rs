@@ -201,7 +201,7 @@ impl fmt::Display for WriteReport {
         let Self { bytes, vertices, triangles, parts, .. } = self;
         writeln!(f, "container: {bytes} bytes, {vertices} vertices, {triangles} triangles, {parts} parts")?;
         for (name, items, bytes) in &self.sections {
-            writeln!(f, "  {name:<11} {items:>8} items {bytes:>9} bytes")?;
+            writeln!(f, "  {name:<16} {items:>8} items {bytes:>9} bytes")?;
         }
         writeln!(f, "textures: {} bytes", self.texture_bytes)?;
         writeln!(f, "RAM: {} places, {} words of a pose", self.draws, self.pose_words)?;
@@ -266,6 +266,13 @@ pub enum WriteError {
         /// The number that is needed.
         needed: usize,
     },
+    /// An image has no texels.
+    EmptyImage {
+        /// The place in the import.
+        place: String,
+        /// Columns and rows.
+        size: [u32; 2],
+    },
     /// An option is out of its range.
     Options(String),
     /// The library refuses the bytes. This is a mistake of this crate.
@@ -285,6 +292,9 @@ impl fmt::Display for WriteError {
             }
             Self::Index { place, found, count } => write!(f, "{place} is {found}, and there are {count}"),
             Self::Count { place, found, needed } => write!(f, "{place} has {found} items, and needs {needed}"),
+            Self::EmptyImage { place, size: [columns, rows] } => {
+                write!(f, "{place} has {columns}×{rows} texels, and needs one column and one row at least")
+            }
             Self::Options(fault) => write!(f, "{fault}"),
             Self::ReadBack(error) => write!(f, "the container cannot be read back: {error}; please report it"),
         }

@@ -6,7 +6,7 @@ use zstrip::model::container::{Header, MAGIC, NONE_LONG, Section, SectionKind, V
 use super::report::WriteError;
 
 /// Names of sections, in the order of their numbers.
-const NAMES: [&str; SectionKind::COUNT] = [
+pub(crate) const SECTION_NAMES: [&str; SectionKind::COUNT] = [
     "nodes",
     "parts",
     "clusters",
@@ -18,7 +18,7 @@ const NAMES: [&str; SectionKind::COUNT] = [
     "clips",
     "channels",
     "timelines",
-    "points",
+    "positions",
     "normals",
     "colours",
     "uvs",
@@ -28,7 +28,7 @@ const NAMES: [&str; SectionKind::COUNT] = [
     "deltas",
     "times",
     "keys",
-    "bytes",
+    "texels and names",
 ];
 
 /// Bytes and number of items of each section.
@@ -65,7 +65,7 @@ impl Sections {
 
     /// Returns names, items and bytes of the sections that are not empty.
     pub fn sizes(&self) -> Vec<(&'static str, usize, usize)> {
-        let of = NAMES.iter().zip(&self.0).map(|(name, (bytes, count))| (*name, *count, bytes.len()));
+        let of = SECTION_NAMES.iter().zip(&self.0).map(|(name, (bytes, count))| (*name, *count, bytes.len()));
         of.filter(|(_, count, _)| *count > 0).collect()
     }
 
@@ -75,7 +75,7 @@ impl Sections {
         let length = size_of::<Header>() + padded;
         let most = u32::MAX as usize;
         if length > most {
-            return Err(WriteError::TooMany { what: "bytes", found: length, most });
+            return Err(WriteError::TooMany { what: "texels and names", found: length, most });
         }
         let mut table = [Section::zeroed(); SectionKind::COUNT];
         let mut body = Vec::with_capacity(padded);

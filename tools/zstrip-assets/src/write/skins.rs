@@ -32,20 +32,15 @@ pub(super) fn skins(
                 }
             }
         }
-        let mut count = 0_u16;
         // A skin has one joint at least. Vertices without weights follow the first one.
         used[0] |= !used.contains(&true) || pieces.iter().any(|piece| piece.skin == Some(k) && weightless(piece));
-        let mut number = |is_used: &bool| {
-            count += u16::from(*is_used);
-            if *is_used { count - 1 } else { 0 }
-        };
-        let numbers: Vec<u16> = used.iter().map(&mut number).collect();
-        let found = usize::from(count);
+        let found = used.iter().filter(|is_used| **is_used).count();
         if found > MOST_JOINTS {
             return Err(WriteError::TooMany { what: "joints of a skin", found, most: MOST_JOINTS });
         }
         unused += used.len() - found;
-        let numbers = numbers.into_iter().zip(used).map(|(n, is_used)| if is_used { n } else { u16::MAX });
+        let mut next = 0..;
+        let numbers = used.iter().map(|is_used| if *is_used { next.next() } else { None }.unwrap_or(u16::MAX));
         skins.push((Cube::around(&extent, longest, &format!("the size of skins[{k}]"))?, numbers.collect()));
     }
     report.note(unused, |joints| WriteNote::UnusedJoints { joints });

@@ -166,6 +166,19 @@ fn vertices_within_the_distance_become_one() {
 }
 
 #[test]
+fn the_weld_distance_is_in_units_of_the_file() {
+    // Two triangles whose common corners are 0.01 apart.
+    let text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0.01 0\nv 1 1 0\nv 0.01 1 0\nf 1 2 3\nf 4 5 6\n";
+    for scale in [0.001, 1.0, 1000.0] {
+        for (weld_distance, count) in [(0.02, 4), (0.005, 6)] {
+            let options = Options { scale, weld_distance, ..Options::default() };
+            let (import, report) = read_with("a.obj", text, &options).expect("two triangles");
+            assert_eq!(only_mesh(&import).vertices.len(), count, "{scale}, {weld_distance}: {report}");
+        }
+    }
+}
+
+#[test]
 fn equal_vertices_become_one_and_others_stay() {
     // Two triangles that share a side, each with vertices of its own; in the second file, one uv differs.
     let file = |u: f32| {
@@ -354,6 +367,14 @@ fn a_budget_of_triangles_is_kept() {
         // The whole wave is 0.2 high.
         assert!(error.is_some_and(|error| error < 0.2), "{report}");
     }
+    // In units of the file, whatever the scale is.
+    let error = |scale| {
+        let options = Options { max_triangles: Some(200), scale, ..Options::default() };
+        let (_, report) = read_with("a.obj", grid(40, 0.1), &options).expect("a grid");
+        let error = |note: &Note| if let Note::Simplified { error, .. } = note { Some(*error) } else { None };
+        report.notes.iter().find_map(error).expect("a simpler grid")
+    };
+    assert!(error(1.0) > 0.0 && (error(256.0) / error(1.0) - 1.0).abs() < 1e-3, "{} {}", error(256.0), error(1.0));
     let options = Options { max_triangles: Some(4000), ..Options::default() };
     let (_, report) = read_with("a.obj", grid(40, 0.1), &options).expect("a grid");
     assert_eq!((report.after.triangles, report.to_string().contains("simplified")), (3200, false));

@@ -277,6 +277,19 @@ fn morph_targets_and_their_weights_are_read() {
 }
 
 #[test]
+fn a_channel_of_a_node_that_is_not_there_is_an_error() {
+    let mut document = Document::triangle();
+    let times = document.floats("SCALAR", &[0.0]);
+    let values = document.floats("VEC3", &[0.0; 3]);
+    document.json["animations"] = json!([{
+        "samplers": [{ "input": times, "output": values }],
+        "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }]
+    }]);
+    let error = document.import().expect_err("a node");
+    assert_eq!((&error.kind, &error.message[..]), (&Kind::Index, "node 1, where there are 1"));
+}
+
+#[test]
 fn animations_are_read_and_checked() {
     let clip = |times: &[f32], values: &[f32], way: &str, path: &str| {
         let mut document = Document::triangle();

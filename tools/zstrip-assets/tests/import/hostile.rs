@@ -219,6 +219,80 @@ fn an_accessor_that_many_primitives_share_counts_each_time() {
     assert_eq!(error.kind, Kind::Limit);
 }
 
+/// Bytes of notes, which many missing things must not make of a long list each.
+fn note_bytes(report: &zstrip_assets::Report) -> usize {
+    report.notes.iter().map(|note| note.to_string().len()).sum()
+}
+
+#[test]
+fn many_missing_materials_take_no_more_memory_than_their_names() {
+    let mut text = String::from("v 0 0 0\nv 1 0 0\nv 0 1 0\n");
+    for k in 0..500 {
+        text += &format!("mtllib {k}{}\nusemtl {k}\nf 1 2 3\n", "x".repeat(100));
+    }
+    let folder = Folder::new().with("a.obj", &text);
+    let (_, report) = folder.import("a.obj", &Options::default()).expect("triangles");
+    let mut of_material = report.notes.iter().filter_map(|note| match note {
+        Note::MaterialMissing { reason } if reason.starts_with("\"7\" is in none of the files") => Some(reason),
+        _ => None,
+    });
+    let reason = of_material.next_back().expect("a note");
+    assert!(reason.ends_with("and 496 more"), "{reason}");
+    assert!(note_bytes(&report) < 10 * text.len(), "{} of {}", note_bytes(&report), text.len());
+}
+
+#[test]
+fn one_long_name_in_many_places_is_cut() {
+    let mut document = Document::triangle();
+    document.push("images", json!({ "uri": format!("{}.png", "x".repeat(200)), "name": "x".repeat(50_000) }));
+    document.push("textures", json!({ "source": 0 }));
+    let material = json!({ "pbrMetallicRoughness": { "baseColorTexture": { "index": 0 } } });
+    document.json["materials"] = json!(vec![material; 100]);
+    let folder = Folder::new().with("a.glb", document.glb()).with(&format!("{}.png", "x".repeat(200)), "no image");
+    let (_, report) = folder.import("a.glb", &Options::default()).expect("a triangle");
+    let count = report.notes.iter().filter(|note| matches!(note, Note::TextureMissing { .. })).count();
+    assert_eq!(count, 100);
+    assert!(note_bytes(&report) < 100_000, "{}", note_bytes(&report));
+}
+
+#[test]
+fn ignored_lines_of_long_words_are_counted() {
+    let word = "x".repeat(60);
+    let text = format!("{word}1\n{word}2\n{word}3\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    let (_, report) = Folder::new().with("a.obj", text).import("a.obj", &Options::default()).expect("a triangle");
+    let is_three = |note: &Note| matches!(note, Note::Ignored { count: 3, .. });
+    assert!(report.notes.iter().any(is_three), "{report}");
+}
+
+/// What a few bytes of JSON multiply counts against the limit of numbers.
+#[test]
+fn nodes_names_and_empty_morph_targets_count_each_time() {
+    let limits = Limits { numbers: 40_000, ..Limits::default() };
+    let refused = |document: &Document, at: &str| {
+        let options = Options { limits: limits.clone(), ..Options::default() };
+        let folder = Folder::new().with("a.glb", document.glb());
+        let error = folder.import("a.glb", &options).expect_err("too many");
+        assert_eq!(error.kind, Kind::Limit);
+        assert!(error.to_string().contains(at), "{error}");
+        folder.import("a.glb", &Options::default()).expect("within the usual limits");
+    };
+    // 400 nodes that show a mesh of 200 primitives.
+    let mut document = Document::triangle();
+    let primitive = document.primitive().clone();
+    document.json["meshes"][0]["primitives"] = json!(vec![primitive.clone(); 200]);
+    document.json["nodes"] = json!(vec![json!({ "mesh": 0 }); 400]);
+    document.json["scenes"][0]["nodes"] = json!((0..400).collect::<Vec<_>>());
+    refused(&document, "nodes[");
+    // A long name, which each of 200 meshes gets.
+    let mut document = Document::triangle();
+    document.json["meshes"][0]["primitives"] = json!(vec![primitive; 200]);
+    document.json["meshes"][0]["name"] = json!("x".repeat(1000));
+    refused(&document, "meshes[0].name");
+    let mut document = Document::triangle();
+    document.primitive()["targets"] = json!(vec![json!({}); 3000]);
+    refused(&document, "meshes[0].primitives[0].targets");
+}
+
 #[cfg(unix)]
 #[test]
 fn links_out_of_the_folder_are_not_followed() {
@@ -252,6 +326,19 @@ fn options_out_of_range_are_errors() {
         Options { max_triangles: Some(0), ..Options::default() },
     ] {
         assert_eq!(folder().import("a.obj", &options).expect_err("an option").kind, Kind::Options);
+    }
+    // Whatever else is in range gives a model.
+    let limits = Limits {
+        file_bytes: u64::MAX,
+        numbers: u64::MAX,
+        json_values: u64::MAX,
+        image_side: u32::MAX,
+        texels: u64::MAX,
+    };
+    let options = Options { max_triangles: Some(usize::MAX), limits, ..Options::default() };
+    for name in ["a.obj", "a.glb"] {
+        let (import, report) = folder().import(name, &options).expect(name);
+        assert_eq!(import.images.len(), 1, "{report}");
     }
     let options = Options { scale: 1e300, ..Options::default() };
     for name in ["a.obj", "a.glb"] {

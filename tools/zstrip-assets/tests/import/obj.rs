@@ -116,6 +116,18 @@ fn materials_and_their_textures_are_read() {
 }
 
 #[test]
+fn alpha_needs_the_image_of_the_colour() {
+    let mtl = "newmtl a\nmap_d a.png\nnewmtl b\nmap_Kd a.png\nmap_d b.png\n";
+    let obj = "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl a\nf 1 2 3\nusemtl b\nf 1 3 2\n";
+    let folder = Folder::new().with("a.obj", obj).with("a.mtl", mtl).with("a.png", png(2, 2));
+    let (import, report) = folder.import("a.obj", &Options::default()).expect("two triangles");
+    assert!(import.materials.iter().all(|material| material.alpha == AlphaMode::Opaque));
+    for what in ["map_d without map_Kd", "map_d that is not the image of map_Kd"] {
+        assert!(has(&report, &Note::Ignored { what: what.to_owned(), count: 1 }), "{report}");
+    }
+}
+
+#[test]
 fn images_are_known_by_their_bytes() {
     for format in [ImageFormat::Png, ImageFormat::Jpeg, ImageFormat::Bmp] {
         let folder = Folder::new()

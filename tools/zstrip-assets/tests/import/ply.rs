@@ -74,6 +74,61 @@ fn strips_turn_every_second_triangle() {
     assert!(mesh.vertices.normals.iter().all(|normal| *normal == [0.0, 0.0, 1.0]));
 }
 
+/// Strips have no coordinates of their corners, and lists may be longer or shorter than polygons.
+#[test]
+fn texture_coordinates_of_some_corners_do_not_hinder_the_others() {
+    let vertices = "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float u\n\
+                    property float v\n";
+    let faces = "element face 2\nproperty list uchar uint vertex_index\nproperty list uchar float texcoord\n";
+    let strips = "element tristrips 1\nproperty list int int vertex_indices\n";
+    let (vertex_lines, strip_lines) = ("0 0 0 0.25 0\n1 0 0 0.25 0\n1 1 0 0.25 0\n0 1 0 0.25 0\n", "4 3 2 1 -1\n");
+    for texcoord in ["1 0.5", "2 0.5 0.75", "7 0.5 0.75 0.5 0.75 0.5 0.75 0.5", "8 0.5 0.75 0 0 0 0 0 0"] {
+        let face_lines = format!("3 0 1 2 {texcoord}\n3 0 2 3 0\n");
+        for (elements, lines) in [
+            (format!("{faces}{strips}"), format!("{face_lines}{strip_lines}")),
+            (format!("{strips}{faces}"), format!("{strip_lines}{face_lines}")),
+        ] {
+            let text = format!("ply\nformat ascii 1.0\n{vertices}{elements}end_header\n{vertex_lines}{lines}");
+            let (import, _) = read("a.ply", text).expect("three triangles");
+            let mesh = only_mesh(&import);
+            assert_eq!((mesh.triangles.len(), mesh.vertices.uvs.len()), (3, mesh.vertices.len()));
+            let at = |p: [f32; 3], uv: [f32; 2]| {
+                mesh.vertices.positions.iter().zip(&mesh.vertices.uvs).any(|(q, found)| (*q, *found) == (p, uv))
+            };
+            assert!(at([0.0, 1.0, 0.0], [0.25, 1.0]), "those of the vertex: {texcoord}");
+            assert_eq!(at([0.0, 0.0, 0.0], [0.5, 0.25]), texcoord != "1 0.5", "those of the corner: {texcoord}");
+        }
+    }
+}
+
+#[test]
+fn errors_name_the_face_that_is_wrong() {
+    let header = |format: &str, faces: usize, strips: usize| {
+        format!(
+            "ply\nformat {format} 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+             element face {faces}\nproperty list uchar ushort vertex_indices\n\
+             element tristrips {strips}\nproperty list int int vertex_indices\nend_header\n"
+        )
+    };
+    let text = format!("{}0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n4 0 1 2 0\n3 2 1 9\n", header("ascii", 3, 0));
+    let error = read("a.ply", &text).expect_err("a face");
+    assert_eq!((error.place, error.kind), (Place::Line(text.lines().count()), Kind::Index));
+    let text = format!("{}0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n4 0 1 2 -3\n", header("ascii", 0, 2));
+    let error = read("a.ply", &text).expect_err("a strip");
+    assert_eq!((error.place, error.kind), (Place::Line(text.lines().count()), Kind::Index));
+    for format in ["binary_little_endian", "binary_big_endian"] {
+        let mut bytes = header(format, 3, 0).into_bytes();
+        bytes.extend([0; 36]);
+        for corners in [&[0_u16, 1, 2][..], &[0, 1, 2, 0], &[2, 1, 9]] {
+            bytes.push(corners.len() as u8);
+            let big = format.contains("big");
+            bytes.extend(corners.iter().flat_map(|c| if big { c.to_be_bytes() } else { c.to_le_bytes() }));
+        }
+        let error = read("a.ply", &bytes).expect_err("a face");
+        assert_eq!((error.place, error.kind), (Place::Byte(bytes.len() - 7), Kind::Index), "{format}");
+    }
+}
+
 #[test]
 fn errors_say_line_or_byte() {
     let text = String::from_utf8(square("ascii")).expect("text");

@@ -33,6 +33,50 @@ fn numbers_out_of_range_are_errors() {
 }
 
 #[test]
+fn images_without_texels_and_of_more_bytes_than_fit_are_errors() {
+    let sized = |width, height, bytes: usize| {
+        let mut import = textured(sphere(8, 8, 1.0), image(), zstrip_assets::AlphaMode::Opaque);
+        import.images[0] = zstrip_assets::Image { name: String::new(), width, height, texels: vec![0; bytes] };
+        error(&import)
+    };
+    assert_eq!(sized(0, 5, 0), "images[0] has 0×5 texels, and needs one column and one row at least");
+    assert_eq!(sized(5, 0, 20), "images[0] has 5×0 texels, and needs one column and one row at least");
+    // 2^64 bytes and more.
+    assert_eq!(sized(1 << 31, 1 << 31, 4), format!("images[0], bytes has 4 items, and needs {}", usize::MAX));
+    assert_eq!(sized(u32::MAX, u32::MAX, 0), format!("images[0], bytes has 0 items, and needs {}", usize::MAX));
+}
+
+#[test]
+fn vertices_without_weights_follow_the_first_joint() {
+    let mut import = animated(false);
+    let vertices = &mut import.meshes[0].vertices;
+    vertices.joints.iter_mut().for_each(|joints| *joints = [2, 2, 2, 2]);
+    vertices.weights.fill([0.0; 4]);
+    let report = write(&import, &WriteOptions::default()).expect("a container").report;
+    assert!(report.notes.contains(&WriteNote::UnusedJoints { joints: 2 }), "{report}");
+    // Beside vertices that follow the second joint.
+    let vertices = &mut import.meshes[0].vertices;
+    vertices.weights[..20].fill([0.0, 1.0, 0.0, 0.0]);
+    vertices.weights[20] = [-1.0, 0.0, 0.0, 0.0];
+    let report = write(&import, &WriteOptions::default()).expect("a container").report;
+    assert!(report.notes.contains(&WriteNote::UnusedJoints { joints: 1 }), "{report}");
+}
+
+#[test]
+fn as_many_joints_as_numbers_have_are_counted() {
+    let mut import = animated(false);
+    let Skin { joints, inverse_binds, .. } = &mut import.skins[0];
+    joints.resize(65_536, joints[0]);
+    inverse_binds.resize(65_536, inverse_binds[0]);
+    let mesh = &mut import.meshes[0];
+    *mesh = sphere(256, 255, 1.0);
+    let count = mesh.vertices.len();
+    mesh.vertices.joints = (0..count).map(|k| [k as u16, 0, 0, 0]).collect();
+    mesh.vertices.weights = vec![[1.0, 0.0, 0.0, 0.0]; count];
+    assert_eq!(error(&import), "65536 joints of a skin, and 256 are the most; divide or simplify the model");
+}
+
+#[test]
 fn joints_that_move_nothing_do_not_count() {
     let mut import = animated(false);
     let [joint, bind] = [import.skins[0].joints[0], 0];

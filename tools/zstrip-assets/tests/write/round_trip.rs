@@ -1,7 +1,9 @@
 //! What was written is what was read, within the stated errors.
 
 use zstrip::bytemuck::{Pod, pod_collect_to_vec, pod_read_unaligned};
-use zstrip::model::container::{Cluster, Header, Material as MaterialItem, Part, SectionKind, Texture as TextureItem};
+use zstrip::model::container::{
+    Cluster, Header, Material as MaterialItem, Part, SectionKind, Texture as TextureItem, TextureFormat,
+};
 use zstrip_assets::{
     AlphaMode, Animation, Import, Interpolation, Material, Options, Path, TextureKind, Transform, UvSize, Wrap,
     WriteNote, WriteOptions, Written, write, write_rust,
@@ -171,32 +173,95 @@ fn texture_coordinates_take_8_bits_where_those_are_exact() {
     assert!(found.report.errors.uv <= 0.5 / 4096.0, "{}", found.report);
 }
 
+/// Red, green, blue of the texels of a level, as docs/container.md defines them; a mask's bits are 0 and 255.
+fn texels(written: &Written, level: u8) -> Vec<[u8; 3]> {
+    let texture = section::<TextureItem>(written, SectionKind::Textures)[0];
+    let bytes: Vec<u8> = section(written, SectionKind::Bytes);
+    let format = TextureFormat::of(texture.format).expect("a format");
+    let size = |level: u8| ((texture.width >> level).max(1), (texture.height >> level).max(1));
+    let (width, height) = size(level);
+    let before: u64 = (0..level).map(|level| format.bytes(size(level).0, size(level).1)).sum();
+    let first = before as usize + texture.texels as usize;
+    let bits = [16, 8, 4, 2, 1, 8, 1][usize::from(texture.format)];
+    let of_row = (usize::from(width) * bits).div_ceil(8);
+    let places = (0..usize::from(height)).flat_map(|y| (0..usize::from(width)).map(move |x| (x, y)));
+    let texel = |(x, y): (usize, usize)| {
+        let row = &bytes[first + y * of_row..][..of_row];
+        if bits == 16 {
+            let raw = u16::from_le_bytes([row[2 * x], row[2 * x + 1]]);
+            let part = |from: u16, most: u16| (f64::from(raw >> from & most) * 255.0 / f64::from(most)).round() as u8;
+            return [part(11, 31), part(5, 63), part(0, 31)];
+        }
+        let number = row[x * bits / 8] >> (8 - bits - x * bits % 8) & (0xFF >> (8 - bits));
+        match texture.format {
+            5 => [number; 3],
+            6 => [255 * number; 3],
+            _ => bytes[texture.palette as usize + 3 * usize::from(number)..][..3].try_into().expect("a colour"),
+        }
+    };
+    places.map(texel).collect()
+}
+
+/// Returns the largest difference of a channel, and the mean one.
+fn differences(found: &[[u8; 3]], expected: &[[f64; 3]]) -> (f64, f64) {
+    assert_eq!(found.len(), expected.len());
+    let channels = found.as_flattened().iter().zip(expected.as_flattened());
+    let off: Vec<f64> = channels.map(|(a, b)| (f64::from(*a) - b).abs()).collect();
+    (off.iter().copied().fold(0.0, f64::max), off.iter().sum::<f64>() / off.len() as f64)
+}
+
 #[test]
 fn textures_have_the_format_that_is_asked_for() {
     let mut odd = image();
     (odd.width, odd.height) = (16, 4);
-    for (kind, format, colors, worst) in [
-        (TextureKind::Rgb565, 0, 0, 0.0),
-        (TextureKind::Palette, 2, 7, 0.0),
-        (TextureKind::Gray, 5, 0, 255.0),
-        (TextureKind::Mask, 6, 0, 0.0),
+    // Alpha that only a mask shows, of any value.
+    (0..64).for_each(|k| odd.texels[4 * k + 3] = (k * 37 % 256) as u8);
+    let of_image = |texel: fn([f64; 4]) -> [f64; 3]| -> Vec<[f64; 3]> {
+        odd.texels.as_chunks::<4>().0.iter().map(|rgba| texel(rgba.map(f64::from))).collect()
+    };
+    let plain = of_image(|[r, g, b, _]| [r, g, b]);
+    let gray = of_image(|[r, g, b, _]| [0.299 * r + 0.587 * g + 0.114 * b; 3]);
+    let mask = of_image(|[.., a]| [if a >= 128.0 { 255.0 } else { 0.0 }; 3]);
+    for (kind, format, colors, expected, rounding, worst) in [
+        (TextureKind::Rgb565, 0, 0, &plain, 0.0, 0.0),
+        (TextureKind::Palette, 2, 8, &plain, 0.0, 0.0),
+        // The worst is blue in grey.
+        (TextureKind::Gray, 5, 0, &gray, 0.5, 226.0),
+        (TextureKind::Mask, 6, 0, &mask, 0.0, 0.0),
     ] {
         let options = WriteOptions { textures: kind, mips: false, ..WriteOptions::default() };
         let found = written_with(&textured(sphere(8, 8, 1.0), odd.clone(), AlphaMode::Opaque), &options);
         let texture = section::<TextureItem>(&found, SectionKind::Textures)[0];
         assert_eq!((texture.width, texture.height, texture.levels), (16, 4, 1));
-        assert_eq!(texture.format, format, "{kind:?}");
-        assert!(usize::from(texture.colors) <= colors.max(8) && found.report.errors.texel <= worst, "{kind:?}");
+        assert_eq!((texture.format, texture.colors), (format, colors), "{kind:?}");
+        assert!(differences(&texels(&found, 0), expected).0 <= rounding, "{kind:?}");
+        assert_eq!(found.report.errors.texel, worst, "{kind:?}");
     }
+}
+
+#[test]
+fn large_textures_are_shrunk_to_a_palette() {
     // 100 × 60 texels of 6000 colours, at most 64 per side: 64 × 32, and levels down to 4 × 2.
-    let texels = (0..6000).flat_map(|k| [(k % 100 * 2) as u8, (k / 100 * 4) as u8, (k % 7) as u8, 255]).collect();
-    let large = zstrip_assets::Image { name: "large".to_owned(), width: 100, height: 60, texels };
-    for (textures, bits, worst) in [(TextureKind::Palette, 1, 40.0), (TextureKind::Palette16, 2, 110.0)] {
+    let rgba = (0..6000).flat_map(|k| [(k % 100 * 2) as u8, (k / 100 * 4) as u8, (k % 7) as u8, 255]).collect();
+    let large = zstrip_assets::Image { name: "large".to_owned(), width: 100, height: 60, texels: rgba };
+    for (textures, format, most, mean) in
+        [(TextureKind::Palette, 1, 16.0, 4.0), (TextureKind::Palette16, 2, 60.0, 12.0)]
+    {
         let options = WriteOptions { textures, max_texture: 64, ..WriteOptions::default() };
         let found = written_with(&textured(sphere(8, 8, 1.0), large.clone(), AlphaMode::Opaque), &options);
         let texture = section::<TextureItem>(&found, SectionKind::Textures)[0];
-        assert_eq!((texture.width, texture.height, texture.levels, texture.format), (64, 32, 5, bits));
-        assert!(found.report.errors.texel < worst, "{}", found.report);
+        assert_eq!((texture.width, texture.height, texture.levels, texture.format), (64, 32, 5, format));
+        for level in 0..3 {
+            // Red grows to the right and green downwards; blue is 3 in the mean.
+            let [columns, rows] = [64 >> level, 32 >> level];
+            let middle = |k: usize, count: usize, of: f64| (k as f64 + 0.5) * of / count as f64 - 0.5;
+            let expected: Vec<_> = (0..columns * rows)
+                .map(|k| [2.0 * middle(k % columns, columns, 100.0), 4.0 * middle(k / columns, rows, 60.0), 3.0])
+                .collect();
+            let (worst, found) = differences(&texels(&found, level), &expected);
+            assert!(worst < most && found < mean, "{textures:?} level {level}: {worst} {found}");
+        }
+        assert!((1.0..most).contains(&found.report.errors.texel), "{}", found.report);
         let resized = WriteNote::Resized { image: "large".to_owned(), from: [100, 60], to: [64, 32] };
         assert!(found.report.notes.contains(&resized), "{}", found.report);
     }
@@ -270,4 +335,25 @@ fn rust_source_names_the_container_and_clips() {
     ] {
         assert!(source.contains(text), "{text} is missing in\n{source}");
     }
+}
+
+#[test]
+fn clips_of_one_name_are_told_apart() {
+    let mut import = animated(false);
+    let clip = import.animations[0].clone();
+    let names = ["clip_2", "walk", "walk", "", "Clip_3", "clip_2"];
+    import.animations = names.iter().map(|name| Animation { name: (*name).to_owned(), ..clip.clone() }).collect();
+    let (source, _) = write_rust(&import, "a", "a.zstm", &WriteOptions::default()).expect("a source");
+    let constants: Vec<_> = source.lines().filter_map(|line| line.trim().strip_prefix("pub const ")).skip(2).collect();
+    assert_eq!(
+        constants,
+        [
+            "CLIP_2: usize = 0;",
+            "WALK: usize = 1;",
+            "CLIP_2_: usize = 2;",
+            "CLIP_3: usize = 3;",
+            "CLIP_4: usize = 4;",
+            "CLIP_5: usize = 5;"
+        ]
+    );
 }

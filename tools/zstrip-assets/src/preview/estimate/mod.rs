@@ -8,6 +8,7 @@ mod work;
 
 use super::turntable::{Step, TURN};
 use super::{PreviewError, Stage};
+use crate::write::SECTION_NAMES;
 use costs::{Costs, DRAW, LARGE, SMALL, TERMS, Table, VERTEX};
 use pose_work::{NODE, PoseTerms, UNPACKED};
 use std::ops::Range;
@@ -15,7 +16,7 @@ use work::{DrawWork, Material};
 use zstrip::embedded_graphics_core::pixelcolor::Gray8;
 use zstrip::frame::RamBudget;
 use zstrip::light::Sunlit;
-use zstrip::model::container::{self, SectionKind};
+use zstrip::model::container;
 use zstrip::model::{Model, Place, Pose};
 use zstrip::target::records_len;
 
@@ -182,7 +183,7 @@ pub fn estimate(stage: &Stage<'_>, m4_hertz: f64) -> Result<Estimate, PreviewErr
     let budget = RamBudget::new::<Gray8>(stage.panel.width, stage.panel.rows);
     let has_clips = stage.model.clips().next().is_some();
     let estimates = cores.iter().filter_map(|core| of_core(&table, *core, format, stage, &frames)).collect();
-    let influences = stage.items::<container::Influence>(SectionKind::Influences).len();
+    let influences = stage.items::<container::Influence>(container::SectionKind::Influences).len();
     Ok(Estimate {
         panel: [stage.panel.width, stage.panel.height, stage.panel.rows],
         format,
@@ -277,7 +278,7 @@ fn flash(stage: &Stage<'_>) -> Flash {
     let mut ends: Vec<_> = header.table.iter().map(|section| section.offset as usize).collect();
     ends.push(header.length as usize);
     ends.sort_unstable();
-    for (kind, section) in SECTIONS.iter().zip(&header.table) {
+    for (kind, section) in SECTION_NAMES.iter().zip(&header.table) {
         // A section reaches to the next one; an empty one to nowhere.
         let start = section.offset as usize;
         let end = ends.iter().copied().find(|end| *end > start).unwrap_or(start);
@@ -287,32 +288,6 @@ fn flash(stage: &Stage<'_>) -> Flash {
     }
     Flash { total: header.length as usize, sections }
 }
-
-/// Names of the sections, by their kinds.
-const SECTIONS: [&str; SectionKind::COUNT] = [
-    "nodes",
-    "parts",
-    "clusters",
-    "materials",
-    "textures",
-    "skins",
-    "joints",
-    "targets",
-    "clips",
-    "channels",
-    "timelines",
-    "positions",
-    "normals",
-    "colours",
-    "uvs",
-    "small uvs",
-    "indices",
-    "influences",
-    "deltas",
-    "times",
-    "keys",
-    "texels and names",
-];
 
 fn notes(frames: &[FrameWork]) -> Vec<String> {
     let mut notes = vec![
