@@ -37,7 +37,7 @@ pub const CORES: [Core; 4] = [
     Core { name: "Cortex-M0+", chip: "RP2040", counted_on: "m0+", hertz: 125e6 },
     Core { name: "Cortex-M33", chip: "RP2350", counted_on: "m4", hertz: 150e6 },
     Core { name: "Cortex-M4", chip: "", counted_on: "m4", hertz: 168e6 },
-    Core { name: "RV32IMC", chip: "ESP32-C3", counted_on: "rv32imc", hertz: 160e6 },
+    Core { name: "RV32IMC", chip: "ESP32-C3, C6", counted_on: "rv32imc", hertz: 160e6 },
 ];
 
 /// The mean of all frames, and the frame that takes most.
@@ -119,9 +119,9 @@ pub struct Estimate {
     pub format: &'static str,
     /// Number of frames that were counted.
     pub frames: u32,
-    /// Vertices, those that are shaded, triangles, those that are drawn, and their pixels.
+    /// Vertices of the parts whose boxes are seen. Each is projected once.
     pub vertices: Amount,
-    /// Vertices whose colours are computed.
+    /// Vertices of triangles that are drawn: those whose colours are computed.
     pub shaded: Amount,
     /// Triangles.
     pub triangles: Amount,
@@ -154,8 +154,11 @@ struct FrameWork {
 ///
 /// # Errors
 ///
-/// Those of [`Stage::picture`].
+/// [`PreviewError::Clock`] if the clock is not from 1 kHz to 10 GHz, and those of [`Stage::picture`].
 pub fn estimate(stage: &Stage<'_>, m4_hertz: f64) -> Result<Estimate, PreviewError> {
+    if !(1e3..=1e10).contains(&m4_hertz) {
+        return Err(PreviewError::Clock(m4_hertz));
+    }
     let frames = (0..stage.steps())
         .map(|number| {
             let step: Step = stage.step(number);
