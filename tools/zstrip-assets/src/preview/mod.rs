@@ -19,7 +19,10 @@ mod tests;
 mod turntable;
 
 pub use error::PreviewError;
-pub use estimate::{Amount, CORES, Core, CoreEstimate, Estimate, Flash, Ram, estimate};
+pub use estimate::{
+    Amount, CORES, Core, CoreEstimate, DRAW_TERMS, DrawCounts, Estimate, Flash, FrameCounts, POSE_TERMS, Ram, estimate,
+    work_of,
+};
 pub use picture::{Picture, contact_sheet};
 pub use stage::{Container, Format, Stage};
 pub use turntable::{MOST_DRAWS, MOST_POSE, MOST_RECORDS, MOST_STRIP, MOST_WORDS, Panel, Step, TURN, show_head};
