@@ -36,6 +36,9 @@ mod fit;
 mod formats;
 #[path = "costs/grids.rs"]
 mod grids;
+#[cfg(not(target_os = "none"))]
+#[path = "costs/least_squares.rs"]
+mod least_squares;
 #[cfg_attr(not(target_os = "none"), allow(dead_code))] // it draws as firmware
 #[path = "costs/materials.rs"]
 mod materials;

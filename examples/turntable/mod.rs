@@ -19,6 +19,36 @@ pub const BACKGROUND: Rgb888 = Rgb888::new(0, 0, 72);
 /// Degrees from the lower to the upper edge of the screen.
 const FIELD_OF_VIEW: u16 = 40;
 
+/// Pixels of a strip: the most that the firmware that counts has memory for.
+pub const MOST_STRIP: usize = 320 * 320;
+/// Draws of a model, the most that it has memory for.
+pub const MOST_DRAWS: usize = 256;
+/// Words of records that it has.
+pub const MOST_RECORDS: usize = 400 * 1024;
+/// Words of a pose, the most that it has memory for.
+pub const MOST_POSE: usize = 192 * 1024;
+/// Words of all shows together, the most that it has memory for.
+pub const MOST_WORDS: usize = 1 << 21;
+
+/// First word of a show in the memory of the firmware that counts; the numbers of [`show_head`] and a container follow.
+pub const MAGIC: u32 = u32::from_le_bytes(*b"SHOW");
+/// Words before the container.
+pub const HEAD: usize = 8;
+
+/// Returns the words before a container of `bytes` bytes; 0 stands for the container of the show before. Of all frames,
+/// about `frames` are counted and not drawn again for their hashes; 0 stands for all, with hashes.
+#[must_use]
+pub const fn show_head(panel: &Panel, bytes: u32, frames: u32) -> [u32; HEAD] {
+    [MAGIC, panel.width, panel.height, panel.rows, panel.zoom, bytes, frames, 0]
+}
+
+/// Returns the numbers of the frames of a show of which about `frames` are counted, or all for 0.
+pub fn numbers(model: &Model<'_>, frames: u32) -> impl Iterator<Item = u32> + use<> {
+    let all = steps(model);
+    let stride = all.checked_div(frames).unwrap_or(1).max(1);
+    (0..all).step_by(stride as usize)
+}
+
 /// A screen, and how it is drawn on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Panel {

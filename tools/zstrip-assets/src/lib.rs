@@ -68,6 +68,7 @@ mod options;
 mod place;
 mod ply;
 mod pose;
+#[cfg(feature = "cli")]
 pub mod preview;
 mod process;
 mod report;

@@ -1,5 +1,6 @@
 //! Reasons why a model cannot be shown.
 
+use super::picture::MOST_SHEET;
 use std::fmt;
 use std::path::PathBuf;
 use zstrip::math::ProjectionError;
@@ -22,10 +23,10 @@ pub enum PreviewError {
     Memory(MemoryError),
     /// The library did not draw the frame.
     Frame(String),
-    /// There is no window, and why.
-    Window(String),
-    /// The command line is wrong.
-    Usage(String),
+    /// A clock that no core has, in Hz.
+    Clock(f64),
+    /// A contact sheet of too many pixels: its width and its height.
+    Sheet(u32, u32),
 }
 
 impl fmt::Display for PreviewError {
@@ -40,8 +41,13 @@ impl fmt::Display for PreviewError {
             }
             Self::Memory(error) => error.fmt(f),
             Self::Frame(error) => write!(f, "the frame was not drawn: {error}"),
-            Self::Window(error) => write!(f, "no window: {error}; --png and --gif write files instead"),
-            Self::Usage(error) => f.write_str(error),
+            Self::Clock(hertz) => write!(f, "a clock of {} MHz; from 0.001 to 10000 are possible", hertz / 1e6),
+            Self::Sheet(width, height) => {
+                write!(
+                    f,
+                    "a contact sheet of {width} x {height} pixels; {MOST_SHEET} are the most: choose a smaller screen"
+                )
+            }
         }
     }
 }
@@ -63,11 +69,5 @@ impl From<ProjectionError> for PreviewError {
 impl From<MemoryError> for PreviewError {
     fn from(error: MemoryError) -> Self {
         Self::Memory(error)
-    }
-}
-
-impl From<lexopt::Error> for PreviewError {
-    fn from(error: lexopt::Error) -> Self {
-        Self::Usage(error.to_string())
     }
 }

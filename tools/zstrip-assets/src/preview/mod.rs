@@ -6,23 +6,23 @@
 //! | `stage.rs` | a container, a panel and a format come in, pictures go out |
 //! | `picture.rs` | pictures, their PNG files, and the contact sheet |
 //! | `estimate/` | instructions and frames per second, flash and RAM, from the tables of costs |
-//! | `view.rs` | a window in which the model turns, and GIF files; only with the feature `view` |
-//! | `command.rs` | the command line of all of that |
 
-pub mod command;
 mod error;
 mod estimate;
+#[path = "../../../../examples/workloads/hash.rs"]
+mod hash;
 mod picture;
 mod stage;
 #[cfg(test)]
 mod tests;
 #[path = "../../../../examples/turntable/mod.rs"]
 mod turntable;
-#[cfg(feature = "view")]
-pub mod view;
 
 pub use error::PreviewError;
-pub use estimate::{Amount, CORES, Core, CoreEstimate, Estimate, Flash, Ram, estimate};
+pub use estimate::{
+    Amount, CORES, Core, CoreEstimate, DRAW_TERMS, DrawCounts, Estimate, Flash, FrameCounts, POSE_TERMS, Ram, estimate,
+    work_of,
+};
 pub use picture::{Picture, contact_sheet};
 pub use stage::{Container, Format, Stage};
-pub use turntable::{Panel, Step, TURN};
+pub use turntable::{MOST_DRAWS, MOST_POSE, MOST_RECORDS, MOST_STRIP, MOST_WORDS, Panel, Step, TURN, show_head};

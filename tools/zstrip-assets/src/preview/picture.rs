@@ -1,6 +1,7 @@
 //! Pictures: what a panel would show, and several of them on a sheet.
 
 use super::{PreviewError, Stage};
+use crate::save;
 use std::io::Cursor;
 use std::path::Path;
 use zstrip::math::Angle16;
@@ -65,33 +66,24 @@ impl Picture {
         let (bytes, color) = (self.pixels.as_flattened(), image::ColorType::Rgb8);
         image::write_buffer_with_format(&mut file, bytes, self.width, self.height, color, image::ImageFormat::Png)
             .map_err(|error| PreviewError::Image(path.to_owned(), error.to_string()))?;
-        write_whole(path, file.get_ref())
+        save(path, file.get_ref()).map_err(|error| PreviewError::Io(path.to_owned(), error))
     }
-}
-
-/// Writes a file beside its place and moves it there, so that an interruption leaves no half file.
-pub(super) fn write_whole(path: &Path, bytes: &[u8]) -> Result<(), PreviewError> {
-    let mut name = path.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.part", std::process::id()));
-    let part = path.with_file_name(name);
-    let written = std::fs::write(&part, bytes).and_then(|()| std::fs::rename(&part, path));
-    written.map_err(|error| {
-        // Nothing is left of it, if it was there.
-        _ = std::fs::remove_file(&part);
-        PreviewError::Io(path.to_owned(), error)
-    })
 }
 
 /// Draws the model from eight sides; a model with clips in eight poses of each of them.
 ///
 /// # Errors
 ///
-/// Those of [`Stage::picture`].
+/// [`PreviewError::Sheet`] if it has more than 2²⁶ pixels, and those of [`Stage::picture`].
 pub fn contact_sheet(stage: &Stage<'_>) -> Result<Picture, PreviewError> {
     let (width, height) = (stage.panel.width + GAP, stage.panel.height + GAP);
     let clips = stage.model.clips().count() as u32;
     let rows = SHOTS / COLUMNS * clips.clamp(1, MOST_CLIPS);
-    let mut sheet = Picture::new(COLUMNS * width + GAP, rows * height + GAP);
+    let size = (COLUMNS * width + GAP, rows * height + GAP);
+    if u64::from(size.0) * u64::from(size.1) > MOST_SHEET {
+        return Err(PreviewError::Sheet(size.0, size.1));
+    }
+    let mut sheet = Picture::new(size.0, size.1);
     sheet.pixels.fill(GREY);
     for shot in 0..rows * COLUMNS {
         let (clip, at) = (shot / SHOTS, shot % SHOTS);
@@ -110,5 +102,6 @@ pub fn contact_sheet(stage: &Stage<'_>) -> Result<Picture, PreviewError> {
     Ok(sheet)
 }
 
-/// Clips on a contact sheet, so that its size stays bounded.
+/// Clips on a contact sheet, and its pixels, so that its size stays bounded.
 const MOST_CLIPS: u32 = 8;
+pub(super) const MOST_SHEET: u64 = 1 << 26;

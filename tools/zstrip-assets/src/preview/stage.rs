@@ -1,6 +1,7 @@
 //! A model, a panel and a format of pixels come in; frames go out, drawn as firmware draws them: in strips, with a
 //! depth buffer, records and a pose in memory that is lent.
 
+use super::hash::Hash;
 use super::turntable::{self, BACKGROUND, Panel, Step, Turntable};
 use super::{Picture, PreviewError};
 use std::path::Path;
@@ -101,7 +102,7 @@ pub struct Stage<'m> {
 }
 
 /// Takes the colours of a strip, and the number of its first row.
-type PutStrip<'p> = dyn FnMut(u32, &mut dyn Iterator<Item = [u8; 3]>) + 'p;
+type PutStrip<'p, P> = dyn FnMut(u32, &[<P as PixelFormat>::Raw]) + 'p;
 
 /// The closure of a frame.
 pub(super) type DrawScene<'d, P> = dyn FnMut(&mut Scene<'_, Strip<'_, P, WithDepth, WithRecords>>) + 'd;
@@ -114,6 +115,26 @@ impl<'m> Stage<'m> {
     /// If the bytes are not a container, a number of the panel is out of its range, or the model is beyond the range
     /// of the library's numbers.
     pub fn new(container: &'m Container, panel: Panel, format: Format) -> Result<Self, PreviewError> {
+        Self::check(&panel)?;
+        let bytes = container.bytes();
+        let model = Model::from_bytes(bytes)?;
+        Self::of(bytes, model, panel, format)
+    }
+
+    /// Returns the model on another panel, or in another format. It is not checked again.
+    ///
+    /// # Errors
+    ///
+    /// If a number of the panel is out of its range.
+    pub fn on(&self, panel: Panel, format: Format) -> Result<Self, PreviewError> {
+        if panel == self.panel {
+            return Ok(Self { format, ..*self });
+        }
+        Self::check(&panel)?;
+        Self::of(self.bytes, self.model, panel, format)
+    }
+
+    fn check(panel: &Panel) -> Result<(), PreviewError> {
         let most = u32::from(Viewport::MAX_SIZE);
         for (what, number, most) in [
             ("a screen's width", panel.width, most),
@@ -125,8 +146,10 @@ impl<'m> Stage<'m> {
                 return Err(PreviewError::Panel(what, number, 1..=most));
             }
         }
-        let bytes = container.bytes();
-        let model = Model::from_bytes(bytes)?;
+        Ok(())
+    }
+
+    fn of(bytes: &'m [u8], model: Model<'m>, panel: Panel, format: Format) -> Result<Self, PreviewError> {
         let table = Turntable::new(&model, &panel)?;
         let mut stage = Self { bytes, model, panel, format, table, most_records: 0 };
         let strips = panel.height.div_ceil(panel.rows) as usize;
@@ -136,6 +159,30 @@ impl<'m> Stage<'m> {
             words.saturating_add(records_len(0, 1, vertices, 4, triangles)).min(MOST_RECORDS)
         });
         Ok(stage)
+    }
+
+    /// Returns the panel.
+    #[must_use]
+    pub const fn panel(&self) -> Panel {
+        self.panel
+    }
+
+    /// Returns the hash of a frame in RGB565, as the firmware that counts prints it, and the statistics of the frame.
+    /// `None` is a frame without a model.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`picture`](Self::picture).
+    pub fn hash(&self, step: Option<&Step>) -> Result<(u32, Stats), PreviewError> {
+        let mut hash = Hash::NEW;
+        let rows = self.panel.rows;
+        let stats = match step {
+            Some(step) => self.posed(step, |placed, _| {
+                self.frame::<Rgb565>(rows, &mut |_, pixels| hash.add(pixels), &mut |scene| placed.draw(scene))
+            })??,
+            None => self.frame::<Rgb565>(rows, &mut |_, pixels| hash.add(pixels), &mut |_| {})?,
+        };
+        Ok((hash.0, stats))
     }
 
     /// Returns the model.
@@ -174,9 +221,8 @@ impl<'m> Stage<'m> {
     fn picture_in<P: PixelFormat>(&self, step: &Step) -> Result<(Picture, Stats), PreviewError> {
         let mut picture = Picture::new(self.panel.width, self.panel.height);
         let stats = self.posed(step, |placed, _| {
-            self.frame::<P>(self.panel.rows, &mut |row, pixels| picture.put(row, pixels), &mut |scene| {
-                placed.draw(scene)
-            })
+            let put = &mut |row, pixels: &[P::Raw]| picture.put(row, &mut pixels.iter().map(|raw| P::unpack(*raw)));
+            self.frame::<P>(self.panel.rows, put, &mut |scene| placed.draw(scene))
         })??;
         Ok((picture, stats))
     }
@@ -209,7 +255,7 @@ impl<'m> Stage<'m> {
     pub(super) fn frame<P: PixelFormat>(
         &self,
         rows: u32,
-        put: &mut PutStrip<'_>,
+        put: &mut PutStrip<'_, P>,
         draw: &mut DrawScene<'_, P>,
     ) -> Result<Stats, PreviewError> {
         let fault = |error: &dyn std::fmt::Display| PreviewError::Frame(error.to_string());
@@ -222,7 +268,7 @@ impl<'m> Stage<'m> {
         let mut frame = renderer.begin(BACKGROUND);
         while let Some(strip) = frame.next_strip(&mut color, &mut *draw).map_err(|error| fault(&error))? {
             let first = strip.area().top_left.y as u32;
-            put(first, &mut strip.pixels().iter().map(|raw| P::unpack(*raw)));
+            put(first, strip.pixels());
         }
         Ok(frame.stats())
     }

@@ -114,6 +114,42 @@ fn a_sheet_has_eight_different_pictures_and_is_written_as_a_whole() {
 }
 
 #[test]
+fn clocks_that_no_core_has_are_refused() {
+    let model = container(figures::textured());
+    let stage = Stage::new(&model, PANEL, Format::Rgb565).expect("a stage");
+    for hertz in [f64::NAN, f64::INFINITY, -168e6, 0.0, 1.0] {
+        assert!(matches!(estimate(&stage, hertz), Err(PreviewError::Clock(_))), "{hertz}");
+    }
+}
+
+#[test]
+fn a_stage_on_another_panel_is_that_of_a_new_one() {
+    let model = container(figures::animated(true));
+    let other = Panel { width: 64, height: 48, rows: 5, zoom: 150 };
+    let stage = Stage::new(&model, PANEL, Format::Rgb565).expect("a stage");
+    let moved = stage.on(other, Format::Gray8).expect("a stage");
+    let new = Stage::new(&model, other, Format::Gray8).expect("a stage");
+    let step = new.step(3);
+    assert_eq!(moved.picture(&step).expect("a picture").0, new.picture(&step).expect("a picture").0);
+    assert!(stage.on(Panel { rows: 0, ..other }, Format::Gray8).is_err());
+}
+
+#[test]
+fn hashes_differ_where_pictures_do() {
+    let model = container(figures::animated(true));
+    let stage = Stage::new(&model, PANEL, Format::Rgb565).expect("a stage");
+    let hash = |step: Option<&Step>| stage.hash(step).expect("a hash").0;
+    let steps: Vec<_> = (0..stage.steps()).map(|number| stage.step(number)).collect();
+    for (k, one) in steps.iter().enumerate() {
+        assert!(hash(Some(one)) != hash(None), "frame {k} is empty");
+        let picture = |step| stage.picture(step).expect("a picture").0;
+        for other in &steps[..k] {
+            assert_eq!(hash(Some(one)) == hash(Some(other)), picture(one) == picture(other), "frame {k}");
+        }
+    }
+}
+
+#[test]
 fn wrong_panels_and_files_are_errors_that_name_the_number() {
     let model = container(figures::textured());
     let error = |panel| Stage::new(&model, panel, Format::Rgb565).expect_err("an error").to_string();

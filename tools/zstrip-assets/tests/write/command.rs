@@ -58,3 +58,119 @@ fn mistakes_have_exit_codes_and_places() {
     // No output is left behind.
     assert_eq!(std::fs::read_dir(folder.path("")).expect("a folder").count(), 2);
 }
+
+/// The square, and a copy of it as a container.
+fn square() -> Folder {
+    let folder = Folder::new().with("square.obj", SQUARE).with("paint.png", png(64, 64));
+    let [file, out] = ["square.obj", "square.zstm"].map(|name| folder.path(name));
+    let (output, ..) = run(&["convert".as_ref(), file.as_ref(), "-o".as_ref(), out.as_ref()]);
+    assert!(output.status.success());
+    folder
+}
+
+/// Runs a command with words, the second of which is a file of the folder, and returns code, output and errors.
+fn run_in(folder: &Folder, words: &str) -> (Option<i32>, String, String) {
+    let mut words: Vec<std::ffi::OsString> = words.split(' ').map(Into::into).collect();
+    for word in &mut words {
+        if word.to_string_lossy().contains('.') && !word.to_string_lossy().starts_with('-') {
+            *word = folder.path(&word.to_string_lossy()).into();
+        }
+    }
+    let (output, out, err) = run(&words.iter().map(|word| word.as_ref()).collect::<Vec<_>>());
+    (output.status.code(), out, err)
+}
+
+#[test]
+fn models_and_containers_are_checked() {
+    let folder = square();
+    let (code, text, err) = run_in(&folder, "check square.obj --texture paint.png --screen 64x80 --sheet sheet.png");
+    assert_eq!(code, Some(0), "{err}");
+    // What is lost, what it takes, and how fast it is.
+    for part in ["worst errors", "flash, bytes", "records", "pose", "RP2040", "RP2350", "Cortex-M4", "ESP32-C3, C6"] {
+        assert!(text.contains(part), "{part}: {text}");
+    }
+    let sheet = image::open(folder.path("sheet.png")).expect("a PNG");
+    assert_eq!((sheet.width(), sheet.height()), (4 * 68 + 4, 2 * 84 + 4));
+    let (code, of_container, err) = run_in(&folder, "check square.zstm --screen 64x80");
+    assert!(code == Some(0) && of_container.contains("a container already"), "{err}");
+    let (_, of_model, _) = run_in(&folder, "check square.obj --screen 64x80");
+    let costs = |text: &str| text[text.find("per frame").expect("costs")..].to_owned();
+    assert_eq!(costs(&of_container), costs(&of_model));
+    // Options of a conversion have no effect on a container.
+    let (code, _, err) = run_in(&folder, "check square.zstm --scale 2");
+    assert!(code == Some(2) && err.contains("--scale"), "{err}");
+    let (code, _, err) = run_in(&folder, "check square.obj --screen 4096x4096 --sheet no.png");
+    assert!(code == Some(1) && err.contains("16404 x 8204") && !folder.path("no.png").exists(), "{err}");
+}
+
+#[test]
+fn numbers_out_of_range_are_refused_before_anything_is_drawn() {
+    let folder = square();
+    for words in [
+        "check square.obj --m4-clock NaN",
+        "check square.obj --m4-clock=-5",
+        "check square.obj --screen 0x80",
+        "check square.obj --screen 80",
+        "check square.obj --rows 321",
+        "view square.obj --zoom 0",
+        "view square.obj --clip Run",
+        "bench square.obj --rows 0",
+        "bench square.obj --core m7",
+        "bench square.obj --format gray8",
+        "bench",
+        "frob square.obj",
+        "--frob",
+    ] {
+        let (code, out, err) = run_in(&folder, words);
+        assert!(code == Some(2) && out.is_empty() && err.contains("--help"), "{words}: {code:?} {out}{err}");
+    }
+    let (output, _, err) = run(&[]);
+    assert!(output.status.code() == Some(2) && err.contains("convert, info, check, view and bench"), "{err}");
+    for command in ["", "convert ", "info ", "check ", "view ", "bench "] {
+        let (code, out, _) = run_in(&folder, &format!("{command}--help"));
+        assert!(code == Some(0) && out.contains("zstrip-assets") && out.contains("--texture FILE"), "{command}");
+    }
+}
+
+#[test]
+fn firmware_refuses_models_that_it_has_no_memory_for_and_says_why() {
+    let folder = square().with("large.png", png(2048, 2048));
+    let (code, _, err) = run_in(&folder, "bench square.obj --texture large.png --max-texture 2048 --no-mips");
+    assert!(code == Some(1) && err.contains("memory for 8388576") && err.contains("container"), "{err}");
+    let (code, _, err) = run_in(&folder, "bench square.obj --screen 4000x320 --rows 320");
+    assert!(code == Some(1) && err.contains("pixels of a strip: 1280000"), "{err}");
+    let (code, _, err) = run_in(&folder, "bench square.obj --zstrip no.where");
+    assert!(code == Some(1) && err.contains("--zstrip DIR"), "{err}");
+}
+
+/// Returns the frames of a GIF file: their delays and their pictures as indices and palettes.
+fn frames(folder: &Folder, name: &str) -> Vec<(u16, Vec<u8>)> {
+    let file = std::fs::File::open(folder.path(name)).expect("a file");
+    let mut options = gif::DecodeOptions::new();
+    options.set_color_output(gif::ColorOutput::RGBA);
+    let mut decoder = options.read_info(file).expect("a GIF");
+    let mut frames = vec![];
+    while let Some(frame) = decoder.read_next_frame().expect("a frame") {
+        frames.push((frame.delay, frame.buffer.to_vec()));
+    }
+    frames
+}
+
+#[test]
+fn pictures_that_move_begin_where_they_are_told_to() {
+    let folder = square();
+    for (name, turn) in [("a", 0), ("b", 90), ("c", -270), ("d", 450)] {
+        let (code, _, err) =
+            run_in(&folder, &format!("view square.obj --screen 32x40 --gif {name}.gif --png {name}.png --turn={turn}"));
+        assert_eq!(code, Some(0), "{err}");
+    }
+    let [a, b, c, d] = ["a.gif", "b.gif", "c.gif", "d.gif"].map(|name| frames(&folder, name));
+    assert_eq!(a.len(), 120);
+    assert_eq!(a.iter().map(|(delay, _)| u32::from(*delay)).sum::<u32>(), 600, "six seconds");
+    assert!(a[0] != b[0] && a[30] == b[0], "a quarter of a turn");
+    assert!(b == c && c == d, "whole turns do not matter");
+    // The picture shows the first frame.
+    let picture = image::open(folder.path("b.png")).expect("a PNG").to_rgba8();
+    let differ = picture.as_raw().iter().zip(&b[0].1).filter(|(a, b)| a.abs_diff(**b) > 8).count();
+    assert_eq!(differ, 0);
+}

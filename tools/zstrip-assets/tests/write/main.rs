@@ -1,5 +1,6 @@
 //! Containers that the tool writes: read back, drawn, and refused.
 
+#[cfg(feature = "cli")]
 mod command;
 mod failures;
 mod figures;

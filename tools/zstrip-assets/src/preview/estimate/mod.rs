@@ -9,8 +9,8 @@ mod work;
 use super::turntable::{Step, TURN};
 use super::{PreviewError, Stage};
 use crate::write::SECTION_NAMES;
-use costs::{Costs, DRAW, LARGE, SMALL, TERMS, Table, VERTEX};
-use pose_work::{NODE, PoseTerms, UNPACKED};
+use costs::{Costs, LARGE, SHADED, SMALL, TERMS, Table, VERTEX};
+use pose_work::{COLUMNS, NODE, PoseTerms};
 use std::ops::Range;
 use work::{DrawWork, Material};
 use zstrip::embedded_graphics_core::pixelcolor::Gray8;
@@ -38,7 +38,7 @@ pub const CORES: [Core; 4] = [
     Core { name: "Cortex-M0+", chip: "RP2040", counted_on: "m0+", hertz: 125e6 },
     Core { name: "Cortex-M33", chip: "RP2350", counted_on: "m4", hertz: 150e6 },
     Core { name: "Cortex-M4", chip: "", counted_on: "m4", hertz: 168e6 },
-    Core { name: "RV32IMC", chip: "ESP32-C3", counted_on: "rv32imc", hertz: 160e6 },
+    Core { name: "RV32IMC", chip: "ESP32-C3, C6", counted_on: "rv32imc", hertz: 160e6 },
 ];
 
 /// The mean of all frames, and the frame that takes most.
@@ -65,7 +65,7 @@ pub struct CoreEstimate {
     pub frame: Amount,
     /// Cycles of all of a frame with memory that never waits; `None` where only instructions were counted.
     pub cycles: Option<Amount>,
-    /// The largest error of the tables that were used, in percent.
+    /// The largest errors of the tables that were used, in percent, each by its part of a frame.
     pub error_percent: f64,
 }
 
@@ -120,9 +120,9 @@ pub struct Estimate {
     pub format: &'static str,
     /// Number of frames that were counted.
     pub frames: u32,
-    /// Vertices, those that are shaded, triangles, those that are drawn, and their pixels.
+    /// Vertices of the parts whose boxes are seen. Each is projected once.
     pub vertices: Amount,
-    /// Vertices whose colours are computed.
+    /// Vertices of triangles that are drawn: those whose colours are computed.
     pub shaded: Amount,
     /// Triangles.
     pub triangles: Amount,
@@ -155,8 +155,11 @@ struct FrameWork {
 ///
 /// # Errors
 ///
-/// Those of [`Stage::picture`].
+/// [`PreviewError::Clock`] if the clock is not from 1 kHz to 10 GHz, and those of [`Stage::picture`].
 pub fn estimate(stage: &Stage<'_>, m4_hertz: f64) -> Result<Estimate, PreviewError> {
+    if !(1e3..=1e10).contains(&m4_hertz) {
+        return Err(PreviewError::Clock(m4_hertz));
+    }
     let frames = (0..stage.steps())
         .map(|number| {
             let step: Step = stage.step(number);
@@ -189,7 +192,7 @@ pub fn estimate(stage: &Stage<'_>, m4_hertz: f64) -> Result<Estimate, PreviewErr
         format,
         frames: stage.steps(),
         vertices: sum(&|draw| draw.terms[VERTEX]),
-        shaded: sum(&|draw| draw.shaded),
+        shaded: sum(&|draw| draw.terms[SHADED]),
         triangles: sum(&|draw| draw.terms[costs::TRIANGLE]),
         drawn: sum(&|draw| draw.terms[SMALL] + draw.terms[LARGE]),
         rows: sum(&|draw| draw.terms[SMALL + 1] + draw.terms[LARGE + 1]),
@@ -232,43 +235,67 @@ fn of_core(
     stage: &Stage<'_>,
     frames: &[FrameWork],
 ) -> Option<CoreEstimate> {
-    let mut error_percent = 0.0_f64;
+    let (mut draw_error, mut pose_errors) = (0.0_f64, 0.0_f64);
     let mut of_unit = |unit: &str| {
         let strips = stage.panel.height.div_ceil(stage.panel.rows);
         let (pixel, strip) = table.clear(core.counted_on, unit, format)?;
         let clear = pixel * f64::from(stage.panel.width) * f64::from(stage.panel.height) + strip * f64::from(strips);
         let (pose_costs, pose_error) = pose_work::costs(core.counted_on, unit)?;
-        let costs = |material: Material| table.material(core.counted_on, unit, format, material.name(), strips);
+        let key = [core.counted_on, unit, format];
+        let costs = |material: Material| table.material(key, material.name(), material.in_formats(), strips);
         let mut stages = vec![];
         for frame in frames {
             let sum = |columns: Range<usize>| columns.map(|k| frame.pose[k] * pose_costs[k]).sum::<f64>();
             let mut drawn = clear;
             for draw in &frame.draws {
                 let of = costs(draw.material)?;
-                error_percent = error_percent.max(of.worst_percent);
-                drawn += of_draw(draw, &of, costs(Material::Flat)?.terms[VERTEX], pose_costs[UNPACKED]);
+                draw_error = draw_error.max(of.worst_percent);
+                drawn += of_draw(draw, &of);
             }
-            stages.push([sum(NODE..UNPACKED), sum(0..NODE), drawn]);
+            stages.push([sum(NODE..COLUMNS), sum(0..NODE), drawn]);
         }
-        error_percent = error_percent.max(pose_error);
+        pose_errors = pose_errors.max(pose_error);
         let stage = |k: usize| amount(stages.iter().map(|stage| stage[k]));
         Some([stage(0), stage(1), stage(2), amount(stages.iter().map(|stage| stage.iter().sum()))])
     };
     let [pose, place, draw, frame] = of_unit("instructions")?;
     let cycles = of_unit("cycles").map(|[.., cycles]| cycles);
+    // Each part of a frame has the error of its table.
+    let error_percent = (draw.mean * draw_error + (pose.mean + place.mean) * pose_errors) / frame.mean.max(1.0);
     Some(CoreEstimate { core, pose, place, draw, frame, cycles, error_percent })
 }
 
-/// Returns what a draw takes. The table's cost of a vertex is that of one that is shaded; one that no triangle asks for
-/// is only projected, and costs as much as that of a flat material.
-fn of_draw(draw: &DrawWork, costs: &Costs, projected: f64, unpacked: f64) -> f64 {
-    let mut sum = 0.0;
-    for k in (0..TERMS).filter(|k| *k != VERTEX) {
-        sum += draw.terms[k] * costs.terms[k];
+/// Returns the sum of a draw's costs.
+fn of_draw(draw: &DrawWork, costs: &Costs<TERMS>) -> f64 {
+    draw.terms.iter().zip(costs.terms).map(|(count, cost)| count * cost).sum()
+}
+
+/// Work of a draw: the name of its material, and the numbers of [`DRAW_TERMS`].
+pub type DrawCounts = (&'static str, [f64; TERMS]);
+
+/// Names of what a draw has to do, as the columns of benches/model_costs.csv.
+pub const DRAW_TERMS: [&str; TERMS] = costs::NAMES;
+
+/// Names of what placing and posing has to do, as the columns of benches/pose_costs.csv: placing before `node`.
+pub const POSE_TERMS: [&str; COLUMNS] = pose_work::NAMES;
+
+/// Work of a frame: that of each draw, and the numbers of [`POSE_TERMS`].
+pub type FrameCounts = (Vec<DrawCounts>, [f64; COLUMNS]);
+
+/// Counts the work of a frame, for programs that fit costs. `None` stands for frames that are not fitted, because
+/// triangles are clipped in them.
+///
+/// # Errors
+///
+/// Those of [`Stage::picture`].
+pub fn work_of(stage: &Stage<'_>, number: u32) -> Result<Option<FrameCounts>, PreviewError> {
+    let step = stage.step(number);
+    let draws = work::count(stage, &step)?;
+    if draws.iter().any(|draw| draw.clips) {
+        return Ok(None);
     }
-    debug_assert!(draw.terms[DRAW] == 1.0, "a draw is one draw");
-    let shading = (costs.terms[VERTEX] - projected).max(0.0) + unpacked;
-    sum + draw.terms[VERTEX] * projected + draw.shaded * shading
+    let draws = draws.iter().map(|draw| (draw.material.name(), draw.terms)).collect();
+    Ok(Some((draws, pose_work::count(stage, &step, number / TURN))))
 }
 
 fn flash(stage: &Stage<'_>) -> Flash {
@@ -298,8 +325,8 @@ fn notes(frames: &[FrameWork]) -> Vec<String> {
     ];
     if frames.iter().flat_map(|frame| &frame.draws).any(|draw| draw.is_like) {
         notes.push(
-            "The tables do not have all of the model's materials: faces without normals, textures that are not \
-             RGB565, and textures with alpha take more than is foretold here."
+            "The tables do not have all of the model's materials: some textures are foretold by those of another \
+             format."
                 .to_owned(),
         );
     }

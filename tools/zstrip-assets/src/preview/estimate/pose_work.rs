@@ -2,13 +2,12 @@
 
 use super::super::Stage;
 use super::super::turntable::Step;
-use zstrip::model::container::{Clip, Influence, Material, NONE, Node, Part, SectionKind, Skin, Target, Texture};
+use zstrip::model::container::{
+    Channel, Clip, Influence, Material, NONE, Node, Part, Path, SectionKind, Skin, Target, Texture,
+};
 
-/// The costs: those, none below 0, whose sums come nearest to what `ci/model` counted of the poses of 15 models. Two of
-/// them are characters of others, the rest is made by the library's tests. With both characters left out of the fit,
-/// their poses are foretold 2 to 6 % and 18 to 24 % too low. Places were counted later, of ten models that are made
-/// from those of the tests: their sums are within 8 %.
-const COSTS: &str = include_str!("pose_costs.csv");
+/// The costs: those, none below 0, whose sums come nearest to what `ci/costs` counted of models that it makes up.
+const COSTS: &str = include_str!("../../../../../benches/pose_costs.csv");
 
 /// Columns of the file, and their number.
 ///
@@ -19,13 +18,15 @@ const COSTS: &str = include_str!("pose_costs.csv");
 /// | `level` | such a draw with a texture of several levels, or with coarser parts |
 /// | `node` | a node of a pose |
 /// | `channel` | a channel of the clip that is played |
+/// | `moved` | a node that such channels move |
 /// | `joint` | a joint of a skin |
 /// | `rigid` | a vertex of one joint |
 /// | `blended` | a vertex of several joints |
 /// | `weight` | a joint of such a vertex |
-/// | `morphed` | a vertex of a part with morph targets |
+/// | `morphed` | a vertex of a part with morph targets that has no joints |
 /// | `delta` | a vertex that a target moves |
-/// | `unpacked` | a vertex that is shaded: its normal and texture coordinates are packed |
+pub const NAMES: [&str; COLUMNS] =
+    ["place", "above", "level", "node", "channel", "moved", "joint", "rigid", "blended", "weight", "morphed", "delta"];
 pub const COLUMNS: usize = 12;
 const PLACE: usize = 0;
 const ABOVE: usize = 1;
@@ -33,13 +34,13 @@ const LEVEL: usize = 2;
 /// The first column of a pose.
 pub const NODE: usize = 3;
 const CHANNEL: usize = 4;
-const JOINT: usize = 5;
-const RIGID: usize = 6;
-const BLENDED: usize = 7;
-const WEIGHT: usize = 8;
-const MORPHED: usize = 9;
-const DELTA: usize = 10;
-pub const UNPACKED: usize = 11;
+const MOVED: usize = 5;
+const JOINT: usize = 6;
+const RIGID: usize = 7;
+const BLENDED: usize = 8;
+const WEIGHT: usize = 9;
+const MORPHED: usize = 10;
+const DELTA: usize = 11;
 
 /// Costs, or numbers of things that cost, by column.
 pub type PoseTerms = [f64; COLUMNS];
@@ -71,7 +72,14 @@ pub fn count(stage: &Stage<'_>, step: &Step, clip: u32) -> PoseTerms {
     }
     terms[NODE] = nodes.len() as f64;
     let clips = stage.items::<Clip>(SectionKind::Clips);
-    terms[CHANNEL] = clips.get(clip as usize).map_or(0.0, |clip| clip.channels.into());
+    if let Some(clip) = clips.get(clip as usize) {
+        let channels = stage.items::<Channel>(SectionKind::Channels).iter().skip(clip.first_channel as usize);
+        let moving = channels.take(clip.channels as usize).filter(|channel| channel.path != Path::Weights as u8);
+        // Channels are in the order of their nodes.
+        let mut nodes: Vec<_> = moving.map(|channel| channel.target).collect();
+        nodes.dedup();
+        (terms[CHANNEL], terms[MOVED]) = (clip.channels.into(), nodes.len() as f64);
+    }
     let targets = stage.items::<Target>(SectionKind::Targets);
     let influences = stage.items::<Influence>(SectionKind::Influences);
     let mut last = NONE;
@@ -79,7 +87,7 @@ pub fn count(stage: &Stage<'_>, step: &Step, clip: u32) -> PoseTerms {
         let (vertices, first) = (part.vertices as usize, part.first_target as usize);
         let moved = targets.iter().skip(first).take(part.targets.into());
         terms[DELTA] += moved.map(|target| f64::from(target.vertices)).sum::<f64>();
-        if part.targets > 0 {
+        if part.targets > 0 && part.skin == NONE {
             terms[MORPHED] += vertices as f64;
         }
         if part.skin == NONE {

@@ -5,39 +5,86 @@ mod calls;
 
 use super::super::turntable::Step;
 use super::super::{PreviewError, Stage};
-use super::costs::{DRAW, LARGE, SMALL, STRIP, TERMS, TRIANGLE, VERTEX};
+use super::costs::{DRAW, LARGE, SHADED, SMALL, STRIP, TERMS, TRIANGLE, VERTEX};
 use calls::{BySize, Calls, TexturedCalls};
 use zstrip::embedded_graphics_core::pixelcolor::Gray8;
 use zstrip::math::Projective;
 use zstrip::mesh::Mesh;
-use zstrip::model::container::{self, AlphaMode, NONE_LONG, Part, SectionKind, Texture};
+use zstrip::model::container::{self, AlphaMode, NONE_LONG, Part, SectionKind, Texture, TextureFormat};
 use zstrip::scene::{Cull, State, Winding};
 use zstrip::target::Stats;
 
-/// A material of the tables.
+/// A material of the table of models.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Material {
     /// Colours of faces.
     Flat,
     /// Colours of vertices.
     Gouraud,
-    /// A texture and colours of vertices.
-    LitTextured,
     /// Colours of vertices, blended.
     Blended,
+    /// A texture of RGB565.
+    Textured,
+    /// A palette of 256 colours.
+    Palette,
+    /// A palette of up to 16 colours, with several texels in a byte.
+    PackedPalette,
+    /// A grey texture.
+    Gray,
+    /// A texture of one bit per texel, that is there or not.
+    Masked,
+    /// A texture of RGB565 with alpha, that is there or not.
+    Cutout,
+    /// A palette with alpha, that is there or not.
+    CutoutPalette,
+    /// A texture of RGB565 with alpha, blended.
+    Glass,
+    /// A palette with alpha, blended.
+    GlassPalette,
 }
 
 impl Material {
     /// All of them.
-    pub const ALL: [Self; 4] = [Self::Flat, Self::Gouraud, Self::LitTextured, Self::Blended];
+    pub const ALL: [Self; 12] = [
+        Self::Flat,
+        Self::Gouraud,
+        Self::Blended,
+        Self::Textured,
+        Self::Palette,
+        Self::PackedPalette,
+        Self::Gray,
+        Self::Masked,
+        Self::Cutout,
+        Self::CutoutPalette,
+        Self::Glass,
+        Self::GlassPalette,
+    ];
 
-    /// Returns the name in the tables.
+    /// Returns the name in the table.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Flat => "flat",
             Self::Gouraud => "gouraud",
-            Self::LitTextured => "lit_textured",
             Self::Blended => "blended",
+            Self::Textured => "textured",
+            Self::Palette => "palette",
+            Self::PackedPalette => "packed_palette",
+            Self::Gray => "gray",
+            Self::Masked => "masked",
+            Self::Cutout => "cutout",
+            Self::CutoutPalette => "cutout_palette",
+            Self::Glass => "glass",
+            Self::GlassPalette => "glass_palette",
+        }
+    }
+
+    /// Returns the nearest material of the table of formats.
+    pub const fn in_formats(self) -> &'static str {
+        match self {
+            Self::Flat => "flat",
+            Self::Gouraud => "gouraud",
+            Self::Blended => "blended",
+            _ => "lit_textured",
         }
     }
 
@@ -46,7 +93,25 @@ impl Material {
         match self {
             Self::Flat => 0,
             Self::Gouraud | Self::Blended => 2,
-            Self::LitTextured => 4,
+            _ => 4,
+        }
+    }
+
+    /// Returns the material of a texture's format and an alpha mode, and whether the table has that of another format.
+    const fn of_texture(format: Option<TextureFormat>, mode: AlphaMode) -> (Self, bool) {
+        match (mode, format) {
+            (AlphaMode::Opaque, Some(TextureFormat::Rgb565)) => (Self::Textured, false),
+            (AlphaMode::Opaque, Some(TextureFormat::Palette8)) => (Self::Palette, false),
+            (AlphaMode::Opaque, Some(TextureFormat::Gray8)) => (Self::Gray, false),
+            (AlphaMode::Opaque, Some(TextureFormat::Mask)) => (Self::PackedPalette, true),
+            (AlphaMode::Opaque, _) => (Self::PackedPalette, false),
+            (AlphaMode::Mask, Some(TextureFormat::Mask)) => (Self::Masked, false),
+            (AlphaMode::Mask, Some(TextureFormat::Rgb565)) => (Self::Cutout, false),
+            (AlphaMode::Mask, Some(TextureFormat::Palette8)) => (Self::CutoutPalette, false),
+            (AlphaMode::Mask, _) => (Self::CutoutPalette, true),
+            (AlphaMode::Blend, Some(TextureFormat::Rgb565)) => (Self::Glass, false),
+            (AlphaMode::Blend, Some(TextureFormat::Palette8)) => (Self::GlassPalette, false),
+            (AlphaMode::Blend, _) => (Self::GlassPalette, true),
         }
     }
 }
@@ -57,8 +122,6 @@ pub struct DrawWork {
     pub material: Material,
     /// In the order of the table's columns.
     pub terms: [f64; TERMS],
-    /// Vertices whose colours and texture coordinates were asked for: those of triangles that are drawn.
-    pub shaded: f64,
     /// Set if the tables do not have the material itself, but the one that is nearest to it.
     pub is_like: bool,
     /// Set if triangles of the frame are clipped, whose clipping the tables do not have.
@@ -155,18 +218,15 @@ fn counted<'d>(
     let item = materials.get(of).copied().unwrap_or(zstrip::bytemuck::Zeroable::zeroed());
     let textures = stage.items::<Texture>(SectionKind::Textures);
     let texture = textures.get(usize::from(item.texture));
-    let blends = item.alpha_mode == AlphaMode::Blend as u8;
-    let masked = item.alpha_mode == AlphaMode::Mask as u8;
     let two_sided = item.flags & container::Material::DOUBLE_SIDED != 0;
     let front = if (determinant(&mvp) > 0.0) == upright { Winding::CounterClockwise } else { Winding::Clockwise };
-    let material = match texture {
-        Some(_) => Material::LitTextured,
-        None if blends => Material::Blended,
-        None if part.first_normal == NONE_LONG => Material::Flat,
-        None => Material::Gouraud,
+    let mode = AlphaMode::of(item.alpha_mode).unwrap_or(AlphaMode::Opaque);
+    let (material, is_like) = match texture {
+        Some(texture) => Material::of_texture(TextureFormat::of(texture.format), mode),
+        None if mode == AlphaMode::Blend => (Material::Blended, false),
+        None if part.first_normal == NONE_LONG => (Material::Flat, false),
+        None => (Material::Gouraud, false),
     };
-    let is_like = texture.is_some_and(|texture| texture.format != 0 || texture.alpha != NONE_LONG || blends || masked)
-        || material == Material::Flat;
     Counted {
         mesh,
         mvp,
@@ -198,9 +258,9 @@ fn work(draw: &Counted<'_>, once: &Calls, strips: &Calls, is_seen: bool) -> Draw
         (terms[SMALL], terms[LARGE]) = (terms[SMALL] * first / all, terms[LARGE] * first / all);
         terms[STRIP] = all - first;
     }
-    let shaded =
+    terms[SHADED] =
         if draw.material == Material::Flat { 0.0 } else { f64::from(strips.vertices.get()).min(terms[VERTEX]) };
-    DrawWork { material: draw.material, terms, shaded, is_like: draw.is_like, clips: false }
+    DrawWork { material: draw.material, terms, is_like: draw.is_like, clips: false }
 }
 
 /// Returns the texture coordinates of a part, 16.16, as the container's rules unpack them.

@@ -1,0 +1,164 @@
+//! Options that several commands have.
+
+use super::failure::Failure;
+use lexopt::prelude::*;
+use lexopt::{Error, Parser};
+use std::path::PathBuf;
+use zstrip_assets::preview::{Format, Panel};
+use zstrip_assets::{Center, Normals, Options, TextureKind, UpAxis, UvSize, Winding, WriteOptions};
+
+/// Help for the options of a conversion.
+pub const MODEL_OPTIONS: &str = "\
+Geometry:
+  --up y|z                the axis that points up; z for STL, y for all others
+  --scale FACTOR          a factor of all lengths
+  --center keep|middle|ground   what comes to the origin
+  --flip                  the front is where corners go clockwise
+  --fix-winding           turns triangles over whose normals point to their back
+  --normals keep|smooth|flat    where normals come from
+  --crease DEGREES        the largest angle between faces that looks smooth; 50
+  --weld DISTANCE         joins vertices that are as close as that
+  --budget TRIANGLES      simplifies the model to so many triangles
+
+Textures:
+  --texture FILE          an image for materials without one, as for OBJ without MTL
+  --textures rgb565|palette|palette16|gray|mask   the format; rgb565
+  --max-texture N         the most texels per side; 256
+  --no-mips               no smaller levels of textures
+  --uvs fitting|8|16      bits of texture coordinates; 8 where they are exact
+
+Animation:
+  --key-error PART        how far leaving out keys may move something, as a part of the model's size; 0.0005
+";
+
+/// Options of a conversion.
+#[derive(Default)]
+pub struct Conversion {
+    pub import: Options,
+    pub write: WriteOptions,
+    /// The last option that was given, if any.
+    pub given: Option<String>,
+}
+
+impl Conversion {
+    /// Takes the value of an option; `false` if the option is none of a conversion.
+    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, Error> {
+        let Self { import, write, .. } = self;
+        match name {
+            "up" => {
+                let kinds = [("y", UpAxis::Y), ("z", UpAxis::Z)];
+                import.up = Some(parser.value()?.parse_with(|text| one_of(text, &kinds))?);
+            }
+            "scale" => import.scale = parser.value()?.parse()?,
+            "center" => {
+                let kinds = [("keep", Center::Keep), ("middle", Center::Middle), ("ground", Center::Ground)];
+                import.center = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
+            }
+            "flip" => import.winding = Winding::Flip,
+            "fix-winding" => import.winding = Winding::FromNormals,
+            "normals" => {
+                let kinds = [("keep", Normals::Keep), ("smooth", Normals::Smooth), ("flat", Normals::Flat)];
+                import.normals = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
+            }
+            "crease" => import.crease_angle = parser.value()?.parse()?,
+            "weld" => import.weld_distance = parser.value()?.parse()?,
+            "budget" => import.max_triangles = Some(parser.value()?.parse()?),
+            "texture" => import.texture = Some(parser.value()?.into()),
+            "textures" => {
+                let kinds = [
+                    ("rgb565", TextureKind::Rgb565),
+                    ("palette", TextureKind::Palette),
+                    ("palette16", TextureKind::Palette16),
+                    ("gray", TextureKind::Gray),
+                    ("mask", TextureKind::Mask),
+                ];
+                write.textures = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
+            }
+            "max-texture" => write.max_texture = parser.value()?.parse()?,
+            "no-mips" => write.mips = false,
+            "uvs" => {
+                let kinds = [("fitting", UvSize::Fitting), ("8", UvSize::Bits8), ("16", UvSize::Bits16)];
+                write.uvs = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
+            }
+            "key-error" => write.key_error = parser.value()?.parse()?,
+            _ => return Ok(false),
+        }
+        self.given = Some(format!("--{name}"));
+        Ok(true)
+    }
+}
+
+/// Help for the options of a panel.
+pub const PANEL_OPTIONS: &str = "\
+Panel:
+  --screen WxH            pixels of the panel; 240x320
+  --rows N                rows of a strip; 16
+  --format NAME           rgb565, rgb565be, rgb888, gray8 or dithered (rgb565)
+  --zoom PERCENT          size of the model; at 100, all of a turn is on the screen
+";
+
+/// A panel, and the format of its pixels.
+#[derive(Clone, Copy)]
+pub struct Screen {
+    pub panel: Panel,
+    pub format: Format,
+}
+
+impl Default for Screen {
+    fn default() -> Self {
+        Self { panel: Panel { width: 240, height: 320, rows: 16, zoom: 100 }, format: Format::Rgb565 }
+    }
+}
+
+impl Screen {
+    /// Takes the value of an option; `false` if the option is none of a panel.
+    pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, Error> {
+        match name {
+            "screen" => (self.panel.width, self.panel.height) = parser.value()?.parse_with(size)?,
+            "rows" => self.panel.rows = parser.value()?.parse()?,
+            "zoom" => self.panel.zoom = parser.value()?.parse()?,
+            "format" => {
+                let kinds = Format::ALL.map(|(format, name, _)| (name, format));
+                self.format = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
+            }
+            _ => return Ok(false),
+        }
+        Ok(true)
+    }
+}
+
+/// Reads a size such as 240x320.
+fn size(text: &str) -> Result<(u32, u32), String> {
+    let size = text.split_once('x').and_then(|(w, h)| Some((w.parse().ok()?, h.parse().ok()?)));
+    size.ok_or_else(|| "a size is written as 240x320".to_owned())
+}
+
+/// Takes the value of an option by its name; `false` if there is none of that name.
+type TakeOption<'o> = dyn FnMut(&str, &mut Parser) -> Result<bool, Failure> + 'o;
+
+/// Reads a command's options, and returns its file; `None` if there is to be help instead.
+pub fn read(parser: &mut Parser, take: &mut TakeOption<'_>) -> Result<Option<PathBuf>, Failure> {
+    let mut file = None;
+    while let Some(argument) = parser.next()? {
+        let name = match argument {
+            Short('h') | Long("help") => return Ok(None),
+            Short('o') => "output".to_owned(),
+            Long(name) => name.to_owned(),
+            Value(value) if file.is_none() => {
+                file = Some(PathBuf::from(value));
+                continue;
+            }
+            other => return Err(other.unexpected().into()),
+        };
+        if !take(&name, parser)? {
+            return Err(Failure::Usage(format!("there is no option --{name} here")));
+        }
+    }
+    file.map(Some).ok_or_else(|| Failure::Usage("the file is missing".to_owned()))
+}
+
+/// Returns the choice of a name.
+pub fn one_of<T: Copy>(text: &str, choices: &[(&str, T)]) -> Result<T, String> {
+    let found = choices.iter().find(|(name, _)| *name == text).map(|(_, choice)| *choice);
+    found.ok_or_else(|| choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ") + " are the choices")
+}

@@ -1,0 +1,52 @@
+//! `check`: what a conversion loses, and what the model costs.
+
+use super::arguments::{self, Conversion, PANEL_OPTIONS, Screen};
+use super::failure::Failure;
+use super::{help, source};
+use lexopt::{Parser, ValueExt};
+use std::fmt::Write;
+use std::path::PathBuf;
+use zstrip_assets::preview::{CORES, Stage, contact_sheet, estimate};
+
+const CHECK: &str = "\
+zstrip-assets check FILE [options]: what is lost, and what the model costs, before it is flashed
+
+  --sheet FILE            writes a contact sheet, a PNG
+  --m4-clock MHZ          clock of the Cortex-M4; 168
+  --tsv                   prints core, stage, and mean and largest number of instructions only
+";
+
+/// Runs `check`.
+pub fn check(parser: &mut Parser) -> Result<String, Failure> {
+    let (mut conversion, mut screen) = (Conversion::default(), Screen::default());
+    let (mut megahertz, mut sheet, mut tsv) = (CORES[2].hertz / 1e6, None, false);
+    let take = &mut |name: &str, parser: &mut Parser| {
+        match name {
+            "m4-clock" => megahertz = parser.value()?.parse::<f64>()?,
+            "sheet" => sheet = Some(PathBuf::from(parser.value()?)),
+            "tsv" => tsv = true,
+            _ => return Ok(screen.take(name, parser)? || conversion.take(name, parser)?),
+        }
+        Ok(true)
+    };
+    let Some(file) = arguments::read(parser, take)? else { return Ok(help(&format!("{CHECK}\n{PANEL_OPTIONS}"))) };
+    let (container, mut text) = source::container(&file, &conversion)?;
+    let stage = Stage::new(&container, screen.panel, screen.format)?;
+    let estimate = estimate(&stage, megahertz * 1e6)?;
+    if tsv {
+        text = String::new();
+        for of in estimate.cores.iter().filter(|of| of.core.name != "Cortex-M33") {
+            for (stage, amount) in [("pose", of.pose), ("place", of.place), ("draw", of.draw), ("frame", of.frame)] {
+                // Writing to a string does not fail.
+                _ = writeln!(text, "{}\t{stage}\t{:.0}\t{:.0}", of.core.counted_on, amount.mean, amount.worst);
+            }
+        }
+    } else {
+        _ = write!(text, "\n{estimate}");
+    }
+    if let Some(path) = sheet {
+        contact_sheet(&stage)?.write_png(&path)?;
+        _ = writeln!(text, "\nwrote {}", path.display());
+    }
+    Ok(text)
+}

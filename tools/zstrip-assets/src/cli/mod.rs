@@ -1,0 +1,92 @@
+//! The command line: each command is a file, and reads its own options.
+//!
+//! | file | |
+//! |---|---|
+//! | `convert.rs` | `convert` and `info` |
+//! | `check.rs` | `check`: what is lost, and what the model costs |
+//! | `view.rs`, `animation.rs` | `view`: a window, PNG and GIF files |
+//! | `bench.rs`, `emulator.rs` | `bench`: firmware with the model, counted in QEMU |
+//! | `arguments.rs` | options of several commands |
+//! | `source.rs` | a file of any kind comes in, a container goes out |
+
+mod animation;
+mod arguments;
+mod bench;
+mod check;
+mod convert;
+mod emulator;
+mod failure;
+/// Models that the library's tests make up.
+#[cfg(test)]
+#[allow(dead_code)]
+#[path = "../../../../tests/model"]
+mod made_up {
+    pub mod builder;
+    pub mod figures;
+}
+mod source;
+mod view;
+
+use arguments::MODEL_OPTIONS;
+use failure::Failure;
+use lexopt::{Arg, Parser};
+use std::io::Write;
+use std::process::ExitCode;
+
+/// The text of `--help`; options of models follow.
+const HELP: &str = "\
+Brings OBJ, STL, PLY, glTF and GLB files to zstrip.
+
+  zstrip-assets convert FILE [-o OUT] [options]   writes a container, FILE.zstm beside FILE unless -o says otherwise
+  zstrip-assets info FILE [options]               prints the report of a conversion, and writes nothing
+  zstrip-assets check FILE [options]              what is lost, flash, RAM, and frames per second before it is flashed
+  zstrip-assets view FILE [options]               the model turning in a window, as firmware draws it
+  zstrip-assets bench FILE [options]              counts firmware with the model in QEMU
+
+FILE is a model or, but for convert and info, a container. Options that are missing here: zstrip-assets COMMAND --help.
+
+";
+
+const EXIT_CODES: &str = "
+Exit codes: 0 done, 1 it cannot be done, 2 the command line is wrong.
+";
+
+/// Does what the command line says.
+pub fn run(mut parser: Parser) -> ExitCode {
+    match command(&mut parser) {
+        Ok(text) => {
+            // A reader that has seen enough is no error.
+            std::io::stdout().write_all(text.as_bytes()).ok();
+            ExitCode::SUCCESS
+        }
+        Err(failure) => {
+            eprintln!("zstrip-assets: {failure}");
+            failure.code()
+        }
+    }
+}
+
+/// Runs the command, and returns what it prints.
+fn command(parser: &mut Parser) -> Result<String, Failure> {
+    let name = match parser.next()? {
+        Some(Arg::Short('h') | Arg::Long("help")) => return Ok(format!("{HELP}{MODEL_OPTIONS}{EXIT_CODES}")),
+        Some(Arg::Value(name)) => name,
+        Some(other) => return Err(other.unexpected().into()),
+        None => return Err(Failure::Usage(format!("a command is missing: {COMMANDS}"))),
+    };
+    match name.to_str() {
+        Some("convert") => convert::convert(parser),
+        Some("info") => convert::info(parser),
+        Some("check") => check::check(parser),
+        Some("view") => view::view(parser),
+        Some("bench") => bench::bench(parser),
+        _ => Err(Failure::Usage(format!("{}: there is no such command: {COMMANDS}", name.to_string_lossy()))),
+    }
+}
+
+const COMMANDS: &str = "convert, info, check, view and bench are known";
+
+/// Returns the help of a command.
+fn help(usage: &str) -> String {
+    format!("{usage}\n{MODEL_OPTIONS}{EXIT_CODES}")
+}
