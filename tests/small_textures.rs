@@ -150,24 +150,21 @@ fn same_in_all_ways(case: &str, corners: &[Corner; 3], shader: &impl Shader<Rgb5
 /// Sizes of triangles in 1/256 px, on both sides of the border between small and large ones.
 const SIZES: [i32; 6] = [300, 900, 2500, 6300, 6700, 15_400];
 
-#[test]
-fn texels_of_small_triangles_are_within_a_sixteenth() {
-    let seed = 12;
+/// Draws random triangles of these sizes by a shader of [`TILE`], and by the same with a shader around it. Returns by how
+/// much the texels that are shown are off at most, in texels, and the number of pixels.
+fn texels_off(seed: u64, sizes: &[i32], plain: &impl Shader<Rgb565>, blended: &impl Shader<Rgb565>) -> (f64, usize) {
     let mut rng = Rng::new(seed);
     let (mut worst, mut seen) = (0_f64, 0);
     for case in 0..3000 {
-        let (size, spread) = (SIZES[case % 6], [0, 2, 10, 60][case / 6 % 4]);
+        let (size, spread) = (sizes[case % sizes.len()], [0, 2, 10, 60][case / 6 % 4]);
         // Up to 1/8, 1/2 or 3/2 of the texture.
         let corners = triangle(&mut rng, size, spread, [4096, 16_384, 49_152][case / 24 % 3]);
         let name = format!("seed {seed}, case {case}");
-        // By itself, or with a shader around it.
-        let (plain, blended) =
-            (Textured::new(&TILE).step::<1>(), Blend::new(Textured::new(&TILE).step::<1>(), Replace));
         let pixels = match case % 10 {
-            0 => same_in_all_ways(&name, &corners, &plain),
-            5 => same_in_all_ways(&name, &corners, &blended),
-            1 | 2 => picture(WAYS[case / 10 % 2], &corners, &blended),
-            _ => picture(WAYS[case % 2], &corners, &plain),
+            0 => same_in_all_ways(&name, &corners, plain),
+            5 => same_in_all_ways(&name, &corners, blended),
+            1 | 2 => picture(WAYS[case / 10 % 2], &corners, blended),
+            _ => picture(WAYS[case % 2], &corners, plain),
         };
         for (k, pixel) in pixels.into_iter().enumerate().filter(|(_, pixel)| *pixel != BACKGROUND) {
             let [_, shares] = shares(&corners, k % SIDE, k / SIDE);
@@ -184,8 +181,27 @@ fn texels_of_small_triangles_are_within_a_sixteenth() {
         }
     }
     println!("seed {seed}: {seen} px");
+    (worst, seen)
+}
+
+#[test]
+fn texels_of_small_triangles_are_within_a_sixteenth() {
+    let exact = Textured::new(&TILE).step::<1>();
+    let (worst, seen) = texels_off(12, &SIZES, &exact, &Blend::new(exact, Replace));
     accuracy::check("coordinate in a texture of 128 × 256 texels, small triangles", worst);
     assert!(seen > 100_000, "{seen} px");
+}
+
+/// At the usual step, texels of a triangle that is drawn as small ones are may move further. Those of narrow ones that
+/// are not are exact.
+#[test]
+fn texels_of_small_triangles_are_within_half_of_one_at_steps() {
+    let usual = Textured::new(&TILE);
+    let (worst, seen) = texels_off(17, &[300, 900, 1400, 1900], &usual, &Blend::new(usual, Replace));
+    accuracy::check("the same at the usual step of 16", worst);
+    assert!(seen > 5_000, "{seen} px");
+    // A bound that is never come near to would say nothing.
+    assert!(worst > 0.1, "{worst} texels");
 }
 
 #[test]

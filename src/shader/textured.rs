@@ -21,7 +21,7 @@ use embedded_graphics_core::geometry::Size;
 ///
 /// # Small triangles
 /// Triangles of up to 60 × 25 px, as most of a model's are, take a shorter way if perspective moves none of their
-/// texels by more than 1/16 texel, or 1/32 at a step of 1. There, coordinates are planes on the screen, and nothing is
+/// texels by more than half a texel; by 1/8 texel at a step of 2 or 4, and by 1/32 at a step of 1. There, coordinates are planes on the screen, and nothing is
 /// divided. A triangle that the left or the right edge of the viewport cuts takes the other way, so scrolling may move
 /// its texels by as much. Mip chains have no shorter way.
 ///
@@ -133,7 +133,8 @@ impl<T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> VertexShader for
     type Varyings = Perspective<2, 3>;
     const IS_TOLERANT: bool = true;
 
-    /// Returns 1/16 texel, or 1/32 if each pixel is divided; or less, because sides are rounded up to powers of two.
+    /// Returns half a texel; 1/8 at a step of 2 or 4, and 1/32 if each pixel is divided; or less, because sides are
+    /// rounded up to powers of two.
     #[inline]
     fn tolerance(&self) -> u32 {
         let sides = self.level(0).map_or(Size::zero(), Texture::size);
@@ -324,9 +325,14 @@ impl<T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, const N: usize> Vert
     }
 }
 
-/// Returns b, if perspective may move texels of small triangles by 2⁻ᵇ of one where a `step` is chosen.
+/// Returns b, if perspective may move texels of small triangles by 2⁻ᵇ of one where a `step` is chosen: by less than it
+/// does between the columns that are divided on large ones.
 const fn texel_bits(step: usize) -> u32 {
-    if step == 1 { 5 } else { 4 }
+    match step {
+        1 => 5,
+        2 | 4 => 3,
+        _ => 1,
+    }
 }
 
 /// Returns the pixel of a texel; `None` if the texel is transparent and the format has no alpha.
