@@ -155,23 +155,20 @@ impl Joints<'_> {
     /// do not hold their vertices. Entries are rounded.
     #[inline(never)]
     fn blend(&self, influence: &Influence, mean: &mut Rows) {
-        let [first, others @ ..] = influence.joints;
-        let left = influence.weights.iter().fold(256, |left, weight| left - i32::from(*weight));
-        let rows = self.rows(first);
-        for (k, to) in mean.iter_mut().enumerate() {
-            *to = rows.get(k).map_or(0, |entry| entry.wrapping_mul(left));
-        }
-        for (joint, weight) in others.into_iter().zip(influence.weights) {
-            if weight == 0 {
-                break;
-            }
-            let rows = self.rows(joint);
+        let ([a, b, c, d], [second, third, fourth]) =
+            (influence.joints.map(|joint| self.rows(joint)), influence.weights);
+        let first = influence.weights.iter().fold(256, |left, weight| left - i32::from(*weight));
+        let part = |rows: &Rows, weight: i32, k: usize| rows.get(k).map_or(0, |entry| entry.wrapping_mul(weight));
+        let two = |k: usize| part(a, first, k).wrapping_add(part(b, second.into(), k)).wrapping_add(1 << 7);
+        // Most vertices that follow several joints follow two.
+        if third == 0 {
             for (k, to) in mean.iter_mut().enumerate() {
-                *to = rows.get(k).map_or(0, |entry| to.wrapping_add(entry.wrapping_mul(weight.into())));
+                *to = two(k) >> 8;
             }
+            return;
         }
-        for entry in mean {
-            *entry = entry.wrapping_add(1 << 7) >> 8;
+        for (k, to) in mean.iter_mut().enumerate() {
+            *to = two(k).wrapping_add(part(c, third.into(), k)).wrapping_add(part(d, fourth.into(), k)) >> 8;
         }
     }
 }
