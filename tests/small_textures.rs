@@ -150,8 +150,8 @@ fn same_in_all_ways(case: &str, corners: &[Corner; 3], shader: &impl Shader<Rgb5
 /// Sizes of triangles in 1/256 px, on both sides of the border between small and large ones.
 const SIZES: [i32; 6] = [300, 900, 2500, 6300, 6700, 15_400];
 
-/// Draws random triangles of these sizes by a shader of [`TILE`], and by the same with a shader around it. Returns by how
-/// much the texels that are shown are off at most, in texels, and the number of pixels.
+/// Draws random triangles of these sizes by a shader of [`TILE`], and by the same with a shader around it. Returns by
+/// how much the texels that are shown are off at most, in texels, and the number of pixels.
 fn texels_off(seed: u64, sizes: &[i32], plain: &impl Shader<Rgb565>, blended: &impl Shader<Rgb565>) -> (f64, usize) {
     let mut rng = Rng::new(seed);
     let (mut worst, mut seen) = (0_f64, 0);

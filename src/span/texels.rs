@@ -8,7 +8,7 @@
 //!         color = texel(uq / q, vq / q) · light
 //!         store z >> 16, unless the texel is transparent
 //! ```
-//! Where perspective moves no texel by more than half a texel (1/32 where each pixel is to be exact), u and v are planes
+//! Where perspective moves no texel by more than half of one (1/32 where each pixel is to be exact), u and v are planes
 //! themselves: neither a triangle nor a pixel takes a division. Other triangles take the way of large ones.
 //!
 //! ```text
