@@ -8,16 +8,32 @@ mod reference;
 use reference::rng::Rng;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::light::Unlit;
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::prelude::*;
-use zstrip::shader::{Flat, Gouraud};
-use zstrip::span::{Compare, DepthState};
+use zstrip::shader::{Flat, Gouraud, Textured};
+use zstrip::span::{Compare, DepthState, Shader};
+use zstrip::texture::Tile;
 
 const SIDE: usize = 128;
 
 /// Colours and depths of a frame in strips of `rows`, with or without records.
 fn picture(rows: usize, records: usize, mesh: &Mesh<'_>, depth: DepthState, gouraud: bool) -> (Vec<u16>, Vec<u16>) {
+    if gouraud {
+        draw(rows, records, mesh, depth, &Gouraud::vertex_colors())
+    } else {
+        draw(rows, records, mesh, depth, &Flat::vertex_colors())
+    }
+}
+
+fn draw(
+    rows: usize,
+    records: usize,
+    mesh: &Mesh<'_>,
+    depth: DepthState,
+    shader: &impl Shader<Rgb565>,
+) -> (Vec<u16>, Vec<u16>) {
     let (mut colors, mut depths) = (Vec::new(), Vec::new());
     let mut strip = vec![0; SIDE * rows];
     let mut words = vec![0; records];
@@ -31,11 +47,7 @@ fn picture(rows: usize, records: usize, mesh: &Mesh<'_>, depth: DepthState, gour
         for _ in 0..=first / rows {
             let state = State { cull: Cull::None, depth, ..State::default() };
             let drawn = frame.next_strip(&mut strip, |scene| {
-                if gouraud {
-                    scene.draw_with(state, mesh, &Projective::IDENTITY, &Gouraud::vertex_colors());
-                } else {
-                    scene.draw_with(state, mesh, &Projective::IDENTITY, &Flat::vertex_colors());
-                }
+                scene.draw_with(state, mesh, &Projective::IDENTITY, shader);
             });
             assert!(drawn.expect("no error").is_some());
         }
@@ -99,4 +111,34 @@ fn both_ways_draw_the_same_pixels_and_depths() {
         }
     }
     assert!(drawn > 100_000, "{drawn} px");
+}
+
+/// Under a texture with light, tall triangles are small, too. They cover the pixels that flat ones cover, at the same
+/// depths.
+#[test]
+fn tall_triangles_cover_the_same_pixels_at_the_same_depths() {
+    static WHITE: Tile<'static, 1, 1> = Tile::new(&[[0xFFFF]]);
+    let seed = 6;
+    let mut rng = Rng::new(seed);
+    let mut drawn = 0;
+    for size in [6300, 6500, 9000, 12_000, 15_200, 15_500] {
+        let (mut corners, mut colors) = triangles(&mut rng, 60, size);
+        // Narrow ones, among others: both extents together are at most 85 px.
+        for corner in corners.chunks_exact_mut(6).flat_map(|two| two.iter_mut().take(3)) {
+            corner[0] = Scalar::from_bits(corner[0].to_bits() / 4);
+        }
+        colors.fill([255; 3]);
+        let uvs = vec![[Scalar::ZERO; 2]; corners.len()];
+        let data =
+            MeshData { colors: Some(&colors), uvs: Some(&uvs), ..MeshData::new(Positions::Homogeneous(&corners)) };
+        let mesh = Mesh::new(data).expect("a mesh");
+        let flat = draw(SIDE, 20_000, &mesh, DepthState::LESS, &Flat::vertex_colors());
+        let lit = Textured::new(&WHITE).lit(Unlit::vertex_colors());
+        for (rows, records) in [(SIDE, 20_000), (SIDE, 0), (16, 20_000), (4, 20_000), (32, 0)] {
+            let textured = draw(rows, records, &mesh, DepthState::LESS, &lit);
+            assert!(flat == textured, "seed {seed}, {size}/256 px, strips of {rows}, {records} words");
+        }
+        drawn += flat.0.iter().filter(|color| **color != 0).count();
+    }
+    assert!(drawn > 10_000, "{drawn} px");
 }

@@ -1,20 +1,28 @@
 //! Small triangles: edges and planes in 32 bits.
 //!
 //! A triangle is small if its vertices are within 60 px of each other in x and within 25 px in y. Nearly all triangles
-//! of a mesh are. Positions on its edges are kept in 6.26, relative to the column that the leftmost vertex is in.
+//! of a mesh are. Tall triangles, within 60 px in both and within 85 px in the sum of both, are small for some shaders.
+//! Positions on edges are kept in 6.26, relative to the column that the leftmost vertex is in.
 //!
 //! As for any [`Edge`](super::edge::Edge), a row's first pixel is ⌈X⌉ for X = (x - 128) / 256, a multiple of 1 / D px
 //! with D = 256 dy. ⌊X + 1 - δ⌋ is the same for 0 < δ ≤ 1 / D, which is 2¹⁸ / dy units of 2⁻²⁶ px.
 
-use crate::math::{SMALL_CORE, ShortDivisor, leading_zeros, reciprocal};
+use crate::math::{SMALL_CORE, ShortDivisor, divided, leading_zeros, reciprocal};
+use core::num::NonZeroU32;
 
 /// Fractional bits of positions.
 const FRACTION: u32 = 26;
 
 /// Largest extent in x, 24.8.
 pub(crate) const WIDTH: i32 = 60 << 8;
-/// Largest extent in y, 24.8.
+/// Largest extent in y, 24.8, unless the triangle is tall.
 pub(crate) const HEIGHT: i32 = 25 << 8;
+/// Largest extent in y of a tall triangle, 24.8.
+pub(crate) const TALL: i32 = 60 << 8;
+/// Largest sum of both extents, 24.8: planes of a tall triangle are off by no more than those of other small ones.
+pub(crate) const SUM: i32 = WIDTH + HEIGHT;
+/// Most rows of a tall triangle that its edges are stepped over.
+const TALL_ROWS: i32 = 16;
 
 /// The state of an edge of a small triangle at a row.
 #[derive(Clone, Copy, Debug)]
@@ -55,6 +63,27 @@ impl ShortEdge {
     #[inline(never)]
     pub(crate) fn outlined(x: i32, dx: i32, dy: i32, p: i32) -> Self {
         Self::inlined(x, dx, dy, p)
+    }
+
+    /// Makes an edge of a tall triangle, as [`new`](Self::new) does.
+    ///
+    /// # Format
+    /// 0 < dy ≤ 60 · 2⁸. With M = (x + 128) dy + p dx, which is 2⁸ dy times the position, 0 < M < 2²⁸, the start is
+    /// ⌈M 2¹⁸ / dy⌉ - 1, and the step ⌊dx 2²⁶ / dy⌋. So 0 < δ ≤ 1 at first, and δ grows by less than 1 a row, while
+    /// 2¹⁰ / H ≥ 17 is allowed: 16 rows are exact.
+    #[inline(never)]
+    fn tall(x: i32, dx: i32, dy: i32, p: i32) -> Self {
+        let Some(den) = u32::try_from(dy).ok().and_then(NonZeroU32::new) else { return Self { x: 0, step: 0 } };
+        // Digits of 18 bits, and of 17 and 9 bits: rests are below 2¹⁴.
+        let (high, rest) = divided(((x + 128) * dy + p * dx) as u32, den);
+        let (low, rest) = divided(rest << (FRACTION - 8), den);
+        let start = (high << (FRACTION - 8)).wrapping_add(low).wrapping_sub((rest == 0).into());
+        let (high, rest) = divided(dx.unsigned_abs() << 17, den);
+        let (low, rest) = divided(rest << 9, den);
+        let step = (high << 9).wrapping_add(low);
+        // ⌊-n⌋ = -⌈n⌉
+        let step = if dx < 0 { step.wrapping_add((rest != 0).into()).wrapping_neg() } else { step };
+        Self { x: start, step }
     }
 
     #[inline(always)]
@@ -114,6 +143,37 @@ impl ShortEdge {
     pub(crate) const fn step(&mut self) {
         self.x = self.x.wrapping_add(self.step);
     }
+}
+
+/// Returns where the edge on the left or on the right of a triangle begins at a height `p` below its highest corner,
+/// which is at `x`: there, or at the bend. The other corners are relative to it, with that on the left first, all in
+/// 24.8. The results are x, dx, dy and p as [`ShortEdge::new`] takes them.
+#[inline(always)]
+fn begin([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, is_right: bool) -> (i32, i32, i32, i32) {
+    let ((ax, ay), (bx, by)) = if is_right { ((cx, cy), (bx, by)) } else { ((bx, by), (cx, cy)) };
+    if p < ay { (x, ax, ay, p) } else { (x + ax, bx - ax, by - ay, p - ay) }
+}
+
+/// Returns the edge on the left or on the right of a triangle that is not tall, at a height `p` below its highest
+/// corner, as [`begin`] has it. Edges are exact, wherever they begin.
+#[inline(never)]
+pub(crate) fn edge_at(sides: [i32; 4], x: i32, p: i32, is_right: bool) -> ShortEdge {
+    let (x, dx, dy, p) = begin(sides, x, p, is_right);
+    ShortEdge::outlined(x, dx, dy, p)
+}
+
+/// Returns both edges of a tall triangle, as [`edge_at`] does, and for how many of the next `rows` rows they are exact.
+/// At most 16 rows are, so edges are made anew after them and at the bend.
+#[inline(never)]
+pub(crate) fn tall_edges(sides: [i32; 4], x: i32, p: i32, rows: i32) -> ([ShortEdge; 2], i32) {
+    let [_, by, _, cy] = sides;
+    let bend = (by.min(cy) - p + 255) >> 8;
+    let count = if bend > 0 { rows.min(bend) } else { rows };
+    let edge = |is_right| {
+        let (x, dx, dy, p) = begin(sides, x, p, is_right);
+        ShortEdge::tall(x, dx, dy, p)
+    };
+    ([edge(false), edge(true)], count.min(TALL_ROWS))
 }
 
 /// The part of plane equations that all values on a small triangle share.
@@ -182,6 +242,49 @@ mod tests {
                 let pixel = -(-n).div_euclid(256 * i128::from(dy));
                 assert_eq!(i128::from(at >> FRACTION), pixel, "{x} {dx} / {dy} at {first}, row {row}");
             }
+        }
+    }
+
+    /// Checks all rows of a triangle with these sides, from each of some rows on, in exact arithmetic.
+    fn check_triangle(sides: [i32; 4], x: i32, first: i32) {
+        let [bx, by, cx, cy] = sides;
+        let rows = (by.max(cy) - first + 255) >> 8;
+        let mut done = 0;
+        while done < rows {
+            let (edges, count) = tall_edges(sides, x, first + 256 * done, rows - done);
+            assert!(count > 0 && count <= rows - done);
+            for row in 0..count {
+                let p = first + 256 * (done + row);
+                for (edge, (ax, ay), (bx, by)) in [(edges[0], (bx, by), (cx, cy)), (edges[1], (cx, cy), (bx, by))] {
+                    let (x, dx, dy, p) = if p < ay { (x, ax, ay, p) } else { (x + ax, bx - ax, by - ay, p - ay) };
+                    let (n, d) =
+                        (i128::from(x - 128) * i128::from(dy) + i128::from(p) * i128::from(dx), i128::from(dy));
+                    let pixel = -(-n).div_euclid(256 * d);
+                    let found = edge.below(row as u32).column();
+                    assert_eq!(i128::from(found), pixel, "{sides:?} from {x}, first row {first}, row {}", done + row);
+                }
+            }
+            done += count;
+        }
+    }
+
+    #[test]
+    fn edges_of_tall_triangles_are_exact() {
+        let seed = 8;
+        let mut rng = Rng::new(seed);
+        for case in 0..200_000 {
+            let grid = [1, 128, 256][case % 3];
+            let tall = rng.between(HEIGHT + 1, TALL) / grid * grid;
+            let other = rng.between(0, tall) / grid * grid;
+            let wide = WIDTH.min(SUM - tall);
+            // Both corners, so that the three are within the width.
+            let left = rng.between(-wide, wide);
+            let right = rng.between(left.max(0), wide.min(wide + left)).max(left) / grid * grid;
+            let left = left / grid * grid;
+            let x = (-left).max(0) + rng.between(0, 255) / grid * grid;
+            let sides = if case % 2 == 0 { [left, tall, right, other] } else { [left, other, right, tall] };
+            let first = if case % 7 == 0 { rng.between(0, tall - 1) } else { rng.between(0, 255) };
+            check_triangle(sides, x, first);
         }
     }
 

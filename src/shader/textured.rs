@@ -22,7 +22,8 @@ use embedded_graphics_core::geometry::Size;
 /// # Small triangles
 /// Triangles of up to 60 × 25 px, as most of a model's are, take a shorter way if perspective moves none of their
 /// texels by more than half a texel; by 1/8 texel at a step of 2 or 4, and by 1/32 at a step of 1. There, coordinates
-/// are planes on the screen, and nothing is divided. A triangle that the left or the right edge of the viewport cuts
+/// are planes on the screen, and nothing is divided. Under light, so do triangles of up to 60 px in height whose width
+/// and height are at most 85 px together. A triangle that the left or the right edge of the viewport cuts
 /// takes the other way, so scrolling may move its texels by as much. Mip chains have no shorter way.
 ///
 /// ```

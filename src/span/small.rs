@@ -10,6 +10,8 @@
 //!     draw left..right
 //!     at the bend: a new edge on one side
 //! ```
+//! Some brushes draw tall triangles, too, whose edges are made anew every 16 rows.
+//!
 //! A triangle is small or not by its vertices and the columns of the viewport alone; neither strips nor records take
 //! part in the decision. Coverage and depth are, bit for bit, those of the way that large triangles take.
 
@@ -20,7 +22,7 @@ use super::carried::{
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
 use crate::color::PixelFormat;
-use crate::raster::{HEIGHT, ShortEdge, ShortPlanes, WIDTH, first_centre, gradients};
+use crate::raster::{HEIGHT, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, tall_edges};
 use crate::vertex::PackedVertex;
 use core::ops::Range;
 
@@ -71,6 +73,9 @@ pub enum SmallResult {
 pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
     /// Set if the brush has planes besides depth.
     const PLANES: bool;
+    /// Set if tall triangles are small, too. They take their code once more, which pays where the way of large ones is
+    /// long.
+    const TALL: bool = false;
 
     /// Draws the spans of a triangle.
     type Rows: BrushRows<P, D>;
@@ -105,7 +110,13 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
     pub(crate) fn draw<B: Brush<P, D>>(self, brush: &B) -> SmallResult {
         let [a, b, c] = self.v;
         match self.state {
-            None => draw_small(self.target, a, b, c, brush, self.test),
+            None => {
+                let result = draw_small::<P, D, B, false>(self.target, a, b, c, brush, self.test);
+                if B::TALL && result == SmallResult::Large && is_tall([a, b, c]) {
+                    return draw_small::<P, D, B, true>(self.target, a, b, c, brush, self.test);
+                }
+                result
+            }
             Some(state) => {
                 if D::CARRIES {
                     go_on(self.target, state, brush, self.test);
@@ -116,13 +127,20 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
     }
 }
 
-/// Draws a triangle with its highest corner first, if it is small.
+/// Returns whether a triangle has the height of a tall one.
+#[inline(always)]
+fn is_tall([a, b, c]: [&[u32; 2]; 3]) -> bool {
+    let height = |v: &[u32; 2]| PackedVertex(*v).y() - PackedVertex(*a).y();
+    (HEIGHT + 1..=TALL).contains(&height(b).max(height(c)))
+}
+
+/// Draws a triangle with its highest corner first, if it is small. Edges of a tall one are made anew every 16 rows.
 ///
 /// # Format
-/// Differences of depths are below 2¹⁶, and sides below 60 · 2⁸ and 25 · 2⁸: determinants are below 2 · 65,535 · 60 ·
-/// 2⁸ < 2³¹. The planes' gradients are below 2²⁸.
+/// Differences of depths are below 2¹⁶, and sides at most 60 · 2⁸: determinants are below 2 · 65,535 · 60 · 2⁸ < 2³¹.
+/// The planes' gradients are below 2²⁸.
 #[inline(never)]
-fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
+fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>(
     target: &mut SmallTarget<'_, P::Raw>,
     a: &[u32; 2],
     b: &[u32; 2],
@@ -133,13 +151,17 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     let (a, b, c) = (PackedVertex(*a), PackedVertex(*b), PackedVertex(*c));
     let (ax, ay) = (a.x(), a.y());
     let (mut by, mut cy) = (b.y() - ay, c.y() - ay);
-    if (by as u32 > HEIGHT as u32) | (cy as u32 > HEIGHT as u32) {
+    let highest = if IS_TALL { TALL } else { HEIGHT };
+    if (by as u32 > highest as u32) | (cy as u32 > highest as u32) {
         return SmallResult::Large;
     }
     let (mut bx, mut cx) = (b.x() - ax, c.x() - ax);
     let (least, most) = (bx.min(cx).min(0), bx.max(cx).max(0));
     let (start, past) = (first_centre(ax + least), first_centre(ax + most));
     if most - least > WIDTH || start < target.columns.start || past > target.columns.end {
+        return SmallResult::Large;
+    }
+    if IS_TALL && most - least + by.max(cy) > SUM {
         return SmallResult::Large;
     }
     let (top, end) = (first_centre(ay), first_centre(ay + by.max(cy)));
@@ -173,7 +195,8 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         let Some((dx, dy)) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 7) else {
             // Nearly all of these are seen edge on, and have no pixel.
             let rows = row..end.min(target.rows.end);
-            let covers = covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len());
+            let covers =
+                IS_TALL || covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len());
             return if covers { SmallResult::Large } else { SmallResult::Drawn };
         };
         (dz_dx, dz_dy) = (dx, dy);
@@ -195,6 +218,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         (first_centre(ay + by).min(target.rows.end), first_centre(ay + cy).min(target.rows.end));
     let (mut left, mut right) = (ShortEdge::new(start, bx, by, p), ShortEdge::new(start, cx, cy, p));
     if D::CARRIES
+        && !IS_TALL
         && end > target.rows.end
         && let Some(length) = B::Rows::WORDS
     {
@@ -223,14 +247,24 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     // Rows before the bend, and those from there on.
     let bend = left_end.min(right_end) - row;
     let (mut count, mut rest) = (bend, left_end.max(right_end) - row - bend);
+    let all = count + rest;
+    if IS_TALL {
+        (count, rest) = (0, all);
+    }
     loop {
         if count <= 0 {
             if rest <= 0 {
                 return SmallResult::Drawn;
             }
+            let [bx, by, cx, cy] = sides;
+            if IS_TALL {
+                ([left, right], count) = tall_edges([bx, by, cx, cy], start, p + 256 * (all - rest), rest);
+                right.limit(limit);
+                rest -= count;
+                continue;
+            }
             (count, rest) = (count + rest, 0);
             let p = p + 256 * bend.max(0);
-            let [bx, by, cx, cy] = sides;
             if right_end < left_end {
                 right = ShortEdge::outlined(start + cx, bx - cx, by - cy, p - cy);
                 right.limit(limit);
@@ -315,8 +349,9 @@ fn draw_span<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
     Some(())
 }
 
-/// Returns whether a triangle covers a pixel in some rows. Its highest corner is at `x`, relative to the first column;
-/// the others are relative to it, with that on the left first. The first row's centres are `p` below it. All in 24.8.
+/// Returns whether a triangle that is not tall covers a pixel in some rows. Its highest corner is at `x`, relative to
+/// the first column; the others are relative to it, with that on the left first. The first row's centres are `p` below
+/// it. All in 24.8.
 #[inline(never)]
 fn covers_pixels(sides: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
     let [_, by, _, cy] = sides;
@@ -336,15 +371,6 @@ fn covers_pixels(sides: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
         }
     }
     false
-}
-
-/// Returns the edge on the left or on the right of a triangle at a height `p` below its highest corner, which is at
-/// `x`: from that corner, or from the bend. Edges are exact, wherever they begin.
-#[inline(never)]
-pub(crate) fn edge_at([bx, by, cx, cy]: [i32; 4], x: i32, p: i32, is_right: bool) -> ShortEdge {
-    let ((ax, ay), (bx, by)) = if is_right { ((cx, cy), (bx, by)) } else { ((bx, by), (cx, cy)) };
-    let (x, dx, dy, p) = if p < ay { (x, ax, ay, p) } else { (x + ax, bx - ax, by - ay, p - ay) };
-    ShortEdge::outlined(x, dx, dy, p)
 }
 
 /// Returns what a bias adds to the depths of a triangle with these depths, 16.16.

@@ -230,6 +230,7 @@ const fn bits_of(n: i32) -> u32 {
 
 impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<P, D> for TexelBrush<'s, S, P, N> {
     const PLANES: bool = true;
+    const TALL: bool = S::LIT;
 
     type Rows = TexelRows<'s, S, P>;
 
