@@ -4,6 +4,7 @@ use super::failure::Failure;
 use lexopt::prelude::*;
 use lexopt::{Error, Parser};
 use std::path::PathBuf;
+use std::str::FromStr;
 use zstrip_assets::preview::{Format, Panel};
 use zstrip_assets::{Center, Normals, Options, TextureKind, UpAxis, UvSize, Winding, WriteOptions};
 
@@ -49,7 +50,7 @@ impl Conversion {
                 let kinds = [("y", UpAxis::Y), ("z", UpAxis::Z)];
                 import.up = Some(parser.value()?.parse_with(|text| one_of(text, &kinds))?);
             }
-            "scale" => import.scale = parser.value()?.parse()?,
+            "scale" => import.scale = number(name, A_NUMBER, parser)?,
             "center" => {
                 let kinds = [("keep", Center::Keep), ("middle", Center::Middle), ("ground", Center::Ground)];
                 import.center = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
@@ -60,9 +61,9 @@ impl Conversion {
                 let kinds = [("keep", Normals::Keep), ("smooth", Normals::Smooth), ("flat", Normals::Flat)];
                 import.normals = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
             }
-            "crease" => import.crease_angle = parser.value()?.parse()?,
-            "weld" => import.weld_distance = parser.value()?.parse()?,
-            "budget" => import.max_triangles = Some(parser.value()?.parse()?),
+            "crease" => import.crease_angle = number(name, A_NUMBER, parser)?,
+            "weld" => import.weld_distance = number(name, A_NUMBER, parser)?,
+            "budget" => import.max_triangles = Some(number(name, A_COUNT, parser)?),
             "texture" => import.texture = Some(parser.value()?.into()),
             "textures" => {
                 let kinds = [
@@ -74,13 +75,13 @@ impl Conversion {
                 ];
                 write.textures = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
             }
-            "max-texture" => write.max_texture = parser.value()?.parse()?,
+            "max-texture" => write.max_texture = number(name, A_COUNT, parser)?,
             "no-mips" => write.mips = false,
             "uvs" => {
                 let kinds = [("fitting", UvSize::Fitting), ("8", UvSize::Bits8), ("16", UvSize::Bits16)];
                 write.uvs = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
             }
-            "key-error" => write.key_error = parser.value()?.parse()?,
+            "key-error" => write.key_error = number(name, A_NUMBER, parser)?,
             _ => return Ok(false),
         }
         self.given = Some(format!("--{name}"));
@@ -92,7 +93,7 @@ impl Conversion {
 pub const PANEL_OPTIONS: &str = "\
 Panel:
   --screen WxH            pixels of the panel; 240x320
-  --rows N                rows of a strip; 16
+  --rows N                rows of a strip; 16, or all of a lower screen
   --format NAME           rgb565, rgb565be, rgb888, gray8 or dithered (rgb565)
   --zoom PERCENT          size of the model; at 100, all of a turn is on the screen
 ";
@@ -102,11 +103,17 @@ Panel:
 pub struct Screen {
     pub panel: Panel,
     pub format: Format,
+    /// True if the option of rows was given.
+    pub has_rows: bool,
 }
+
+/// Rows of a strip.
+const ROWS: u32 = 16;
 
 impl Default for Screen {
     fn default() -> Self {
-        Self { panel: Panel { width: 240, height: 320, rows: 16, zoom: 100 }, format: Format::Rgb565 }
+        let panel = Panel { width: 240, height: 320, rows: ROWS, zoom: 100 };
+        Self { panel, format: Format::Rgb565, has_rows: false }
     }
 }
 
@@ -114,9 +121,14 @@ impl Screen {
     /// Takes the value of an option; `false` if the option is none of a panel.
     pub fn take(&mut self, name: &str, parser: &mut Parser) -> Result<bool, Error> {
         match name {
-            "screen" => (self.panel.width, self.panel.height) = parser.value()?.parse_with(size)?,
-            "rows" => self.panel.rows = parser.value()?.parse()?,
-            "zoom" => self.panel.zoom = parser.value()?.parse()?,
+            "screen" => {
+                (self.panel.width, self.panel.height) = parser.value()?.parse_with(size)?;
+                if !self.has_rows {
+                    self.panel.rows = ROWS.min(self.panel.height);
+                }
+            }
+            "rows" => (self.panel.rows, self.has_rows) = (number(name, A_COUNT, parser)?, true),
+            "zoom" => self.panel.zoom = number(name, A_COUNT, parser)?,
             "format" => {
                 let kinds = Format::ALL.map(|(format, name, _)| (name, format));
                 self.format = parser.value()?.parse_with(|text| one_of(text, &kinds))?;
@@ -155,6 +167,16 @@ pub fn read(parser: &mut Parser, take: &mut TakeOption<'_>) -> Result<Option<Pat
         }
     }
     file.map(Some).ok_or_else(|| Failure::Usage("the file is missing".to_owned()))
+}
+
+/// Kinds of numbers, for [`number`].
+pub const A_NUMBER: &str = "a number";
+pub const A_COUNT: &str = "a whole number from 0 to 4294967295";
+pub const A_WHOLE: &str = "a whole number";
+
+/// Reads the value of an option that takes a number of some kind.
+pub fn number<T: FromStr>(name: &str, kind: &str, parser: &mut Parser) -> Result<T, Error> {
+    parser.value()?.parse_with(|text| text.parse().map_err(|_| format!("--{name} takes {kind}")))
 }
 
 /// Returns the choice of a name.

@@ -43,7 +43,8 @@ Brings OBJ, STL, PLY, glTF and GLB files to zstrip.
   zstrip-assets view FILE [options]               the model turning in a window, as firmware draws it
   zstrip-assets bench FILE [options]              counts firmware with the model in QEMU
 
-FILE is a model or, but for convert and info, a container. Options that are missing here: zstrip-assets COMMAND --help.
+FILE is a model. check, view and bench also take a container. zstrip-assets COMMAND --help lists all options of a
+command, zstrip-assets --version prints the version.
 
 ";
 
@@ -70,6 +71,9 @@ pub fn run(mut parser: Parser) -> ExitCode {
 fn command(parser: &mut Parser) -> Result<String, Failure> {
     let name = match parser.next()? {
         Some(Arg::Short('h') | Arg::Long("help")) => return Ok(format!("{HELP}{MODEL_OPTIONS}{EXIT_CODES}")),
+        Some(Arg::Short('V') | Arg::Long("version")) => {
+            return Ok(format!("zstrip-assets {}\n", env!("CARGO_PKG_VERSION")));
+        }
         Some(Arg::Value(name)) => name,
         Some(other) => return Err(other.unexpected().into()),
         None => return Err(Failure::Usage(format!("a command is missing: {COMMANDS}"))),

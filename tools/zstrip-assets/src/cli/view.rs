@@ -1,7 +1,7 @@
 //! `view`: a window in which a model turns and plays its clips, exactly as firmware draws it; and files of that.
 
 use super::animation::write_gif;
-use super::arguments::{self, Conversion, PANEL_OPTIONS, Screen};
+use super::arguments::{self, A_COUNT, A_WHOLE, Conversion, PANEL_OPTIONS, Screen, number};
 use super::failure::Failure;
 use super::{help, source};
 use lexopt::{Parser, ValueExt};
@@ -102,7 +102,7 @@ impl Show {
 
     /// Returns settings and statistics in a line.
     fn describe(&self, stage: &Stage<'_>, stats: &Stats) -> String {
-        let Self { name, screen: Screen { panel, format }, .. } = self;
+        let Self { name, screen: Screen { panel, format, .. }, .. } = self;
         let clip = stage.model().clip(self.clip).map_or(String::new(), |clip| format!(" {}", clip.name()));
         let format = Format::ALL.iter().find(|(known, ..)| known == format).map_or("", |(_, name, _)| name);
         let ((width, height), rows) = ((panel.width, panel.height), panel.rows);
@@ -122,20 +122,22 @@ pub fn view(parser: &mut Parser) -> Result<String, Failure> {
             "png" => png = Some(PathBuf::from(parser.value()?)),
             "gif" => gif = Some(PathBuf::from(parser.value()?)),
             "clip" => clip = Some(parser.value()?.string()?),
-            "turn" => turn = parser.value()?.parse()?,
-            "time" => time = parser.value()?.parse()?,
+            "turn" => turn = number(name, A_WHOLE, parser)?,
+            "time" => time = number(name, A_COUNT, parser)?,
             _ => return Ok(screen.take(name, parser)? || conversion.take(name, parser)?),
         }
         Ok(true)
     };
     let Some(file) = arguments::read(parser, take)? else { return Ok(help(&format!("{VIEW}\n{PANEL_OPTIONS}"))) };
-    let (container, _) = source::container(&file, &conversion)?;
-    let stage = Stage::new(&container, screen.panel, screen.format)?;
+    let outputs = [&png, &gif].into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>();
+    let (container, _) = source::container(&file, &conversion, &outputs)?;
+    let stage = source::stage(&file, &container, &screen)?;
     let clips: Vec<_> = stage.model().clips().map(|clip| clip.name().to_owned()).collect();
     let clip = match clip {
         None => 0,
         Some(name) => clips.iter().position(|known| *known == name).ok_or_else(|| {
-            Failure::Usage(format!("--clip {name}: the model has {} clips: {}", clips.len(), clips.join(", ")))
+            let there = if clips.is_empty() { "no clips".to_owned() } else { format!("these: {}", clips.join(", ")) };
+            Failure::Usage(format!("there is no clip {name:?}: the model has {there}"))
         })?,
     };
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
@@ -186,7 +188,7 @@ fn play(mut stage: Stage<'_>, mut show: Show, clips: usize) -> Result<(), Failur
         show.passed = show.passed.wrapping_add(if show.paused { 0 } else { milliseconds });
         for key in window.get_keys_pressed(KeyRepeat::Yes) {
             show.press(key, clips);
-            let Screen { panel, format } = show.screen;
+            let Screen { panel, format, .. } = show.screen;
             stage = stage.on(panel, format)?;
         }
     }
@@ -206,7 +208,7 @@ mod tests {
 
     fn show() -> Show {
         let panel = Panel { width: 48, height: 64, rows: 16, zoom: 100 };
-        let screen = Screen { panel, format: Format::Rgb565 };
+        let screen = Screen { panel, ..Screen::default() };
         Show { name: "model".to_owned(), screen, clip: 0, angle: Angle16(0), time: 0, passed: 0, paused: false }
     }
 
@@ -231,7 +233,7 @@ mod tests {
     #[test]
     fn clips_play_from_the_time_that_was_given_and_go_round() {
         let container = Container::new(made_up::figures::animated(true).build().bytes());
-        let Screen { panel, format } = show().screen;
+        let Screen { panel, format, .. } = show().screen;
         let stage = Stage::new(&container, panel, format).expect("a stage");
         let duration = stage.model().clip(0).expect("a clip").duration();
         let at = |time, passed| Show { time, passed, ..show() }.step(&stage).motion.expect("a motion");
