@@ -62,7 +62,10 @@ pub fn container(file: &Path, conversion: &Conversion, outputs: &[&Path]) -> Res
 /// Returns the stage on which a container is shown.
 pub fn stage<'m>(file: &Path, container: &'m Container, screen: &Screen) -> Result<Stage<'m>, Failure> {
     Stage::new(container, screen.panel, screen.format).map_err(|error| match error {
-        error @ (PreviewError::Model(_) | PreviewError::Camera(_)) => in_file(file, &error),
+        error @ PreviewError::Model(_) => in_file(file, &error),
+        error @ PreviewError::Camera(_) => {
+            in_file(file, &format!("{error}; convert the model with a smaller --scale, or choose a larger --zoom"))
+        }
         error => error.into(),
     })
 }

@@ -139,6 +139,7 @@ fn numbers_out_of_range_are_refused_before_anything_is_drawn() {
 #[test]
 fn mistakes_are_told_by_the_name_of_the_option_or_of_the_file() {
     let folder = square().with("empty.zstm", "").with("cut.zstm", "ZSTM").with("picture.glb", png(8, 8));
+    let folder = folder.with("wide.obj", SQUARE.replace("1 1 0", "20000 20000 0"));
     for (words, expected, part) in [
         ("check square.obj --rows 1e3", 2, "--rows takes a whole number from 0 to 4294967295"),
         ("view square.obj --turn NaN", 2, "--turn takes a whole number"),
@@ -152,6 +153,7 @@ fn mistakes_are_told_by_the_name_of_the_option_or_of_the_file() {
         ("bench cut.zstm", 1, "cut.zstm: not a container of a model: 4 bytes"),
         ("info square.zstm", 1, "square.zstm: a container already"),
         ("convert square.zstm", 1, "square.zstm: a container already"),
+        ("check wide.obj", 1, "must be below 32768; convert the model with a smaller --scale"),
         ("info picture.glb", 1, "picture.glb: neither GLB nor the JSON of glTF"),
     ] {
         let (code, out, err) = run_in(&folder, words);
