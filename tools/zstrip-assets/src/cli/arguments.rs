@@ -11,25 +11,31 @@ use zstrip_assets::{Center, Normals, Options, TextureKind, UpAxis, UvSize, Windi
 /// Help for the options of a conversion.
 pub const MODEL_OPTIONS: &str = "\
 Geometry:
-  --up y|z                the axis that points up; z for STL, y for all others
-  --scale FACTOR          a factor of all lengths
-  --center keep|middle|ground   what comes to the origin
-  --flip                  the front is where corners go clockwise
-  --fix-winding           turns triangles over whose normals point to their back
-  --normals keep|smooth|flat    where normals come from
-  --crease DEGREES        the largest angle between faces that looks smooth; 50
-  --weld DISTANCE         joins vertices that are as close as that
-  --budget TRIANGLES      simplifies the model to so many triangles
+  --up y|z                the axis that points up [default: z for STL, y for all others]
+  --scale FACTOR          multiplies all lengths [default: 1]
+  --center keep|middle|ground
+                          the point that comes to the origin: the file's own origin, the middle of the model, or the
+                          middle of its bottom [default: keep]
+  --flip                  the front of a triangle is where its corners go clockwise
+  --fix-winding           turns over triangles whose normals point to their back
+  --normals keep|smooth|flat
+                          keeps the file's normals and makes those that are missing, or makes all of them anew
+                          [default: keep]
+  --crease DEGREES        the largest angle between faces at which normals that are made look smooth [default: 50]
+  --weld DISTANCE         joins vertices up to that far apart, in units of the file [default: 0]
+  --budget TRIANGLES      simplifies the model to about so many triangles
 
 Textures:
   --texture FILE          an image for materials without one, as for OBJ without MTL
-  --textures rgb565|palette|palette16|gray|mask   the format; rgb565
-  --max-texture N         the most texels per side; 256
-  --no-mips               no smaller levels of textures
-  --uvs fitting|8|16      bits of texture coordinates; 8 where they are exact
+  --textures rgb565|palette|palette16|gray|mask
+                          the format of textures [default: rgb565]
+  --max-texture N         the most texels per side; larger images are shrunk [default: 256]
+  --no-mips               leaves out smaller levels of textures, which models that are far away are drawn with
+  --uvs fitting|8|16      bits of texture coordinates; fitting is 8 where those are exact, and 16 elsewhere
+                          [default: fitting]
 
 Animation:
-  --key-error PART        how far leaving out keys may move something, as a part of the model's size; 0.0005
+  --key-error PART        leaves out keys that move nothing by more than this part of the model's size [default: 0.0005]
 ";
 
 /// Options of a conversion.
@@ -92,10 +98,10 @@ impl Conversion {
 /// Help for the options of a panel.
 pub const PANEL_OPTIONS: &str = "\
 Panel:
-  --screen WxH            pixels of the panel; 240x320
-  --rows N                rows of a strip; 16, or all of a lower screen
-  --format NAME           rgb565, rgb565be, rgb888, gray8 or dithered (rgb565)
-  --zoom PERCENT          size of the model; at 100, all of a turn is on the screen
+  --screen WxH            pixels of the panel [default: 240x320]
+  --rows N                rows of a strip [default: 16, or all of a lower screen]
+  --format NAME           rgb565, rgb565be, rgb888, gray8, or dithered, which is dithered rgb565 [default: rgb565]
+  --zoom PERCENT          size of the model; at 100, all of a turn is on the screen [default: 100]
 ";
 
 /// A panel, and the format of its pixels.
@@ -183,4 +189,30 @@ pub fn number<T: FromStr>(name: &str, kind: &str, parser: &mut Parser) -> Result
 pub fn one_of<T: Copy>(text: &str, choices: &[(&str, T)]) -> Result<T, String> {
     let found = choices.iter().find(|(name, _)| *name == text).map(|(_, choice)| *choice);
     found.ok_or_else(|| choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(", ") + " are the choices")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn help_tells_the_defaults_that_options_have() {
+        let (import, write) = (Options::default(), WriteOptions::default());
+        let Panel { width, height, rows, zoom } = Screen::default().panel;
+        for (option, default) in [
+            ("--scale", import.scale.to_string()),
+            ("--crease", import.crease_angle.to_string()),
+            ("--weld", import.weld_distance.to_string()),
+            ("--max-texture", write.max_texture.to_string()),
+            ("--key-error", write.key_error.to_string()),
+            ("--screen", format!("{width}x{height}")),
+            ("--rows", format!("{rows}, or all of a lower screen")),
+            ("--zoom", zoom.to_string()),
+        ] {
+            let mut lines = MODEL_OPTIONS.lines().chain(PANEL_OPTIONS.lines());
+            let line = lines.find(|line| line.trim_start().starts_with(&format!("{option} "))).expect("a line of help");
+            assert!(line.ends_with(&format!("[default: {default}]")), "{line}: {default}");
+            assert!(line.len() <= 120, "{line}");
+        }
+    }
 }

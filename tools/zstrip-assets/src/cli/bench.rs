@@ -16,12 +16,13 @@ use zstrip_assets::preview::{
 use zstrip_assets::save;
 
 const BENCH: &str = "\
-zstrip-assets bench FILE [options]: counts firmware with the model in QEMU, and compares its pictures with the host's
+zstrip-assets bench FILE [options]: counts the instructions of firmware with the model, in QEMU, and compares its
+pictures with the host's
 
-  --core m0+|m4|rv32imc   the core; several are possible, all three without it
-  --plugin FILE           a plugin of QEMU that counts to the instruction, not only to within five
-  --limit SECONDS         time for QEMU; 300
-  --zstrip DIR            the copy of zstrip that the firmware is built of
+  --core m0+|m4|rv32imc   a core; given several times, several cores [default: all three]
+  --plugin FILE           a plugin of QEMU that counts each instruction of Arm cores, instead of to within five
+  --limit SECONDS         stops QEMU after that time on a core [default: 300]
+  --zstrip DIR            the copy of zstrip that the firmware is built from [default: where this program was built]
 ";
 
 /// The copy of zstrip that this program was built in.

@@ -9,11 +9,11 @@ use std::path::PathBuf;
 use zstrip_assets::preview::{CORES, contact_sheet, estimate};
 
 const CHECK: &str = "\
-zstrip-assets check FILE [options]: what is lost, and what the model costs, before it is flashed
+zstrip-assets check FILE [options]: prints what a conversion loses, and what the model takes, before it is flashed
 
-  --sheet FILE            writes a contact sheet, a PNG
-  --m4-clock MHZ          clock of the Cortex-M4; 168
-  --tsv                   prints core, stage, and mean and largest number of instructions only
+  --sheet FILE            writes a contact sheet, a PNG file: eight views of the model, or eight poses of each clip
+  --m4-clock MHZ          clock of the Cortex-M4 [default: 168]
+  --tsv                   prints only lines of core, stage, and mean and largest number of instructions, between tabs
 ";
 
 /// Runs `check`.

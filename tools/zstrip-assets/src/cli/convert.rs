@@ -11,12 +11,12 @@ const CONVERT: &str = "\
 zstrip-assets convert FILE [options]: writes a container
 
 Output:
-  -o, --output OUT        the file to write; FILE.zstm beside FILE
+  -o, --output OUT        the file to write [default: FILE.zstm beside FILE; FILE.rs with --rust]
   --rust                  writes Rust source, OUT.rs, and the container beside it
 ";
 
 const INFO: &str = "\
-zstrip-assets info FILE [options]: prints the report of a conversion, and writes nothing
+zstrip-assets info FILE [options]: prints what a conversion finds and loses, and writes nothing
 ";
 
 /// Runs `info`.

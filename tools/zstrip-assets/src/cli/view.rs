@@ -14,13 +14,13 @@ use zstrip::target::Stats;
 use zstrip_assets::preview::{Format, Picture, Stage, Step};
 
 const VIEW: &str = "\
-zstrip-assets view FILE [options]: the model turning in a window, as firmware draws it
+zstrip-assets view FILE [options]: shows the model turning in a window, as firmware draws it
 
   --png FILE              writes a picture instead of opening a window
-  --gif FILE              writes a turn that repeats; clips play in it
-  --clip NAME             clip to begin with; the first one
-  --turn DEGREES          angle to begin with; 0
-  --time MS               time in the clip to begin with; 0
+  --gif FILE              writes a whole turn, in which the clip plays, instead of opening a window
+  --clip NAME             clip to begin with [default: the first one]
+  --turn DEGREES          angle to begin with, a whole number [default: 0]
+  --time MS               time in the clip to begin with, in milliseconds [default: 0]
 
 Keys in the window:
   Space                   pause
