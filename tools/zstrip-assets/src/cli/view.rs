@@ -18,7 +18,7 @@ zstrip-assets view FILE [options]: shows the model turning in a window, as firmw
 
   --png FILE              writes a picture instead of opening a window
   --gif FILE              writes a whole turn, in which the clip plays, instead of opening a window
-  --clip NAME             clip to begin with [default: the first one]
+  --clip NAME             clip to begin with, also as a number from 0 on [default: the first one]
   --turn DEGREES          angle to begin with, a whole number [default: 0]
   --time MS               time in the clip to begin with, in milliseconds [default: 0]
 
@@ -103,7 +103,8 @@ impl Show {
     /// Returns settings and statistics in a line.
     fn describe(&self, stage: &Stage<'_>, stats: &Stats) -> String {
         let Self { name, screen: Screen { panel, format, .. }, .. } = self;
-        let clip = stage.model().clip(self.clip).map_or(String::new(), |clip| format!(" {}", clip.name()));
+        let clip =
+            stage.model().clip(self.clip).map_or(String::new(), |clip| format!(" {}", clip.name().escape_debug()));
         let format = Format::ALL.iter().find(|(known, ..)| known == format).map_or("", |(_, name, _)| name);
         let ((width, height), rows) = ((panel.width, panel.height), panel.rows);
         let Stats { vertices, triangles, drawn, .. } = stats;
@@ -135,10 +136,7 @@ pub fn view(parser: &mut Parser) -> Result<String, Failure> {
     let clips: Vec<_> = stage.model().clips().map(|clip| clip.name().to_owned()).collect();
     let clip = match clip {
         None => 0,
-        Some(name) => clips.iter().position(|known| *known == name).ok_or_else(|| {
-            let there = if clips.is_empty() { "no clips".to_owned() } else { format!("these: {}", clips.join(", ")) };
-            Failure::Usage(format!("there is no clip {name:?}: the model has {there}"))
-        })?,
+        Some(name) => clip_of(&clips, &name)?,
     };
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let show = Show { name, screen, clip, angle: Angle16::from_degrees(turn), time, passed: 0, paused: false };
@@ -157,6 +155,16 @@ pub fn view(parser: &mut Parser) -> Result<String, Failure> {
         play(stage, show, clips.len())?;
     }
     Ok(text)
+}
+
+/// Returns the number of a clip by its name, or by its number where no clip has that name.
+fn clip_of(clips: &[String], name: &str) -> Result<usize, Failure> {
+    let number = || name.parse().ok().filter(|number| *number < clips.len());
+    clips.iter().position(|known| known == name).or_else(number).ok_or_else(|| {
+        let names = clips.iter().map(|known| format!("{known:?}")).collect::<Vec<_>>().join(", ");
+        let there = if clips.is_empty() { "no clips".to_owned() } else { format!("these: {names}") };
+        Failure::Usage(format!("there is no clip {name:?}: the model has {there}"))
+    })
 }
 
 /// Opens a window, or returns why there is none.
@@ -228,6 +236,21 @@ mod tests {
         assert_eq!(show.passed, -5000, "a comma goes back before the start");
         show.press(Key::Space, 3);
         assert!(show.paused);
+    }
+
+    #[test]
+    fn clips_are_found_by_name_and_by_number() {
+        let clips = ["Walk", "", "Walk", "0"].map(str::to_owned);
+        for (name, number) in [("Walk", 0), ("", 1), ("2", 2), ("0", 3), ("3", 3)] {
+            assert_eq!(clip_of(&clips, name).expect("a clip"), number, "{name:?}");
+        }
+        // Neither an empty name nor one that moves the cursor disturbs the list.
+        let clips = ["", "a\u{1b}[31m"].map(str::to_owned);
+        for name in ["2", "-1", "walk", "18446744073709551616"] {
+            let error = clip_of(&clips, name).expect_err("no clip").to_string();
+            assert!(error.contains(r#"the model has these: "", "a\u{1b}[31m""#), "{error}");
+        }
+        assert!(clip_of(&[], "0").expect_err("no clip").to_string().contains("no clips"));
     }
 
     #[test]
