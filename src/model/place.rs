@@ -50,7 +50,7 @@ impl<'a> Model<'a> {
     /// Places the model at rest in a frame: `world` takes it to the world, where the camera and the light are.
     ///
     /// Call it once per frame, outside of the closure that draws: it takes some 20,000 instructions per draw on a
-    /// Cortex-M0+, and some thousand more for each node above that of the draw. A pose keeps the transforms of nodes
+    /// Cortex-M0+, and some 3,000 more for each node above that of the draw. A pose keeps the transforms of nodes
     /// instead, and so places deep trees in less time. The places are as many as the model's [`draws`](Self::draws).
     ///
     /// # Errors

@@ -67,11 +67,11 @@ impl Options {
     pub(crate) fn fault(&self) -> Option<String> {
         let wrong = |name: &str, found: String, needed: &str| Some(format!("{name} is {found}, and must be {needed}"));
         if !(self.scale.is_finite() && self.scale > 0.0) {
-            wrong("the scale", self.scale.to_string(), "above 0")
+            wrong("the scale", self.scale.to_string(), "above 0 and finite")
         } else if !(0.0..=180.0).contains(&self.crease_angle) {
             wrong("the crease angle", self.crease_angle.to_string(), "0 to 180 degrees")
         } else if !(self.weld_distance.is_finite() && self.weld_distance >= 0.0) {
-            wrong("the weld distance", self.weld_distance.to_string(), "0 or above")
+            wrong("the weld distance", self.weld_distance.to_string(), "0 or above, and finite")
         } else if !(3..=65_535).contains(&self.max_vertices) {
             wrong("the most vertices of a mesh", self.max_vertices.to_string(), "3 to 65535")
         } else if !(3..=255).contains(&self.cluster_vertices) {

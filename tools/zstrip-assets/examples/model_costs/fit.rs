@@ -72,6 +72,11 @@ pub fn report(shows: &[Show], folder: &Path, cores: &[&str]) -> Result<(), Strin
         cores.iter().map(|core| read(&folder.join(format!("{core}.models")))).collect::<Result<Vec<_>, _>>()?;
     let first = counts.first().ok_or("no core")?;
     let frames = frames(shows, first)?;
+    // A term that no frame has would cost nothing.
+    let is_missing = |k: &usize| frames.iter().all(|frame| frame.pose[*k] == 0.0);
+    if let Some(k) = (0..POSES).find(is_missing) {
+        return Err(format!("no model that is made up has work of the column {}", POSE_TERMS[k]));
+    }
     let errors = "worst_error_percent,mean_error_percent";
     let mut models = vec![format!("core,unit,format,material,strips,{},{errors}", DRAW_TERMS.join(","))];
     let mut poses = vec![format!("core,unit,{},{errors}", POSE_TERMS.join(","))];

@@ -8,6 +8,7 @@
 //! `write` writes the words that the firmware finds in its memory. `fit` reads `FOLDER/m0+.models` and so on, lines of
 //! `stage show.frame instructions cycles`, and writes `model_costs.csv`, `pose_costs.csv` and tables into the folder.
 
+mod chains;
 mod fit;
 #[path = "../../../../examples/costs/least_squares.rs"]
 mod least_squares;
@@ -37,6 +38,7 @@ pub const fn panel(rows: u32, zoom: u32) -> Panel {
 fn shows() -> Result<Vec<Show>, String> {
     let mut shows = shapes::shows()?;
     shows.extend(poses::shows()?);
+    shows.extend(chains::shows()?);
     Ok(shows)
 }
 

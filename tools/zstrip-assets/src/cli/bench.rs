@@ -1,6 +1,6 @@
 //! `bench`: counts what a model takes, in firmware that runs in QEMU, and compares its pictures with the host's.
 
-use super::arguments::{self, Conversion, PANEL_OPTIONS, Screen, one_of};
+use super::arguments::{self, A_COUNT, Conversion, PANEL_OPTIONS, Screen, number, one_of};
 use super::emulator::{self, CORES, Core, Counted, Firmware};
 use super::failure::Failure;
 use super::{help, source};
@@ -16,12 +16,13 @@ use zstrip_assets::preview::{
 use zstrip_assets::save;
 
 const BENCH: &str = "\
-zstrip-assets bench FILE [options]: counts firmware with the model in QEMU, and compares its pictures with the host's
+zstrip-assets bench FILE [options]: counts the instructions of firmware with the model, in QEMU, and compares its
+pictures with the host's
 
-  --core m0+|m4|rv32imc   the core; several are possible, all three without it
-  --plugin FILE           a plugin of QEMU that counts to the instruction, not only to within five
-  --limit SECONDS         time for QEMU; 300
-  --zstrip DIR            the copy of zstrip that the firmware is built of
+  --core m0+|m4|rv32imc   a core; given several times, several cores [default: all three]
+  --plugin FILE           a plugin of QEMU that counts each instruction of Arm cores, instead of to within five
+  --limit SECONDS         stops QEMU after that time on a core [default: 300]
+  --zstrip DIR            the copy of zstrip that the firmware is built from [default: where this program was built]
 ";
 
 /// The copy of zstrip that this program was built in.
@@ -31,7 +32,7 @@ const ZSTRIP: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 pub fn bench(parser: &mut Parser) -> Result<String, Failure> {
     let (mut conversion, mut screen, mut cores) = (Conversion::default(), Screen::default(), vec![]);
     let mut plugin = std::env::var_os("INSN_COUNT_PLUGIN").filter(|path| !path.is_empty()).map(PathBuf::from);
-    let (mut limit, mut zstrip) = (300, PathBuf::from(ZSTRIP));
+    let (mut limit, mut zstrip) = (300_u32, PathBuf::from(ZSTRIP));
     let take = &mut |name: &str, parser: &mut Parser| {
         match name {
             "core" => {
@@ -39,7 +40,7 @@ pub fn bench(parser: &mut Parser) -> Result<String, Failure> {
                 cores.push(parser.value()?.parse_with(|text| one_of(text, &kinds))?);
             }
             "plugin" => plugin = Some(PathBuf::from(parser.value()?)),
-            "limit" => limit = parser.value()?.parse()?,
+            "limit" => limit = number(name, A_COUNT, parser)?,
             "zstrip" => zstrip = PathBuf::from(parser.value()?),
             _ => return Ok(screen.take(name, parser)? || conversion.take(name, parser)?),
         }
@@ -56,8 +57,8 @@ pub fn bench(parser: &mut Parser) -> Result<String, Failure> {
         Some(path) => Some(path.canonicalize().map_err(|e| Failure::Failed(format!("{}: {e}", path.display())))?),
         None => None,
     };
-    let (container, _) = source::container(&file, &conversion)?;
-    let stage = Stage::new(&container, screen.panel, screen.format)?;
+    let (container, _) = source::container(&file, &conversion, &[])?;
+    let stage = source::stage(&file, &container, &screen)?;
     fits(&stage, &container)?;
     let estimate = estimate(&stage, 168e6)?;
     let firmware = Firmware::of(&zstrip)?;
@@ -67,7 +68,7 @@ pub fn bench(parser: &mut Parser) -> Result<String, Failure> {
     let mut text = String::from(HEADINGS);
     for core in &cores {
         let image = firmware.build(core)?;
-        let counted = emulator::run(core, &image, &words, plugin.as_deref(), Duration::from_secs(limit))?;
+        let counted = emulator::run(core, &image, &words, plugin.as_deref(), Duration::from_secs(limit.into()))?;
         let foretold = estimate.cores.iter().find(|of| of.core.counted_on == core.name);
         table(&mut text, core, &counted, foretold);
         compare(core, &counted, &hashes)?;
@@ -215,7 +216,7 @@ mod tests {
     #[test]
     fn a_model_without_draws_is_refused() {
         let container = Container::new(builder::Builder::default().build().bytes());
-        let Screen { panel, format } = Screen::default();
+        let Screen { panel, format, .. } = Screen::default();
         let stage = Stage::new(&container, panel, format).expect("a stage");
         let error = fits(&stage, &container).expect_err("nothing to draw").to_string();
         assert!(error.contains("draws nothing"), "{error}");

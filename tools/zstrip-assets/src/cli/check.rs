@@ -1,28 +1,28 @@
 //! `check`: what a conversion loses, and what the model costs.
 
-use super::arguments::{self, Conversion, PANEL_OPTIONS, Screen};
+use super::arguments::{self, A_NUMBER, Conversion, PANEL_OPTIONS, Screen, number};
 use super::failure::Failure;
 use super::{help, source};
-use lexopt::{Parser, ValueExt};
+use lexopt::Parser;
 use std::fmt::Write;
 use std::path::PathBuf;
-use zstrip_assets::preview::{CORES, Stage, contact_sheet, estimate};
+use zstrip_assets::preview::{CORES, contact_sheet, estimate};
 
 const CHECK: &str = "\
-zstrip-assets check FILE [options]: what is lost, and what the model costs, before it is flashed
+zstrip-assets check FILE [options]: prints what a conversion loses, and what the model takes, before it is flashed
 
-  --sheet FILE            writes a contact sheet, a PNG
-  --m4-clock MHZ          clock of the Cortex-M4; 168
-  --tsv                   prints core, stage, and mean and largest number of instructions only
+  --sheet FILE            writes a contact sheet, a PNG file: eight views of the model, or eight poses of each clip
+  --m4-clock MHZ          clock of the Cortex-M4 [default: 168]
+  --tsv                   prints only lines of core, stage, and mean and largest number of instructions, between tabs
 ";
 
 /// Runs `check`.
 pub fn check(parser: &mut Parser) -> Result<String, Failure> {
     let (mut conversion, mut screen) = (Conversion::default(), Screen::default());
-    let (mut megahertz, mut sheet, mut tsv) = (CORES[2].hertz / 1e6, None, false);
+    let (mut megahertz, mut sheet, mut tsv): (f64, Option<PathBuf>, _) = (CORES[2].hertz / 1e6, None, false);
     let take = &mut |name: &str, parser: &mut Parser| {
         match name {
-            "m4-clock" => megahertz = parser.value()?.parse::<f64>()?,
+            "m4-clock" => megahertz = number(name, A_NUMBER, parser)?,
             "sheet" => sheet = Some(PathBuf::from(parser.value()?)),
             "tsv" => tsv = true,
             _ => return Ok(screen.take(name, parser)? || conversion.take(name, parser)?),
@@ -30,8 +30,9 @@ pub fn check(parser: &mut Parser) -> Result<String, Failure> {
         Ok(true)
     };
     let Some(file) = arguments::read(parser, take)? else { return Ok(help(&format!("{CHECK}\n{PANEL_OPTIONS}"))) };
-    let (container, mut text) = source::container(&file, &conversion)?;
-    let stage = Stage::new(&container, screen.panel, screen.format)?;
+    let outputs = sheet.as_deref().into_iter().collect::<Vec<_>>();
+    let (container, mut text) = source::container(&file, &conversion, &outputs)?;
+    let stage = source::stage(&file, &container, &screen)?;
     let estimate = estimate(&stage, megahertz * 1e6)?;
     if tsv {
         text = String::new();

@@ -37,13 +37,14 @@ use std::process::ExitCode;
 const HELP: &str = "\
 Brings OBJ, STL, PLY, glTF and GLB files to zstrip.
 
-  zstrip-assets convert FILE [-o OUT] [options]   writes a container, FILE.zstm beside FILE unless -o says otherwise
-  zstrip-assets info FILE [options]               prints the report of a conversion, and writes nothing
-  zstrip-assets check FILE [options]              what is lost, flash, RAM, and frames per second before it is flashed
-  zstrip-assets view FILE [options]               the model turning in a window, as firmware draws it
-  zstrip-assets bench FILE [options]              counts firmware with the model in QEMU
+  zstrip-assets convert FILE [options]   writes a container, FILE.zstm beside FILE unless -o says otherwise
+  zstrip-assets info FILE [options]      prints what a conversion finds and loses, and writes nothing
+  zstrip-assets check FILE [options]     prints what a conversion loses, and what the model takes: flash, RAM, time
+  zstrip-assets view FILE [options]      shows the model turning, as firmware draws it: in a window, in PNG and GIF files
+  zstrip-assets bench FILE [options]     counts the instructions of firmware with the model, in QEMU
 
-FILE is a model or, but for convert and info, a container. Options that are missing here: zstrip-assets COMMAND --help.
+FILE is a model. check, view and bench also take a container. zstrip-assets COMMAND --help lists all options of a
+command, zstrip-assets --version prints the version.
 
 ";
 
@@ -70,6 +71,9 @@ pub fn run(mut parser: Parser) -> ExitCode {
 fn command(parser: &mut Parser) -> Result<String, Failure> {
     let name = match parser.next()? {
         Some(Arg::Short('h') | Arg::Long("help")) => return Ok(format!("{HELP}{MODEL_OPTIONS}{EXIT_CODES}")),
+        Some(Arg::Short('V') | Arg::Long("version")) => {
+            return Ok(format!("zstrip-assets {}\n", env!("CARGO_PKG_VERSION")));
+        }
         Some(Arg::Value(name)) => name,
         Some(other) => return Err(other.unexpected().into()),
         None => return Err(Failure::Usage(format!("a command is missing: {COMMANDS}"))),

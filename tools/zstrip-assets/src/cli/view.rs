@@ -1,7 +1,7 @@
 //! `view`: a window in which a model turns and plays its clips, exactly as firmware draws it; and files of that.
 
 use super::animation::write_gif;
-use super::arguments::{self, Conversion, PANEL_OPTIONS, Screen};
+use super::arguments::{self, A_COUNT, A_WHOLE, Conversion, PANEL_OPTIONS, Screen, number};
 use super::failure::Failure;
 use super::{help, source};
 use lexopt::{Parser, ValueExt};
@@ -14,13 +14,13 @@ use zstrip::target::Stats;
 use zstrip_assets::preview::{Format, Picture, Stage, Step};
 
 const VIEW: &str = "\
-zstrip-assets view FILE [options]: the model turning in a window, as firmware draws it
+zstrip-assets view FILE [options]: shows the model turning in a window, as firmware draws it
 
   --png FILE              writes a picture instead of opening a window
-  --gif FILE              writes a turn that repeats; clips play in it
-  --clip NAME             clip to begin with; the first one
-  --turn DEGREES          angle to begin with; 0
-  --time MS               time in the clip to begin with; 0
+  --gif FILE              writes a whole turn, in which the clip plays, instead of opening a window
+  --clip NAME             clip to begin with, also as a number from 0 on [default: the first one]
+  --turn DEGREES          angle to begin with, a whole number [default: 0]
+  --time MS               time in the clip to begin with, in milliseconds [default: 0]
 
 Keys in the window:
   Space                   pause
@@ -102,8 +102,9 @@ impl Show {
 
     /// Returns settings and statistics in a line.
     fn describe(&self, stage: &Stage<'_>, stats: &Stats) -> String {
-        let Self { name, screen: Screen { panel, format }, .. } = self;
-        let clip = stage.model().clip(self.clip).map_or(String::new(), |clip| format!(" {}", clip.name()));
+        let Self { name, screen: Screen { panel, format, .. }, .. } = self;
+        let clip =
+            stage.model().clip(self.clip).map_or(String::new(), |clip| format!(" {}", clip.name().escape_debug()));
         let format = Format::ALL.iter().find(|(known, ..)| known == format).map_or("", |(_, name, _)| name);
         let ((width, height), rows) = ((panel.width, panel.height), panel.rows);
         let Stats { vertices, triangles, drawn, .. } = stats;
@@ -122,21 +123,20 @@ pub fn view(parser: &mut Parser) -> Result<String, Failure> {
             "png" => png = Some(PathBuf::from(parser.value()?)),
             "gif" => gif = Some(PathBuf::from(parser.value()?)),
             "clip" => clip = Some(parser.value()?.string()?),
-            "turn" => turn = parser.value()?.parse()?,
-            "time" => time = parser.value()?.parse()?,
+            "turn" => turn = number(name, A_WHOLE, parser)?,
+            "time" => time = number(name, A_COUNT, parser)?,
             _ => return Ok(screen.take(name, parser)? || conversion.take(name, parser)?),
         }
         Ok(true)
     };
     let Some(file) = arguments::read(parser, take)? else { return Ok(help(&format!("{VIEW}\n{PANEL_OPTIONS}"))) };
-    let (container, _) = source::container(&file, &conversion)?;
-    let stage = Stage::new(&container, screen.panel, screen.format)?;
+    let outputs = [&png, &gif].into_iter().flatten().map(PathBuf::as_path).collect::<Vec<_>>();
+    let (container, _) = source::container(&file, &conversion, &outputs)?;
+    let stage = source::stage(&file, &container, &screen)?;
     let clips: Vec<_> = stage.model().clips().map(|clip| clip.name().to_owned()).collect();
     let clip = match clip {
         None => 0,
-        Some(name) => clips.iter().position(|known| *known == name).ok_or_else(|| {
-            Failure::Usage(format!("--clip {name}: the model has {} clips: {}", clips.len(), clips.join(", ")))
-        })?,
+        Some(name) => clip_of(&clips, &name)?,
     };
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let show = Show { name, screen, clip, angle: Angle16::from_degrees(turn), time, passed: 0, paused: false };
@@ -155,6 +155,16 @@ pub fn view(parser: &mut Parser) -> Result<String, Failure> {
         play(stage, show, clips.len())?;
     }
     Ok(text)
+}
+
+/// Returns the number of a clip by its name, or by its number where no clip has that name.
+fn clip_of(clips: &[String], name: &str) -> Result<usize, Failure> {
+    let number = || name.parse().ok().filter(|number| *number < clips.len());
+    clips.iter().position(|known| known == name).or_else(number).ok_or_else(|| {
+        let names = clips.iter().map(|known| format!("{known:?}")).collect::<Vec<_>>().join(", ");
+        let there = if clips.is_empty() { "no clips".to_owned() } else { format!("these: {names}") };
+        Failure::Usage(format!("there is no clip {name:?}: the model has {there}"))
+    })
 }
 
 /// Opens a window, or returns why there is none.
@@ -186,7 +196,7 @@ fn play(mut stage: Stage<'_>, mut show: Show, clips: usize) -> Result<(), Failur
         show.passed = show.passed.wrapping_add(if show.paused { 0 } else { milliseconds });
         for key in window.get_keys_pressed(KeyRepeat::Yes) {
             show.press(key, clips);
-            let Screen { panel, format } = show.screen;
+            let Screen { panel, format, .. } = show.screen;
             stage = stage.on(panel, format)?;
         }
     }
@@ -206,7 +216,7 @@ mod tests {
 
     fn show() -> Show {
         let panel = Panel { width: 48, height: 64, rows: 16, zoom: 100 };
-        let screen = Screen { panel, format: Format::Rgb565 };
+        let screen = Screen { panel, ..Screen::default() };
         Show { name: "model".to_owned(), screen, clip: 0, angle: Angle16(0), time: 0, passed: 0, paused: false }
     }
 
@@ -229,9 +239,24 @@ mod tests {
     }
 
     #[test]
+    fn clips_are_found_by_name_and_by_number() {
+        let clips = ["Walk", "", "Walk", "0"].map(str::to_owned);
+        for (name, number) in [("Walk", 0), ("", 1), ("2", 2), ("0", 3), ("3", 3)] {
+            assert_eq!(clip_of(&clips, name).expect("a clip"), number, "{name:?}");
+        }
+        // Neither an empty name nor one that moves the cursor disturbs the list.
+        let clips = ["", "a\u{1b}[31m"].map(str::to_owned);
+        for name in ["2", "-1", "walk", "18446744073709551616"] {
+            let error = clip_of(&clips, name).expect_err("no clip").to_string();
+            assert!(error.contains(r#"the model has these: "", "a\u{1b}[31m""#), "{error}");
+        }
+        assert!(clip_of(&[], "0").expect_err("no clip").to_string().contains("no clips"));
+    }
+
+    #[test]
     fn clips_play_from_the_time_that_was_given_and_go_round() {
         let container = Container::new(made_up::figures::animated(true).build().bytes());
-        let Screen { panel, format } = show().screen;
+        let Screen { panel, format, .. } = show().screen;
         let stage = Stage::new(&container, panel, format).expect("a stage");
         let duration = stage.model().clip(0).expect("a clip").duration();
         let at = |time, passed| Show { time, passed, ..show() }.step(&stage).motion.expect("a motion");

@@ -26,8 +26,12 @@ const GLB_HEADER: usize = 12;
 
 pub(crate) fn read(bytes: &[u8], context: &mut Context) -> Result<Scene, Error> {
     check_size(bytes, context)?;
-    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(bytes)
-        .map_err(|error| context.error(Place::File, Kind::Syntax, format!("{}; export it again", text(&error))))?;
+    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice_without_validation(bytes).map_err(|error| {
+        // Of a file of another kind, the parser says only that its first byte is wrong.
+        let is_gltf = bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{");
+        let error = if is_gltf { text(&error) } else { "neither GLB nor the JSON of glTF".to_owned() };
+        context.error(Place::File, Kind::Syntax, format!("{error}; export it again"))
+    })?;
     let mut json = document.into_json();
     check_extensions(&mut json, context)?;
     check_positions(&json, context)?;

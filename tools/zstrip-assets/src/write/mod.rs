@@ -17,6 +17,7 @@ use zstrip::model::container::{AlphaMode as Mode, Header, Material as MaterialIt
 
 pub use options::{TextureKind, UvSize, WriteOptions};
 pub use report::{Errors, WriteError, WriteNote, WriteReport, Written};
+#[cfg(feature = "cli")]
 pub(crate) use sections::SECTION_NAMES;
 
 use crate::model::{AlphaMode, Animation, Import, Material};

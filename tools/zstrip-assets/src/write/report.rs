@@ -180,7 +180,11 @@ impl fmt::Display for WriteNote {
             Self::Sheared { nodes } => write!(f, "{nodes} nodes with sheared matrices became two nodes each"),
             Self::Divided { mesh, parts } => write!(f, "mesh {mesh} divided into {parts} parts"),
             Self::Small { size, factor } => {
-                write!(f, "the model is only {size:.4} units large; --scale {factor} makes it more exact")
+                // In digits that can be read, also of models of 10⁻³⁰ units.
+                let factor = if *factor < 1e9 { factor.to_string() } else { format!("{factor:e}") };
+                let is_tiny = *size < 1e-3;
+                let size = if is_tiny { format!("{size:.1e}") } else { format!("{size:.4}") };
+                write!(f, "the model is only {size} units large; a scale {factor} times as large makes it more exact")
             }
             Self::NoClusters { parts } => write!(f, "{parts} parts that joints or morph targets move have no clusters"),
         }

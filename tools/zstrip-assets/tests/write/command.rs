@@ -114,6 +114,10 @@ fn numbers_out_of_range_are_refused_before_anything_is_drawn() {
         "check square.obj --rows 321",
         "view square.obj --zoom 0",
         "view square.obj --clip Run",
+        "view square.obj --rows -1",
+        "info square.obj --scale NaN",
+        "convert square.obj --max-texture 0",
+        "check square.obj --key-error=-1",
         "bench square.obj --rows 0",
         "bench square.obj --core m7",
         "bench square.obj --format gray8",
@@ -130,6 +134,69 @@ fn numbers_out_of_range_are_refused_before_anything_is_drawn() {
         let (code, out, _) = run_in(&folder, &format!("{command}--help"));
         assert!(code == Some(0) && out.contains("zstrip-assets") && out.contains("--texture FILE"), "{command}");
     }
+}
+
+#[test]
+fn mistakes_are_told_by_the_name_of_the_option_or_of_the_file() {
+    let folder = square().with("empty.zstm", "").with("cut.zstm", "ZSTM").with("picture.glb", png(8, 8));
+    let folder = folder.with("wide.obj", SQUARE.replace("1 1 0", "20000 20000 0"));
+    for (words, expected, part) in [
+        ("check square.obj --rows 1e3", 2, "--rows takes a whole number from 0 to 4294967295"),
+        ("view square.obj --turn NaN", 2, "--turn takes a whole number"),
+        ("view square.obj --time 99999999999", 2, "--time takes a whole number from 0 to 4294967295"),
+        ("convert square.obj --scale big", 2, "--scale takes a number"),
+        ("convert square.obj --scale inf", 2, "the scale is inf, and must be above 0 and finite"),
+        ("convert square.obj --max-texture 0", 2, "the size of textures is 0, and must be 1 to 32768"),
+        ("view square.obj --clip Run", 2, "there is no clip \"Run\": the model has no clips"),
+        ("check empty.zstm", 1, "empty.zstm: not a container: it does not begin with ZSTM"),
+        ("view cut.zstm", 1, "cut.zstm: not a container of a model: 4 bytes"),
+        ("bench cut.zstm", 1, "cut.zstm: not a container of a model: 4 bytes"),
+        ("info square.zstm", 1, "square.zstm: a container already"),
+        ("convert square.zstm", 1, "square.zstm: a container already"),
+        ("check wide.obj", 1, "must be below 32768; convert the model with a smaller --scale"),
+        ("info picture.glb", 1, "picture.glb: neither GLB nor the JSON of glTF"),
+    ] {
+        let (code, out, err) = run_in(&folder, words);
+        assert!(code == Some(expected) && out.is_empty() && err.contains(part), "{words}: {code:?} {out}{err}");
+    }
+}
+
+#[test]
+fn files_of_a_model_are_never_written_over() {
+    let folder = square().with("painted.obj", format!("mtllib paint.mtl\nusemtl a\n{SQUARE}"));
+    let folder = folder.with("paint.mtl", "newmtl a\nmap_Kd paint.png\n");
+    let names = ["square.obj", "square.zstm", "painted.obj", "paint.mtl", "paint.png"];
+    let read = || names.map(|name| std::fs::read(folder.path(name)).expect("a file"));
+    let before = read();
+    for words in [
+        "convert square.obj -o square.obj",
+        "convert square.obj -o ./square.obj",
+        "convert square.obj -o paint.png --texture paint.png",
+        "convert painted.obj -o paint.mtl",
+        "convert painted.obj -o paint.png",
+        "convert painted.obj --rust -o square.zstm",
+        "check painted.obj --sheet paint.png",
+        "check square.zstm --sheet square.zstm",
+        "view square.obj --png square.obj",
+        "view square.obj --gif paint.png --texture paint.png",
+        "view square.obj --png new.png --gif new.png",
+    ] {
+        let (code, out, err) = run_in(&folder, words);
+        let says = err.contains("another name") && err.contains("the output");
+        assert!(code == Some(2) && out.is_empty() && says, "{words}: {code:?} {out}{err}");
+        assert!(read() == before && !folder.path("new.png").exists(), "{words}");
+    }
+}
+
+#[test]
+fn a_screen_lower_than_a_strip_is_one_strip() {
+    let folder = square();
+    for (words, code) in [("--screen 8x1", 0), ("--screen 8x15", 0), ("--rows 16 --screen 8x15", 2)] {
+        let (found, _, err) = run_in(&folder, &format!("check square.obj {words}"));
+        assert_eq!(found, Some(code), "{words}: {err}");
+    }
+    let (code, out, _) = run_in(&folder, "--version");
+    assert!(code == Some(0) && out == concat!("zstrip-assets ", env!("CARGO_PKG_VERSION"), "\n"), "{out}");
 }
 
 #[test]

@@ -100,6 +100,12 @@ fn joints_that_move_nothing_do_not_count() {
 fn small_models_are_told_to_grow() {
     let report = write(&of_mesh(sphere(8, 8, 0.001)), &WriteOptions::default()).expect("a container").report;
     assert!(report.notes.iter().any(|note| matches!(note, WriteNote::Small { factor: 1000.0, .. })), "{report}");
+    // The factor is one beside the scale that the model has already.
+    let text = report.to_string();
+    assert!(text.contains("only 0.0020 units large; a scale 1000 times as large"), "{text}");
+    let report = write(&of_mesh(sphere(8, 8, 1e-30)), &WriteOptions::default()).expect("a container").report;
+    let text = report.to_string();
+    assert!(text.contains("only 2.0e-30 units large; a scale 1e30 times as large"), "{text}");
 }
 
 /// Whatever a changed file imports as is written, or refused with an error that is not a mistake of the writer.
