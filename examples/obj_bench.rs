@@ -2,7 +2,7 @@
 //! from. `ci/bench MODEL.obj` runs both and prints the table.
 //!
 //! ```text
-//! cargo run --release --example model -- MODEL.obj MODEL.bin
+//! cargo run --release --example obj_bench -- MODEL.obj MODEL.bin
 //! ```
 //! On the host it prints, for each way to draw the model, `way vertices triangles drawn pixels hash`. As firmware it
 //! finds the words in memory, where QEMU has loaded them, and prints `way rows ticks hash`: SysTick's ticks over a
@@ -99,7 +99,7 @@ fn counted() -> Result<(), String> {
     use zstrip::embedded_graphics_core::pixelcolor::IntoStorage;
     let mut args = std::env::args_os().skip(1);
     let (Some(from), Some(to), None) = (args.next(), args.next(), args.next()) else {
-        return Err("usage: model MODEL.obj MODEL.bin".to_owned());
+        return Err("usage: obj_bench MODEL.obj MODEL.bin".to_owned());
     };
     let words = obj::read::read(from.as_ref())?;
     let bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
