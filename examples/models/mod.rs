@@ -90,6 +90,11 @@ impl Way {
         Self { pace, milliseconds: 0, phase: 0, ground: 0 }
     }
 
+    /// Returns the time on the way.
+    pub const fn milliseconds(&self) -> u32 {
+        self.milliseconds
+    }
+
     /// Returns the part of two steps that is behind it, of 2³².
     pub const fn phase(&self) -> u32 {
         self.phase
