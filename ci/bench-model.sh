@@ -9,12 +9,12 @@
 out=target/ci/model
 mkdir -p "$out"
 
-cargo run -q --release --example model -- "$model" "$out/model.bin" >"$out/host.txt"
+cargo run -q --release --example obj_bench -- "$model" "$out/model.bin" >"$out/host.txt"
 awk '$1 == "flat" { exit $4 == 0 }' "$out/host.txt" ||
     say "no triangle of it faces the viewer: front faces go round against the clock"
 
 for core in $looked_at; do
-    build "${triple[$core]}" model "$out/$core"
+    build "${triple[$core]}" obj_bench "$out/$core"
     at=0x21000000
     [ "$core" != rv32imc ] || at=0x81000000
     count "$core" "$out/$core" -device "loader,file=$out/model.bin,addr=$at,force-raw=on" >"$out/$core.exact"

@@ -23,7 +23,7 @@ impl Demo for Demonstration {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["bilinear", "nearest", "one-level", "pixels"];
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
         let (screen, turn) = (shot.screen, shot.turn());
         let levels = if shot.mode < 2 { Levels::All } else { Levels::First };
         // The filter is part of the shader's type: each has a pixel loop of its own.

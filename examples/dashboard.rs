@@ -20,7 +20,7 @@ impl Demo<WithoutDepth> for Demonstration {
     const ABOUT: &'static str = "Instruments drawn with embedded-graphics, strip by strip and without a depth buffer.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithoutDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Rgb565, WithoutDepth> {
         Box::new(Dashboard::new(shot.turn()))
     }
 }

@@ -22,7 +22,7 @@ impl Demo for Demonstration {
     const RECORDS: usize = 64 * 1024;
     const MODES: &'static [&'static str] = &["squared", "exponential", "linear"];
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
         let mist = [Mist::Squared, Mist::Exponential, Mist::Linear][shot.mode];
         Box::new(Fog::new(shot.screen, shot.turn(), mist))
     }

@@ -21,7 +21,7 @@ impl Demo for Demonstration {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const RECORDS: usize = 64 * 1024;
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
         Box::new(Glass::new(shot.screen, shot.turn()))
     }
 }

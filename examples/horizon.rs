@@ -41,7 +41,7 @@ impl Demo for Steered {
         self.roll += roll;
     }
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
         let sway = |speed: u32, degrees: i32| {
             let sine = Angle16((shot.number.wrapping_mul(speed)) as u16).sin().to_bits();
             ((i64::from(sine) * i64::from(degrees * 182)) >> 16) as i32

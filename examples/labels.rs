@@ -20,7 +20,7 @@ impl Demo for Demonstration {
     const ABOUT: &'static str = "A torus with labels in its space, hidden by what is in front of them.";
     const BACKGROUND: Rgb565 = scenes::BACKGROUND;
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
         Box::new(Labels::new(shot.screen, shot.turn()))
     }
 }

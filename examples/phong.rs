@@ -22,7 +22,7 @@ impl Demo for Demonstration {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["fragment", "vertex", "face", "sun", "matcap"];
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
         let (screen, turn) = (shot.screen, shot.turn());
         // How often the pot is lit is part of its shader's type.
         match shot.mode {

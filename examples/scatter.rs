@@ -79,7 +79,7 @@ impl Demo for Scatter {
     const MODES: &'static [&'static str] = &["squares", "stems", "large"];
     const BACKGROUND: Rgb565 = Rgb565::new(2, 5, 4);
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
         let turn = Angle16(shot.number.wrapping_mul(64) as u16) + Angle16::from_degrees(32);
         let camera = Projective::perspective(Angle16::from_degrees(40), shot.screen, Scalar::ONE, Scalar::from_num(10));
         let view = Affine::translation(Vec3::from_milli(0, 130, -5000))

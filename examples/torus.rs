@@ -34,7 +34,7 @@ impl Demo for Torus {
     /// Gouraud shaded.
     const FIRST: usize = 1;
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
         (SCENES[shot.mode].make)(shot.screen, shot.turn())
     }
 }

@@ -21,7 +21,7 @@ impl Demo for Demonstration {
     const BACKGROUND: Rgb565 = Rgb565::BLACK;
     const MODES: &'static [&'static str] = &["breeze", "waves", "gale"];
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Self::Format, WithDepth> {
         Box::new(Sea::new(shot.screen, shot.turn(), [1, 2, 3][shot.mode]))
     }
 }

@@ -144,7 +144,7 @@ impl Demo for Wireframe {
     const MODES: &'static [&'static str] = &["dashed", "removed", "shaded", "all"];
     const BACKGROUND: Rgb565 = Rgb565::new(2, 8, 8);
 
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Rgb565, WithDepth> {
         let turn = Angle16(shot.number.wrapping_mul(96) as u16) + Angle16::from_degrees(-35);
         let model = Affine::translation(Vec3::from_milli(0, 150, -6000))
             * Affine::rotation_x(Angle16::from_degrees(28))

@@ -1,7 +1,7 @@
 //! Models of a user's own, as `ci/bench MODEL.obj` takes them: what is read, and what is said of files that are not.
 
 #[path = "../examples/obj/mod.rs"]
-#[allow(dead_code)] // examples/model.rs uses all of it
+#[allow(dead_code)] // examples/obj_bench.rs uses all of it
 mod obj;
 
 use obj::{Buffers, HEIGHT, MOST, Model, RECORDS, WIDTH, Way, read};

@@ -81,8 +81,9 @@ pub trait Demo<Z: Depth = WithDepth> {
     /// Handles a key that is held down.
     fn key(&mut self, _key: Key) {}
 
-    /// Makes matrices, shaders and lights of one frame. The renderer then draws the frame once or twice per strip.
-    fn frame(&self, shot: &Shot) -> Drawing<'_, Self::Format, Z>;
+    /// Makes matrices, shaders and lights of one frame, in memory of the demo's own if need be. The renderer then draws
+    /// the frame once or twice per strip.
+    fn frame(&mut self, shot: &Shot) -> Drawing<'_, Self::Format, Z>;
 }
 
 /// The choices of the keys; the height of the screen is the tallest strip.
@@ -92,7 +93,11 @@ const DIGITS: [Key; 9] =
     [Key::Key1, Key::Key2, Key::Key3, Key::Key4, Key::Key5, Key::Key6, Key::Key7, Key::Key8, Key::Key9];
 
 /// Draws a frame through strips, as a display would get it.
-fn render<D: Demo<Z>, Z: Depth>(demo: &D, settings: &Settings, picture: &mut Picture) -> Result<Stats, Box<dyn Error>> {
+fn render<D: Demo<Z>, Z: Depth>(
+    demo: &mut D,
+    settings: &Settings,
+    picture: &mut Picture,
+) -> Result<Stats, Box<dyn Error>> {
     let pixels = usize::from(settings.size.0) * usize::from(settings.strip_rows.min(settings.size.1));
     let depths = if Z::DEPTH { pixels } else { 0 };
     let mut color = vec![bytemuck::Zeroable::zeroed(); pixels];
@@ -125,7 +130,7 @@ fn describe<D: Demo<Z>, Z: Depth>(settings: &Settings, stats: &Stats) -> String 
     line + &format!(", {} walks, {} overflows", stats.walks, stats.overflows)
 }
 
-fn picture<D: Demo<Z>, Z: Depth>(demo: &D, settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
+fn picture<D: Demo<Z>, Z: Depth>(demo: &mut D, settings: &Settings, path: &Path) -> Result<(), Box<dyn Error>> {
     let mut picture = Picture::new(settings.size);
     let stats = render(demo, settings, &mut picture)?;
     picture.write_png(path)?;
@@ -181,7 +186,7 @@ fn play<D: Demo<Z>, Z: Depth>(demo: &mut D, window: &mut Window, mut settings: S
     let (mut since, mut frames, mut drawing) = (Instant::now(), 0, Duration::ZERO);
     while window.is_open() && !window.is_key_down(Key::Escape) {
         let start = Instant::now();
-        let stats = render(&*demo, &settings, &mut picture)?;
+        let stats = render(demo, &settings, &mut picture)?;
         drawing += start.elapsed();
         window.update_with_buffer(&picture.to_0rgb(), settings.size.0.into(), settings.size.1.into())?;
         frames += 1;

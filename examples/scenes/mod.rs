@@ -32,7 +32,8 @@ use zstrip::frame::Renderer;
 use zstrip::light::{Material, Matte, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::Mesh;
-use zstrip::shader::{Flat, Gouraud, PhongNear};
+use zstrip::model::Placed;
+use zstrip::shader::{Flat, Gouraud, PhongNear, Surface};
 use zstrip::span::Shader;
 use zstrip::target::{Stats, Strip};
 use zstrip::target::{WithDepth, WithRecords};
@@ -43,6 +44,12 @@ use zstrip::{Cull, Framebuffer, Scene, State};
 pub trait Draw<F: Framebuffer> {
     /// Draws the scene; called for every strip.
     fn draw(&self, scene: &mut Scene<'_, F>);
+}
+
+impl<F: Framebuffer, S: Surface + Copy> Draw<F> for Placed<'_, S> {
+    fn draw(&self, scene: &mut Scene<'_, F>) {
+        Placed::draw(self, scene);
+    }
 }
 
 /// Draws a mesh in a function of its own, which gives its stack back before the next mesh is drawn. Draws that are

@@ -7,12 +7,17 @@
 //! draws the next one meanwhile. A third, `measure`, tells a logic analyser how long drawing and sending take by
 //! themselves.
 //!
+//! Three more show models from containers in flash: `model` a textured cow, `character` a figure that walks and runs,
+//! and `part` a flange. `shows` takes them from zstrip's own `examples/models`: leave these four out in a copy, or name
+//! a container of your own.
+//!
 //! To begin a program of your own, copy this folder, name a version of zstrip in `Cargo.toml`, and change `scene`.
 #![no_std]
 #![deny(unsafe_code)]
 
 pub mod board;
 pub mod panel;
+pub mod player;
 pub mod scene;
 
 /// Pixels of a row.
