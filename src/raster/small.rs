@@ -229,20 +229,23 @@ mod tests {
         let last = (dy - 1 - first) / 256;
         for edge in [ShortEdge::by_division(start, dx, dy, first), ShortEdge::by_reciprocal(start, dx, dy, first)] {
             for row in [0, last] {
-                let p = i128::from(first + 256 * row);
-                // One pixel more than the position of the row's centres, times dy.
-                let exact = (i128::from(x + 128) * i128::from(dy) + p * i128::from(dx)) << (FRACTION - 8);
-                let at = edge.x.wrapping_add(edge.step.wrapping_mul(row as u32));
-                let error = exact - i128::from(at) * i128::from(dy);
-                // Positions are modulo 2⁶ px: within the triangle's columns, they are never off by as much.
-                let error = (error + (i128::from(dy) << 31)).rem_euclid(i128::from(dy) << 32) - (i128::from(dy) << 31);
-                assert!(0 < error && error <= 1 << 18, "{x} {dx} / {dy} at {first}, row {row}: {error}");
-                // ⌈X⌉ = -⌊-X⌋.
-                let n = i128::from(x - 128) * i128::from(dy) + p * i128::from(dx);
-                let pixel = -(-n).div_euclid(256 * i128::from(dy));
-                assert_eq!(i128::from(at >> FRACTION), pixel, "{x} {dx} / {dy} at {first}, row {row}");
+                check_row(edge.below(row as u32), x, dx, dy, first + 256 * row);
             }
         }
+    }
+
+    /// Checks 0 < δ ≤ 2¹⁸ / dy of an edge at a row `p` below its beginning, and its pixel.
+    fn check_row(edge: ShortEdge, x: i32, dx: i32, dy: i32, p: i32) {
+        let (dy, p, dx) = (i128::from(dy), i128::from(p), i128::from(dx));
+        // One pixel more than the position of the row's centres, times dy.
+        let exact = (i128::from(x + 128) * dy + p * dx) << (FRACTION - 8);
+        let error = exact - i128::from(edge.x) * dy;
+        // Positions are modulo 2⁶ px: within the triangle's columns, they are never off by as much.
+        let error = (error + (dy << 31)).rem_euclid(dy << 32) - (dy << 31);
+        assert!(0 < error && error <= 1 << 18, "{x} {dx} / {dy}, at {p}: {error}");
+        // ⌈X⌉ = -⌊-X⌋.
+        let pixel = -(-(i128::from(x - 128) * dy + p * dx)).div_euclid(256 * dy);
+        assert_eq!(i128::from(edge.column()), pixel, "{x} {dx} / {dy}, at {p}");
     }
 
     /// Checks all rows of a triangle with these sides, from each of some rows on, in exact arithmetic.
@@ -257,11 +260,7 @@ mod tests {
                 let p = first + 256 * (done + row);
                 for (edge, (ax, ay), (bx, by)) in [(edges[0], (bx, by), (cx, cy)), (edges[1], (cx, cy), (bx, by))] {
                     let (x, dx, dy, p) = if p < ay { (x, ax, ay, p) } else { (x + ax, bx - ax, by - ay, p - ay) };
-                    let (n, d) =
-                        (i128::from(x - 128) * i128::from(dy) + i128::from(p) * i128::from(dx), i128::from(dy));
-                    let pixel = -(-n).div_euclid(256 * d);
-                    let found = edge.below(row as u32).column();
-                    assert_eq!(i128::from(found), pixel, "{sides:?} from {x}, first row {first}, row {}", done + row);
+                    check_row(edge.below(row as u32), x, dx, dy, p);
                 }
             }
             done += count;
