@@ -53,7 +53,7 @@ impl<P: PixelFormat> Shader<P> for Calls {
 /// Counts as [`Calls`] does, with texture coordinates: perspective decides, too, which triangles are small.
 pub struct TexturedCalls<'u> {
     pub calls: Calls,
-    /// A sixteenth of a texel.
+    /// Half a texel.
     tolerance: u32,
     row: Cell<i32>,
     /// Texture coordinates that take the place of the mesh's.
@@ -63,7 +63,7 @@ pub struct TexturedCalls<'u> {
 impl<'u> TexturedCalls<'u> {
     /// Counts for a texture of sides up to `side` texels.
     pub fn new(side: u32) -> Self {
-        let tolerance = 4096 / side.max(1).next_power_of_two();
+        let tolerance = 32_768 / side.max(1).next_power_of_two();
         Self { calls: Calls::default(), tolerance, row: Cell::new(0), uvs: None }
     }
 
