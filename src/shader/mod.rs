@@ -24,15 +24,15 @@
 //! | `Matcap` | 46 | 25 | 22 |
 //! | `Textured`, nearest, repeated, w constant | 23 | 18 | 21 |
 //! | the same in perspective | 25 | 19 | 24 |
-//! | mirrored | 84 | 56 | 63 |
-//! | clamped | 93 | 54 | 67 |
-//! | bilinear | 194 | 132 | 153 |
+//! | mirrored | 87 | 58 | 66 |
+//! | clamped | 96 | 56 | 69 |
+//! | bilinear | 197 | 134 | 155 |
 //! | nearest, RGB888 | 67 | 45 | 53 |
-//! | bilinear, RGB888 | 327 | 188 | 247 |
+//! | bilinear, RGB888 | 330 | 190 | 249 |
 //! | nearest, palette of 8 bits | 65 | 47 | 51 |
-//! | nearest, lit | 187 | 119 | 155 |
-//! | bilinear, lit | 395 | 230 | 329 |
-//! | `Blend` of it, nearest, `Opacity` | 97 | 68 | 74 |
+//! | nearest, lit | 94 | 60 | 70 |
+//! | bilinear, lit | 404 | 237 | 334 |
+//! | `Blend` of it, nearest, `Opacity` | 100 | 70 | 77 |
 //! | `Phong`, 1 directional light, matte | 185 | 125 | 130 |
 //! | the same, 2 directional lights | 263 | 183 | 171 |
 //! | 1 directional light, glossy, shininess 32 | 260 | 208 | 198 |
