@@ -4,6 +4,7 @@
 mod reference;
 mod support;
 
+use core::cell::Cell;
 use reference::rng::Rng;
 use support::accuracy;
 use zstrip::embedded_graphics_core::geometry::Size;
@@ -14,10 +15,10 @@ use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::prelude::*;
 use zstrip::shader::{Blend, Gouraud, Replace, Textured};
-use zstrip::span::{DepthState, Shader};
+use zstrip::span::{DepthState, Fragment, Shader, TriangleSetup};
 use zstrip::target::Framebuffer;
 use zstrip::texture::{Clamp, Image, Mirror, Rgb565Texel, Texture, Tile};
-use zstrip::vertex::Perspective;
+use zstrip::vertex::{Perspective, VertexShader, Wrapper};
 
 /// Width and height of the screen.
 const SIDE: usize = 128;
@@ -382,4 +383,48 @@ fn other_textures_are_the_same_in_all_ways() {
     }
     println!("seed {seed}: {seen} px");
     assert!(seen > 10_000, "{seen} px");
+}
+
+/// Passes fragments on, and counts the triangles that are set up: small ones are not.
+struct Around<'c, S>(S, &'c Cell<usize>);
+
+impl<S: VertexShader> Wrapper for Around<'_, S> {
+    type Inner = S;
+
+    fn inner(&self) -> &S {
+        &self.0
+    }
+}
+
+impl<P: PixelFormat, S: Shader<P>> Shader<P> for Around<'_, S> {
+    const STEP: usize = S::STEP;
+    type Setup = S::Setup;
+
+    fn setup(&self, triangle: &TriangleSetup<'_, S::Varyings>) -> S::Setup {
+        self.1.set(self.1.get() + 1);
+        self.0.setup(triangle)
+    }
+
+    fn fragment(&self, fragment: &Fragment<'_, S::Varyings, S::Setup>) -> Option<P::Raw> {
+        self.0.fragment(fragment)
+    }
+}
+
+/// A shader around a texture, with light or without, has the short way too: most of its triangles are not set up. The
+/// edges of the screen cut the others.
+#[test]
+fn shaders_around_textures_take_the_way_of_small_triangles() {
+    let mut rng = Rng::new(18);
+    let (plain, lit) = (Cell::new(0), Cell::new(0));
+    let mut seen = 0;
+    for _ in 0..200 {
+        // Of the same depth at all corners.
+        let corners = triangle(&mut rng, 2500, 0, 4096);
+        let pixels = picture(WAYS[0], &corners, &Around(Textured::new(&TILE), &plain));
+        picture(WAYS[0], &corners, &Around(Textured::new(&TILE).lit(Unlit::vertex_colors()), &lit));
+        seen += pixels.iter().filter(|pixel| **pixel != BACKGROUND).count();
+    }
+    assert!(seen > 1000, "{seen} px");
+    assert_eq!(lit.get(), plain.get(), "triangles were set up under light, and without");
+    assert!(plain.get() < 50, "{} of 200 triangles were set up", plain.get());
 }

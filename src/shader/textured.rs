@@ -6,7 +6,7 @@ use crate::color::PixelFormat;
 use crate::math::leading_zeros;
 use crate::span::{
     DepthTest, Fragment, Light, Primitive, STEP, Shader, SmallResult, SmallTriangle, Span, SpanOf, TexelSource,
-    TriangleSetup, UvStepper, draw_fragments, lit_texture_span, texture_span,
+    TriangleSetup, UvStepper, draw_fragments, is_light_in_range, lit_texture_span, texture_span,
 };
 use crate::texture::{Filter, Nearest, OPAQUE, Repeat, Texture, TextureError, Wrap};
 use crate::vertex::{PackedCorners, Perspective, Varyings, VertexRef, VertexShader};
@@ -22,8 +22,8 @@ use embedded_graphics_core::geometry::Size;
 /// # Small triangles
 /// Triangles of up to 60 × 25 px, as most of a model's are, take a shorter way if perspective moves none of their
 /// texels by more than half a texel; by 1/8 texel at a step of 2 or 4, and by 1/32 at a step of 1. There, coordinates
-/// are planes on the screen, and nothing is divided. Under light, so do triangles of up to 60 px in height whose width
-/// and height are at most 85 px together. A triangle that the left or the right edge of the viewport cuts
+/// are planes on the screen, and nothing is divided. Under light, triangles of up to 60 px in height whose width and
+/// height are at most 85 px together take it, too. A triangle that the left or the right edge of the viewport cuts
 /// takes the other way, so scrolling may move its texels by as much. Mip chains have no shorter way.
 ///
 /// ```
@@ -119,14 +119,10 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
 
     /// Returns the texture for a fragment.
     #[inline(always)]
-    fn texture<const K: usize, U>(
-        &self,
-        fragment: &Fragment<'_, Perspective<2, K>, U>,
-        scale: &L::Scale,
-    ) -> Option<&'a T> {
+    fn texture<const K: usize>(&self, fragment: &Fragment<'_, Perspective<2, K>, L::Scale>) -> Option<&'a T> {
         let values: &[i32] = fragment.varyings.as_ref();
         let q = values.last().copied().unwrap_or(0);
-        self.level(L::level(scale, fragment.position, q))
+        self.level(L::level(fragment.setup, fragment.position, q))
     }
 }
 
@@ -164,7 +160,7 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
 
     #[inline(always)]
     fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>, L::Scale>) -> Option<P::Raw> {
-        let (texture, uv) = (self.texture(fragment, fragment.setup)?, fragment.varyings.corrected());
+        let (texture, uv) = (self.texture(fragment)?, fragment.varyings.corrected());
         if P::ALPHA || P::DITHER.is_some() {
             return visible::<P>(F::rgba::<T, W>(texture, uv), fragment.position);
         }
@@ -176,8 +172,7 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
         if P::ALPHA || P::DITHER.is_some() || !W::REPEATS || !F::NEAREST || N == 1 {
             return draw_fragments(self, span, test);
         }
-        let scale = &span.primitive.setup;
-        self.each_level(span, scale, |texture, part| {
+        self.each_level(span, |texture, part| {
             let draw = |part: SpanOf<'_, P, Self, D>, stepper: &mut UvStepper| {
                 texture_span(texture, part, test, stepper);
             };
@@ -225,11 +220,10 @@ impl<P: PixelFormat, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> 
 impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a, T, W, F, L, N> {
     /// Hands a span to `draw` with its texture, in parts that have one texture each.
     #[inline(always)]
-    fn each_level<'s, P: PixelFormat, V: Varyings, U, Z>(
+    fn each_level<'s, P: PixelFormat, V: Varyings, Z>(
         &self,
-        mut span: Span<'s, P, V, U, Z>,
-        scale: &L::Scale,
-        mut draw: impl FnMut(&'a T, Span<'s, P, V, U, Z>),
+        mut span: Span<'s, P, V, L::Scale, Z>,
+        mut draw: impl FnMut(&'a T, Span<'s, P, V, L::Scale, Z>),
     ) {
         if !L::MANY {
             if let Some(texture) = self.level(0) {
@@ -238,7 +232,7 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
             return;
         }
         while !span.color.is_empty() {
-            let (texture, pixels) = self.level_run(span.primitive, scale, span.position, span.color.len());
+            let (texture, pixels) = self.level_run(span.primitive, span.position, span.color.len());
             let (Some(texture), Some((part, rest))) = (texture, span.split_at(pixels)) else { return };
             draw(texture, part);
             span = rest;
@@ -247,17 +241,16 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
 
     /// Returns the texture of the pixels from `position` on, and the number of pixels, up to `length`, that share it.
     #[inline(never)]
-    fn level_run<V: Varyings, U>(
+    fn level_run<V: Varyings>(
         &self,
-        primitive: &Primitive<V, U>,
-        scale: &L::Scale,
+        primitive: &Primitive<V, L::Scale>,
         (x, y): (i32, i32),
         length: usize,
     ) -> (Option<&'a T>, usize) {
         let level = |x: i32| {
             let values = primitive.at((x, y));
             let q: &[i32] = values.as_ref();
-            L::level(scale, (x, y), q.last().copied().unwrap_or(0))
+            L::level(&primitive.setup, (x, y), q.last().copied().unwrap_or(0))
         };
         let (first, end) = (level(x), x.wrapping_add(length as i32));
         let mut next = (x | (BLOCK - 1)) + 1;
@@ -273,15 +266,6 @@ impl<'a, T: Texture, W: Wrap, F: Filter, L: Levels, const N: usize> Textured<'a,
 pub struct LitTexture<'a, T, S, W = Repeat, F = Nearest, L = OneLevel, const N: usize = STEP> {
     texture: Textured<'a, T, W, F, L, N>,
     surface: S,
-}
-
-/// Data of a triangle with a texture under light.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct LitSetup<X> {
-    /// Sizes of texels on it.
-    scale: X,
-    /// Set if light is in 0..=255 at all corners. That of a canvas may be anything.
-    is_in_range: bool,
 }
 
 /// Texture coordinates 16.16; red, green and blue of the surface, 8.16, linear on the screen.
@@ -355,18 +339,17 @@ impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, cons
 {
     const STEP: usize = N;
 
-    type Setup = LitSetup<L::Scale>;
+    /// Sizes of texels on the triangle.
+    type Setup = L::Scale;
 
     #[inline]
-    fn setup(&self, triangle: &TriangleSetup<'_, LitVaryings>) -> LitSetup<L::Scale> {
-        let is_light = |c: &i32| (0..=255 << 16).contains(c);
-        let is_in_range = triangle.corners.iter().all(|corner| corner.linear().iter().take(3).all(is_light));
-        LitSetup { scale: L::scale(self.texture.levels, triangle), is_in_range }
+    fn setup(&self, triangle: &TriangleSetup<'_, LitVaryings>) -> L::Scale {
+        L::scale(self.texture.levels, triangle)
     }
 
     #[inline(always)]
-    fn fragment(&self, fragment: &Fragment<'_, LitVaryings, LitSetup<L::Scale>>) -> Option<P::Raw> {
-        let texture = self.texture.texture(fragment, &fragment.setup.scale)?;
+    fn fragment(&self, fragment: &Fragment<'_, LitVaryings, L::Scale>) -> Option<P::Raw> {
+        let texture = self.texture.texture(fragment)?;
         let [r, g, b, a] = F::rgba::<T, W>(texture, fragment.varyings.corrected());
         let [lr, lg, lb] = fragment.varyings.linear() else { return None };
         visible::<P>([under(r, *lr), under(g, *lg), under(b, *lb), a], fragment.position)
@@ -374,11 +357,11 @@ impl<P: PixelFormat, T: Texture, S: Surface, W: Wrap, F: Filter, L: Levels, cons
 
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
-        let LitSetup { scale, is_in_range } = &span.primitive.setup;
-        if P::ALPHA || P::DITHER.is_some() || !W::REPEATS || !F::NEAREST || N == 1 || !is_in_range {
+        // The light of a canvas may be anything.
+        if P::ALPHA || P::DITHER.is_some() || !W::REPEATS || !F::NEAREST || N == 1 || !is_light_in_range(&span) {
             return draw_fragments(self, span, test);
         }
-        self.texture.each_level(span, scale, |texture, part| {
+        self.texture.each_level(span, |texture, part| {
             let draw = |part: SpanOf<'_, P, Self, D>, stepper: &mut UvStepper| {
                 lit_texture_span::<P, Self, D, _, _>(texture, part, test, stepper);
             };

@@ -59,6 +59,18 @@ pub(crate) fn lit_texture_span<P: PixelFormat, S: TexelSource<P>, D: DepthTest, 
     }
 }
 
+/// Returns whether light is in 0..=255 all along a span, but for rounding. Light is linear: its ends tell.
+///
+/// # Format
+/// A plane leaves the range of its corners by less than 1/8, 2¹³ in 8.16. [`Light`] has room for three times as much.
+#[inline(never)]
+pub(crate) fn is_light_in_range<P: PixelFormat, V: Varyings, U, Z>(span: &Span<'_, P, V, U, Z>) -> bool {
+    let (x, y) = span.position;
+    let last = x.wrapping_add(span.color.len() as i32).wrapping_sub(1);
+    let is_light = |c: i32| (-(1 << 13)..(255 << 16) + (1 << 13)).contains(&c);
+    [x, last].into_iter().all(|x| channels(&span.primitive.at((x, y))).into_iter().all(is_light))
+}
+
 /// The pixels between two columns at which coordinates are divided.
 struct Run {
     vu: u32,

@@ -29,7 +29,7 @@ pub use depth::{Carrying, Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff
 pub(crate) use depth_bias::BiasSteps;
 pub use depth_bias::DepthBias;
 pub(crate) use interpolate::{interpolate, set_up_shader};
-pub(crate) use lit_textured::lit_texture_span;
+pub(crate) use lit_textured::{is_light_in_range, lit_texture_span};
 pub(crate) use luma::luma_span;
 pub(crate) use packed::packed_span;
 pub use perspective::Corrected;
