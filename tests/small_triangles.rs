@@ -12,7 +12,7 @@ use zstrip::light::Unlit;
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::prelude::*;
-use zstrip::shader::{Flat, Gouraud, Textured};
+use zstrip::shader::{Blend, Flat, Gouraud, Replace, Textured};
 use zstrip::span::{Compare, DepthState, Shader};
 use zstrip::texture::Tile;
 
@@ -113,7 +113,7 @@ fn both_ways_draw_the_same_pixels_and_depths() {
     assert!(drawn > 100_000, "{drawn} px");
 }
 
-/// Under a texture with light, tall triangles are small, too. They cover the pixels that flat ones cover, at the same
+/// Under a texture with light, and under shaders around it, tall triangles are small, too. They cover the pixels that flat ones cover, at the same
 /// depths.
 #[test]
 fn tall_triangles_cover_the_same_pixels_at_the_same_depths() {
@@ -137,6 +137,8 @@ fn tall_triangles_cover_the_same_pixels_at_the_same_depths() {
         for (rows, records) in [(SIDE, 20_000), (SIDE, 0), (16, 20_000), (4, 20_000), (32, 0)] {
             let textured = draw(rows, records, &mesh, DepthState::LESS, &lit);
             assert!(flat == textured, "seed {seed}, {size}/256 px, strips of {rows}, {records} words");
+            let wrapped = draw(rows, records, &mesh, DepthState::LESS, &Blend::new(lit, Replace));
+            assert!(flat == wrapped, "wrapped, seed {seed}, {size}/256 px, strips of {rows}, {records} words");
         }
         drawn += flat.0.iter().filter(|color| **color != 0).count();
     }

@@ -3,9 +3,13 @@
 
 use std::cell::Cell;
 use zstrip::color::PixelFormat;
+use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565};
+use zstrip::light::Unlit;
+use zstrip::shader::{LitTexture, Textured};
 use zstrip::span::{DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup};
-use zstrip::vertex::{Perspective, VertexRef, VertexShader, Wrapper};
+use zstrip::texture::Texture;
+use zstrip::vertex::{Perspective, Varyings, VertexRef, VertexShader, Wrapper};
 
 /// Draws nothing, and counts triangles, rows and pixels.
 #[derive(Default)]
@@ -50,20 +54,46 @@ impl<P: PixelFormat> Shader<P> for Calls {
     }
 }
 
-/// Counts as [`Calls`] does, with texture coordinates: perspective decides, too, which triangles are small.
-pub struct TexturedCalls<'u> {
+/// A texture of which only the sides count.
+pub struct Sides(Size);
+
+impl Texture for Sides {
+    fn size(&self) -> Size {
+        self.0
+    }
+
+    fn rgba(&self, _: u32, _: u32) -> [u8; 4] {
+        [255; 4]
+    }
+
+    fn pixel<P: PixelFormat>(&self, x: u32, y: u32) -> Option<P::Raw> {
+        Some(P::pack_rgba(self.rgba(x, y), (0, 0)))
+    }
+}
+
+/// Counts as [`Calls`] does, with texture coordinates: perspective decides, too, which triangles are small, and so does
+/// the number of varyings.
+pub struct TexturedCalls<'u, const VARYINGS: usize> {
     pub calls: Calls,
-    /// Half a texel.
+    /// That of a texture's shader.
     tolerance: u32,
     row: Cell<i32>,
     /// Texture coordinates that take the place of the mesh's.
     uvs: Option<&'u [[i32; 2]]>,
 }
 
-impl<'u> TexturedCalls<'u> {
+/// Counts for a texture.
+pub type TextureCalls<'u> =
+    TexturedCalls<'u, { <<Textured<'static, Sides> as VertexShader>::Varyings as Varyings>::LEN }>;
+
+/// Counts for a texture under light.
+pub type LitTextureCalls<'u> =
+    TexturedCalls<'u, { <<LitTexture<'static, Sides, Unlit> as VertexShader>::Varyings as Varyings>::LEN }>;
+
+impl<'u, const VARYINGS: usize> TexturedCalls<'u, VARYINGS> {
     /// Counts for a texture of sides up to `side` texels.
     pub fn new(side: u32) -> Self {
-        let tolerance = 32_768 / side.max(1).next_power_of_two();
+        let tolerance = Textured::new(&Sides(Size::new_equal(side.max(1)))).tolerance();
         Self { calls: Calls::default(), tolerance, row: Cell::new(0), uvs: None }
     }
 
@@ -72,8 +102,8 @@ impl<'u> TexturedCalls<'u> {
     }
 }
 
-impl VertexShader for TexturedCalls<'_> {
-    type Varyings = Perspective<2, 3>;
+impl<const VARYINGS: usize> VertexShader for TexturedCalls<'_, VARYINGS> {
+    type Varyings = Perspective<2, VARYINGS>;
 
     const IS_TOLERANT: bool = true;
 
@@ -81,26 +111,30 @@ impl VertexShader for TexturedCalls<'_> {
         self.tolerance
     }
 
-    fn vertex(&self, vertex: &VertexRef<'_>) -> Perspective<2, 3> {
+    fn vertex(&self, vertex: &VertexRef<'_>) -> Perspective<2, VARYINGS> {
         self.calls.vertices.set(self.calls.vertices.get() + 1);
         let uv = match self.uvs {
             Some(uvs) => uvs.get(vertex.index()).copied().unwrap_or_default(),
             None => vertex.uv().map(|c| c.to_bits()),
         };
-        Perspective::new(uv, [])
+        let mut varyings = Perspective::ZERO;
+        for (varying, coordinate) in varyings.as_mut().iter_mut().zip(uv) {
+            *varying = coordinate;
+        }
+        varyings
     }
 }
 
-impl<P: PixelFormat> Shader<P> for TexturedCalls<'_> {
+impl<P: PixelFormat, const VARYINGS: usize> Shader<P> for TexturedCalls<'_, VARYINGS> {
     type Setup = ();
 
     /// Small triangles are not set up.
-    fn setup(&self, _: &TriangleSetup<'_, Perspective<2, 3>>) {
+    fn setup(&self, _: &TriangleSetup<'_, Perspective<2, VARYINGS>>) {
         self.calls.add(0, 1);
     }
 
     /// Fragments of small triangles.
-    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, 3>>) -> Option<P::Raw> {
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<2, VARYINGS>>) -> Option<P::Raw> {
         let (_, y) = fragment.position;
         self.calls.add(1, usize::from(self.row.replace(y) != y));
         self.calls.add(2, 1);
@@ -136,7 +170,7 @@ impl Counter for Calls {
     }
 }
 
-impl Counter for TexturedCalls<'_> {
+impl<const VARYINGS: usize> Counter for TexturedCalls<'_, VARYINGS> {
     fn calls(&self) -> &Calls {
         &self.calls
     }

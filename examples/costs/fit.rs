@@ -30,8 +30,8 @@ impl Counts {
     }
 }
 
-/// The work of all grids, of materials without a texture and with one.
-type Works = [[[Work; ROWS.len()]; GRIDS]; 2];
+/// The work of all grids, of each of [`Kind::COUNTED`].
+type Works = [[[Work; ROWS.len()]; GRIDS]; Kind::COUNTED.len()];
 
 /// Tables of tab-separated cells, by name.
 struct Tables(HashMap<String, Vec<String>>);
@@ -55,7 +55,7 @@ pub fn report(folder: &Path, cores: &[String]) -> Result<(), String> {
     let mut tables = Tables(HashMap::new());
     let mut csv =
         vec![format!("core,unit,format,material,strips,{},worst_error_percent,mean_error_percent", TERMS.join(","))];
-    let works = [false, true].map(work::of_grids);
+    let works = Kind::COUNTED.map(work::of_grids);
     for (core, counts) in cores.iter().zip(&counts) {
         for (unit, unit_name) in ["instructions", "cycles"].into_iter().enumerate() {
             for format in FORMATS {
@@ -146,7 +146,7 @@ fn frames(
     let frame = |(grid, work): (usize, &[Work; ROWS.len()])| {
         Some((work[k], counts.get(unit, &format!("{format}/{material}"), &format!("{grid}/{rows}"))? - empty))
     };
-    works[usize::from(kind.is_textured())].iter().enumerate().map(frame).collect()
+    works[kind.counted()].iter().enumerate().map(frame).collect()
 }
 
 /// Makes the tables of pixels of all materials, of formats, and of packers.

@@ -74,10 +74,14 @@ fn glossy(mesh: &Mesh<'_>) -> LitMaterial<1, 0> {
 }
 
 impl Kind {
-    /// Returns whether perspective decides, too, which triangles are small.
+    /// Materials whose work differs, because other triangles of them are small.
     #[cfg(not(target_os = "none"))]
-    pub const fn is_textured(self) -> bool {
-        matches!(self, Self::Textured | Self::LitTextured)
+    pub const COUNTED: [Self; 3] = [Self::Flat, Self::Textured, Self::LitTextured];
+
+    /// Returns the number in [`COUNTED`](Self::COUNTED) of the material whose work this one has.
+    #[cfg(not(target_os = "none"))]
+    pub fn counted(self) -> usize {
+        Self::COUNTED.iter().position(|&kind| kind == self).unwrap_or(0)
     }
 
     /// Draws a mesh in each place.

@@ -1,8 +1,8 @@
 //! Counts what there is to do in a frame: by the library's own counters, and by a shader that counts its calls.
 
-use super::calls::{BySize, Calls, Counter, TexturedCalls};
+use super::calls::{BySize, Calls, Counter, LitTextureCalls, TextureCalls};
 use super::grids::{self, GRIDS, Memory, Parts, ROWS, WIDTH};
-use super::materials::TEXELS;
+use super::materials::{Kind, TEXELS};
 use super::workloads::Buffers;
 use super::workloads::price::{self, Priced};
 use super::workloads::spot;
@@ -47,14 +47,15 @@ fn work(draws: usize, vertices: usize, triangles: usize, calls: &Calls, first: &
     work
 }
 
-/// Returns the work of each grid in strips of these rows; of a texture, or of other materials.
-pub fn of_grids(textured: bool) -> [[Work; ROWS.len()]; GRIDS] {
+/// Returns the work that each grid of a material is, in strips of these rows.
+pub fn of_grids(kind: Kind) -> [[Work; ROWS.len()]; GRIDS] {
     let mut parts = Box::new(Parts::NEW);
     std::array::from_fn(|number| {
         let mut first = None;
-        ROWS.map(|rows| match textured {
-            true => of_grid(&mut parts, number, rows, &TexturedCalls::new(TEXELS), &mut first),
-            false => of_grid(&mut parts, number, rows, &Calls::default(), &mut first),
+        ROWS.map(|rows| match kind {
+            Kind::Textured => of_grid(&mut parts, number, rows, &TextureCalls::new(TEXELS), &mut first),
+            Kind::LitTextured => of_grid(&mut parts, number, rows, &LitTextureCalls::new(TEXELS), &mut first),
+            _ => of_grid(&mut parts, number, rows, &Calls::default(), &mut first),
         })
     })
 }
@@ -74,7 +75,7 @@ fn of_grid(parts: &mut Parts, number: usize, rows: usize, counter: &impl Counter
 pub fn of_workload(workload: Priced) -> [Work; ROWS.len()] {
     let mut first = None;
     ROWS.map(|rows| {
-        let (calls, textured) = (Calls::default(), TexturedCalls::new(spot::TEXELS as u32));
+        let (calls, textured) = (Calls::default(), LitTextureCalls::new(spot::TEXELS as u32));
         let pixels = workload.width() * rows;
         let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; 96 * 1024]);
         let buffers = Buffers { color: &mut color, depth: &mut depth, records: &mut records };

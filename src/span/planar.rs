@@ -20,7 +20,7 @@ use super::small::{Brush, BrushRows};
 use super::span::Fragment;
 use crate::color::PixelFormat;
 use crate::raster::{ShortPlanes, gradients, least_and_most};
-use crate::vertex::{Side, Varyings};
+use crate::vertex::{MAX_IN_REGISTERS, Side, Varyings};
 use core::marker::PhantomData;
 
 /// Draws small triangles fragment by fragment.
@@ -117,6 +117,7 @@ fn is_straight(words: [u32; 3], most: u32, tolerance: u32) -> bool {
 
 impl<'s, P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> Brush<P, D> for PlanarBrush<'s, P, S> {
     const PLANES: bool = true;
+    const TALL: bool = S::Varyings::LEN > MAX_IN_REGISTERS;
 
     type Rows = PlanarRows<'s, P, S>;
 

@@ -6,7 +6,7 @@ mod calls;
 use super::super::turntable::Step;
 use super::super::{PreviewError, Stage};
 use super::costs::{DRAW, LARGE, SHADED, SMALL, STRIP, TERMS, TRIANGLE, VERTEX};
-use calls::{BySize, Calls, TexturedCalls};
+use calls::{BySize, Calls, LitTextureCalls};
 use zstrip::embedded_graphics_core::pixelcolor::Gray8;
 use zstrip::math::Projective;
 use zstrip::mesh::Mesh;
@@ -131,7 +131,7 @@ pub struct DrawWork {
 /// A counter of a draw.
 enum Counter<'u> {
     Plain(Calls),
-    Textured(TexturedCalls<'u>),
+    Textured(LitTextureCalls<'u>),
 }
 
 impl Counter<'_> {
@@ -157,7 +157,7 @@ struct Counted<'d> {
 impl<'d> Counted<'d> {
     fn counter(&self) -> Counter<'d> {
         match self.texels {
-            Some(side) => Counter::Textured(TexturedCalls::new(side).with_uvs(self.uvs)),
+            Some(side) => Counter::Textured(LitTextureCalls::new(side).with_uvs(self.uvs)),
             None => Counter::Plain(Calls::default()),
         }
     }
