@@ -30,7 +30,7 @@
 //! | nearest, RGB888 | 67 | 45 | 53 |
 //! | bilinear, RGB888 | 330 | 190 | 249 |
 //! | nearest, palette of 8 bits | 65 | 47 | 51 |
-//! | nearest, lit | 94 | 60 | 70 |
+//! | nearest, lit | 96 | 62 | 72 |
 //! | bilinear, lit | 404 | 237 | 334 |
 //! | `Blend` of it, nearest, `Opacity` | 100 | 70 | 77 |
 //! | `Phong`, 1 directional light, matte | 185 | 125 | 130 |
