@@ -9,6 +9,7 @@ mod format;
 mod formats;
 mod luma;
 mod packed;
+mod resolve;
 mod rgb565;
 mod rgba;
 
@@ -19,5 +20,6 @@ pub(crate) use fill::{clear, clear_words, fill};
 pub use format::PixelFormat;
 pub use formats::{Bgr565Be, Rgb332, Rgb565Be};
 pub(crate) use packed::{load, pack, spread, spread_step, squeeze, store, unsqueeze, word};
+pub(crate) use resolve::resolve;
 pub(crate) use rgb565::{fold_rgb565, mix_spread_rgb565, pack_rgb565, spread_rgb565, unpack_rgb565};
 pub use rgba::Rgba8888;

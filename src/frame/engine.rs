@@ -64,15 +64,26 @@ impl<'b> Engine<'b> {
         Ok(Self { grid, depth: &mut [], records: &mut [] })
     }
 
-    /// Takes a depth buffer, whose rows limit the height of strips.
+    /// Takes a depth buffer of a number of samples per pixel, whose rows limit the height of strips.
     #[inline]
-    pub(super) fn with_depth(mut self, depth: &'b mut [u16]) -> Result<Self, RendererError> {
-        let rows = self.strip_rows(depth.len());
+    pub(super) fn with_depth(mut self, depth: &'b mut [u16], samples: usize) -> Result<Self, RendererError> {
+        let rows = self.strip_rows(depth.len() / samples);
         if rows == 0 {
-            return Err(RendererError::DepthTooShort { pixels: depth.len(), needed: self.width() });
+            return Err(RendererError::DepthTooShort { pixels: depth.len(), needed: samples * self.width() });
         }
         self.grid.most_rows = rows;
         self.depth = depth;
+        Ok(self)
+    }
+
+    /// Takes the number of pixels that the colours of one more sample have, which limits the height of strips, too.
+    #[inline]
+    pub(super) fn with_samples(mut self, pixels: usize, further: usize) -> Result<Self, RendererError> {
+        let rows = self.strip_rows(pixels / further.max(1));
+        if rows == 0 {
+            return Err(RendererError::SamplesTooShort { pixels, needed: further * self.width() });
+        }
+        self.grid.most_rows = rows;
         Ok(self)
     }
 
@@ -193,7 +204,7 @@ impl Engine<'_> {
         draw: &mut dyn FnMut(&mut Scene<'_, F>),
     ) -> Result<(), u32> {
         if F::DEPTH {
-            let pixels = usize::from(self.grid.viewport.width()) * usize::from(rows);
+            let pixels = usize::from(self.grid.viewport.width()) * usize::from(rows) * F::SAMPLES;
             clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
         }
         loop {

@@ -15,7 +15,14 @@ pub enum RendererError {
     DepthTooShort {
         /// Pixels that the buffer holds.
         pixels: usize,
-        /// Pixels of a row.
+        /// Pixels of a row, times the samples of a pixel.
+        needed: usize,
+    },
+    /// The buffer for the colours of samples does not hold those of one row.
+    SamplesTooShort {
+        /// Colours that the buffer holds.
+        pixels: usize,
+        /// Pixels of a row, times the samples of a pixel except the first.
         needed: usize,
     },
 }
@@ -26,6 +33,9 @@ impl fmt::Display for RendererError {
             Self::Screen(error) => write!(f, "screen: {error}"),
             Self::DepthTooShort { pixels, needed } => {
                 write!(f, "depth buffer of {pixels} pixels, one row has {needed}")
+            }
+            Self::SamplesTooShort { pixels, needed } => {
+                write!(f, "buffer for {pixels} colours of samples, one row has {needed} of them")
             }
         }
     }

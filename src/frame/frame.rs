@@ -2,7 +2,7 @@
 
 use super::engine::{Engine, Progress};
 use super::error::FrameError;
-use crate::color::{PixelFormat, clear};
+use crate::color::{PixelFormat, clear, resolve};
 use crate::scene::Scene;
 use crate::target::{DepthChoice, RecordsChoice, Stats, Strip, StripPixels, WithoutDepth, WithoutRecords};
 use core::marker::PhantomData;
@@ -136,6 +136,8 @@ use embedded_graphics_core::primitives::Rectangle;
 #[must_use = "a frame draws nothing until its strips are pulled"]
 pub struct Frame<'r, 'b, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
     engine: &'r mut Engine<'b>,
+    /// Colours of samples 1 and up.
+    samples: &'r mut [P::Raw],
     background: P::Raw,
     progress: Progress,
     choices: PhantomData<(D, R)>,
@@ -146,10 +148,10 @@ type DrawScene<'d, P, D, R> = dyn FnMut(&mut Scene<'_, Strip<'_, P, D, R>>) + 'd
 
 impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, D, R> {
     /// Starts a frame.
-    pub(super) fn new(engine: &'r mut Engine<'b>, background: impl Into<Rgb888>) -> Self {
+    pub(super) fn new(engine: &'r mut Engine<'b>, samples: &'r mut [P::Raw], background: impl Into<Rgb888>) -> Self {
         let color: Rgb888 = background.into();
         let background = P::pack([color.r(), color.g(), color.b()]);
-        Self { engine, background, progress: Progress::new(), choices: PhantomData }
+        Self { engine, samples, background, progress: Progress::new(), choices: PhantomData }
     }
 
     /// Draws the next strip into `buffer`. Returns `None` after the last strip.
@@ -179,7 +181,7 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
         buffer: &'c mut [P::Raw],
         draw: &mut DrawScene<'_, P, D, R>,
     ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
-        let Self { engine, background, progress, .. } = self;
+        let Self { engine, samples, background, progress, .. } = self;
         let (width, row, held) = (engine.width(), progress.row(), buffer.len());
         if row == 0 {
             let rows = engine.strip_rows(held);
@@ -194,8 +196,14 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
         let needed = width * usize::from(rows);
         let pixels = buffer.get_mut(..needed).ok_or(FrameError::BufferTooShort { pixels: held, needed })?;
         clear(pixels, *background);
-        let mut strip = Strip::<P, D, R>::new(&mut *pixels, width, u32::from(row));
+        // The renderer has seen to it that the samples are long enough.
+        let samples = samples.get_mut(..needed * (D::SAMPLES - 1)).unwrap_or_default();
+        clear(samples, *background);
+        let mut strip = Strip::<P, D, R>::new(&mut *pixels, &mut *samples, width, u32::from(row));
         engine.next_strip(progress, &mut strip, rows, draw).map_err(|draw| FrameError::SceneChanged { draw })?;
+        if D::SAMPLES > 1 {
+            resolve::<P>(pixels, samples);
+        }
         let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(width as u32, u32::from(rows)));
         Ok(Some(StripPixels::new(area, pixels)))
     }

@@ -43,7 +43,7 @@ impl<'b> FramebufferRenderer<'b> {
     /// # Errors
     /// When the buffer does not hold one row.
     pub fn with_depth(self, depth: &'b mut [u16]) -> Result<FramebufferRenderer<'b, WithDepth>, RendererError> {
-        Ok(FramebufferRenderer { engine: self.engine.with_depth(depth)?, choice: PhantomData })
+        Ok(FramebufferRenderer { engine: self.engine.with_depth(depth, 1)?, choice: PhantomData })
     }
 }
 
@@ -97,6 +97,7 @@ impl<'b, D: DepthChoice> FramebufferRenderer<'b, D> {
         framebuffer: &mut F,
         mut draw: impl FnMut(&mut Scene<'_, F>),
     ) -> Result<Stats, FrameError> {
+        const { assert!(F::SAMPLES == D::SAMPLES, "renderer and framebuffer are not alike in their samples") };
         const { assert!(F::DEPTH == D::DEPTH, "renderer and framebuffer are not alike: one is without depth") };
         let Self { engine, .. } = self;
         engine.set_strip_rows(engine.strip_rows(usize::MAX), F::RECORDS);

@@ -7,7 +7,7 @@ use crate::color::PixelFormat;
 use crate::scene::Scene;
 use crate::target::{
     DepthChoice, OnDisplay, RecordsChoice, Stats, Strip, StripSink, WithCarriedState, WithDepth, WithRecords,
-    WithoutDepth, WithoutRecords,
+    WithSamples, WithoutDepth, WithoutRecords,
 };
 use core::marker::PhantomData;
 use embedded_graphics_core::draw_target::DrawTarget;
@@ -46,7 +46,9 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 #[derive(Debug)]
 pub struct Renderer<'b, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
     engine: Engine<'b>,
-    choices: PhantomData<(P, D, R)>,
+    /// Colours of samples 1 and up.
+    samples: &'b mut [P::Raw],
+    choices: PhantomData<(D, R)>,
 }
 
 impl<P: PixelFormat> Renderer<'_, P> {
@@ -56,7 +58,7 @@ impl<P: PixelFormat> Renderer<'_, P> {
     /// # Errors
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`](crate::vertex::Viewport::MAX_SIZE).
     pub fn new(screen: Size) -> Result<Self, RendererError> {
-        Ok(Self { engine: Engine::new(screen)?, choices: PhantomData })
+        Ok(Self { engine: Engine::new(screen)?, samples: &mut [], choices: PhantomData })
     }
 }
 
@@ -68,7 +70,45 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
     /// # Errors
     /// When the buffer does not hold one row.
     pub fn with_depth(self, depth: &'b mut [u16]) -> Result<Renderer<'b, P, WithDepth, R>, RendererError> {
-        Ok(Renderer { engine: self.engine.with_depth(depth)?, choices: PhantomData })
+        Ok(Renderer { engine: self.engine.with_depth(depth, 1)?, samples: &mut [], choices: PhantomData })
+    }
+
+    /// Lends a depth buffer and colours for `N` samples per pixel, which make the edges of triangles smooth: 2, 4 or 8
+    /// samples. `depth` has all depths of a strip, `N` per pixel, and `samples` the colours of all samples but one,
+    /// `N` - 1 per pixel. The one that is left is in the colour buffer of the strip.
+    ///
+    /// A triangle covers the samples that lie inside of it, and each sample has a depth of its own. When a strip is
+    /// done, each of its pixels becomes the mean of its samples. Lines, points, text and images cover whole pixels.
+    ///
+    /// Strips get no higher than the whole rows that both buffers hold.
+    ///
+    /// ```
+    /// # use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb888, RgbColor}};
+    /// use zstrip::{color::Rgb565Be, Renderer};
+    ///
+    /// // Strips of 4 rows: 20 KB for colours and depths of 4 samples.
+    /// let (mut color, mut samples, mut depth) = ([0; 320 * 4], [0; 3 * 320 * 4], [0; 4 * 320 * 4]);
+    /// let mut renderer =
+    ///     Renderer::<Rgb565Be>::new(Size::new(320, 240))?.with_samples::<4>(&mut depth, &mut samples)?;
+    /// let mut frame = renderer.begin(Rgb888::BLACK);
+    /// while let Some(strip) = frame.next_strip(&mut color, |scene| { /* scene.draw(...) */ })? {
+    ///     // Send it.
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When one of the buffers does not hold the samples of one row.
+    pub fn with_samples<const N: usize>(
+        self,
+        depth: &'b mut [u16],
+        samples: &'b mut [P::Raw],
+    ) -> Result<Renderer<'b, P, WithSamples<N>, R>, RendererError>
+    where
+        WithSamples<N>: DepthChoice,
+    {
+        let engine = self.engine.with_depth(depth, N)?.with_samples(samples.len(), N - 1)?;
+        Ok(Renderer { engine, samples, choices: PhantomData })
     }
 }
 
@@ -81,7 +121,7 @@ impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithoutRecords> {
     /// empty records.
     #[must_use]
     pub fn with_records(self, records: &'b mut [u32]) -> Renderer<'b, P, D, WithRecords> {
-        Renderer { engine: self.engine.with_records(records), choices: PhantomData }
+        Renderer { engine: self.engine.with_records(records), samples: self.samples, choices: PhantomData }
     }
 }
 
@@ -118,7 +158,7 @@ impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithRecords> {
     /// ```
     #[must_use]
     pub fn with_carried_state(self) -> Renderer<'b, P, D, WithCarriedState> {
-        Renderer { engine: self.engine, choices: PhantomData }
+        Renderer { engine: self.engine, samples: self.samples, choices: PhantomData }
     }
 }
 
@@ -192,6 +232,6 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
 
     /// Starts a frame whose strips the caller pulls.
     pub fn begin(&mut self, background: impl Into<Rgb888>) -> Frame<'_, 'b, P, D, R> {
-        Frame::new(&mut self.engine, background)
+        Frame::new(&mut self.engine, self.samples, background)
     }
 }

@@ -13,7 +13,8 @@
 //! # Source
 //! OpenGL 4.6, 14.5.1; Vulkan, "Basic Line Segment Rasterization"; Bresenham 1965 for the stepping.
 
-use super::triangle::{PixelRect, first_centre};
+use super::samples::first_centre;
+use super::triangle::PixelRect;
 use crate::math::divide;
 use core::num::NonZeroU32;
 use core::ops::Range;

@@ -9,6 +9,7 @@
 //! ```
 
 use super::edge::Edge;
+use super::samples::{first_centre, sampled};
 use crate::vertex::ScreenVertex;
 use core::ops::Range;
 use embedded_graphics_core::primitives::Rectangle;
@@ -49,19 +50,14 @@ impl PixelRect {
     }
 }
 
-/// Returns the first pixel whose centre is at or after a 24.8 coordinate.
+/// Returns the pixels whose centres lie in the bounding box of a triangle or, with several samples per pixel, whose
+/// samples may lie there. The triangle can cover no other pixels.
 #[inline]
-pub const fn first_centre(coordinate: i32) -> i32 {
-    (coordinate + 127) >> 8
-}
-
-/// Returns the pixels whose centres lie in the bounding box of a triangle. The triangle can cover no other pixels.
-#[inline]
-pub fn pixel_rect(v: &[ScreenVertex; 3]) -> PixelRect {
+pub fn pixel_rect(v: &[ScreenVertex; 3], samples: usize) -> PixelRect {
     let [a, b, c] = v;
     PixelRect {
-        x: first_centre(a.x.min(b.x).min(c.x))..first_centre(a.x.max(b.x).max(c.x)),
-        y: first_centre(a.y.min(b.y).min(c.y))..first_centre(a.y.max(b.y).max(c.y)),
+        x: sampled(a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x), samples),
+        y: sampled(a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y), samples),
     }
 }
 

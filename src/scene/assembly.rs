@@ -134,7 +134,7 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
                 // Stage 7, faces.
                 self.program.shade_faces(records.triangles_from(first));
                 if scan.to == ScanTo::Records {
-                    place(records, first, strips, band.start, &self.clip, stats);
+                    place::<F>(records, first, strips, band.start, &self.clip, stats);
                 }
                 self.program.shade_corners(records, first);
                 if scan.to == ScanTo::Drawing {
@@ -193,7 +193,7 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
             *packed = self.packed_vertex(*index);
         }
         let planes = Outcode(!self.draw.state.range.clamped().0);
-        let event = triangle.assess(&packed, planes, self.culling, &self.clip, self.scene.stats);
+        let event = triangle.assess::<F>(&packed, planes, self.culling, &self.clip, self.scene.stats);
         if event == ScanEvent::Done || event == ScanEvent::Visible || self.may_reach(&triangle.corners) {
             return event;
         }
@@ -285,7 +285,7 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
             for (v, corner) in triangle.v.iter_mut().zip(fan) {
                 *v = corner.vertex.screen();
             }
-            if triangle.passes_culling(self.culling, &self.clip, self.scene.stats) {
+            if triangle.passes_culling::<F>(self.culling, &self.clip, self.scene.stats) {
                 if recording {
                     for (index, corner) in indices.iter_mut().zip(fan) {
                         if *index == UNSTORED {

@@ -301,7 +301,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         face: u32,
     ) {
         let Self { scene, clip, state, .. } = self;
-        if !pixel_rect(v).intersection(clip).is_empty() {
+        if !pixel_rect(v, F::SAMPLES).intersection(clip).is_empty() {
             let mut varyings = varyings.map(level);
             scene.painter(clip, state, &const { RasterHooks::ANY }, shader).triangle(
                 &mut v.clone(),

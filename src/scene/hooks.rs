@@ -3,7 +3,9 @@
 use super::painter::RasterHooks;
 use super::replay::{ShaderDrawer, fits};
 use super::state::State;
-use crate::span::{Carrying, DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Shader, SmallResult};
+use crate::span::{
+    Carrying, DepthBias, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Sampled, Shader, SmallResult,
+};
 use crate::target::Framebuffer;
 use crate::vertex::Varyings;
 
@@ -20,6 +22,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
                     let test = D::of(painter.test());
                     if F::CARRIES {
                         painter.small(v, varyings, flat, Carrying(test))
+                    } else if F::SAMPLES > 1 {
+                        painter.small(v, varyings, flat, Sampled(test))
                     } else {
                         painter.small(v, varyings, flat, test)
                     }
@@ -33,6 +37,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
                     // One kind of test for all small triangles, so that each of their loops is linked once.
                     if F::CARRIES {
                         let mut drawer = ShaderDrawer { state, hooks, shader, test: Carrying(test), varyings };
+                        scene.replay(state, hooks.bias, waiting, &mut drawer);
+                    } else if F::SAMPLES > 1 {
+                        let mut drawer = ShaderDrawer { state, hooks, shader, test: Sampled(test), varyings };
                         scene.replay(state, hooks.bias, waiting, &mut drawer);
                     } else {
                         let mut drawer = ShaderDrawer { state, hooks, shader, test, varyings };

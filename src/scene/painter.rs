@@ -6,7 +6,7 @@
 use super::scene::{Scene, Target, check};
 use super::small_rows::SmallRows;
 use super::state::State;
-use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans};
+use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, moves};
 use crate::span::{
     BiasSteps, DepthBias, DepthState, DepthTest, Primitive, Shader, SmallResult, SmallTriangle, Span, SpanOf, biased,
     interpolate, set_up_shader, subslice,
@@ -67,9 +67,36 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
     }
 
-    /// Draws a triangle in the way of large ones, unless its area is 0. Its highest corner is the first.
+    /// Draws a triangle in the way of large ones, unless its area is 0. Its highest corner is the first. Each sample is
+    /// a picture of its own, in which the triangle is moved.
     #[inline(never)]
     fn large(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
+        self.each_sample(|painter, (x, y)| {
+            if F::SAMPLES == 1 {
+                return painter.large_at_sample(v, varyings, flat);
+            }
+            let moved = v.each_ref().map(|v| ScreenVertex { x: v.x + x, y: v.y + y, z: v.z });
+            painter.large_at_sample(&moved, varyings, flat);
+        });
+    }
+
+    /// Calls a function for the pixels of each sample, with the move that brings the sample to the pixel's centre. With
+    /// one sample per pixel, it calls the function once.
+    #[inline(always)]
+    pub(super) fn each_sample(&mut self, mut draw: impl FnMut(&mut Painter<'_, '_, F, S>, (i32, i32))) {
+        let Self { screen, clip, state, shader, hooks, .. } = *self;
+        if F::SAMPLES == 1 {
+            return draw(self, (0, 0));
+        }
+        for (sample, to_centre) in moves(F::SAMPLES).iter().enumerate() {
+            let target = &mut self.target.sample(sample, screen.0);
+            draw(&mut Painter { target, screen, clip, state, shader, hooks }, *to_centre);
+        }
+        self.target.framebuffer.select_sample(0);
+    }
+
+    #[inline(always)]
+    fn large_at_sample(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
         let area = signed_area(&v[0], &v[1], &v[2]);
         if area == 0 {
             return;
@@ -101,11 +128,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let packed = PackedCorners { varyings: &packed, vertices: &[], corners: [0, 1, 2] };
         let (shader, bias) = (self.shader, self.bias_steps());
         let rows = SmallRows::new(self.screen, self.clip, self.state, bias);
-        let Range { start: mut y, end } = rows.of(v);
+        let Range { start: mut y, end } = rows.of::<F>(v);
         while y < end {
             // Not moved out: that would link `memcpy`.
             let mut place = rows.place(self.target, Some(y), None);
-            let Some(target) = &mut place else { break };
+            let Some(target) = &mut place else { return SmallResult::Large };
             y = target.rows.end;
             let triangle = SmallTriangle { target, v: [a, b, c], state: None, test };
             let result = if S::PACKS_SMALL {

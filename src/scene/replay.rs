@@ -199,7 +199,7 @@ impl<F: Framebuffer> Scene<'_, F> {
             if !found {
                 break;
             }
-            if !waiting || test.first_row(triangles.positions_of(record.corners)).is_some() {
+            if !waiting || test.first_row::<F>(triangles.positions_of(record.corners)).is_some() {
                 triangles.vertices_of(&record, &mut v);
                 drawer.single((target, screen, clip), &triangles, &record, &v, tried);
             }

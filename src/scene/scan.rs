@@ -4,8 +4,8 @@
 use super::cull::{CullPass, PendingFace, Stop};
 use super::state::Culling;
 use crate::mesh::{Mesh, Topology};
-use crate::raster::{PixelRect, first_centre};
-use crate::target::{Records, Stats, StripRows, Triangles};
+use crate::raster::{PixelRect, sampled};
+use crate::target::{Framebuffer, Records, Stats, StripRows, Triangles};
 use crate::vertex::{ClipVertex, Outcode, PackedVertex, ScreenVertex, pack, signed_area};
 use core::ops::Range;
 
@@ -67,7 +67,7 @@ impl ScreenTriangle {
     /// Returns what has to be done with the triangle, from the results of the vertex stage: [`ScanEvent::Done`] if it
     /// cannot be visible. A triangle that lies outside of one of `planes` is not.
     #[inline(never)]
-    pub(super) fn assess(
+    pub(super) fn assess<F: Framebuffer>(
         &mut self,
         packed: &[PackedVertex; 3],
         planes: Outcode,
@@ -83,7 +83,7 @@ impl ScreenTriangle {
             all |= packed.outcode();
         }
         if visible {
-            return if self.passes_culling(culling, clip, stats) { ScanEvent::Visible } else { ScanEvent::Done };
+            return if self.passes_culling::<F>(culling, clip, stats) { ScanEvent::Visible } else { ScanEvent::Done };
         }
         if common != 0 {
             stats.outside = stats.outside.wrapping_add(1);
@@ -96,7 +96,12 @@ impl ScreenTriangle {
     /// Stage 5, culling: returns whether the triangle at `v` shows the right side and may cover a pixel of `clip`.
     /// Computes its area and its first row.
     #[inline(never)]
-    pub(super) fn passes_culling(&mut self, culling: Culling, clip: &PixelRect, stats: &mut Stats) -> bool {
+    pub(super) fn passes_culling<F: Framebuffer>(
+        &mut self,
+        culling: Culling,
+        clip: &PixelRect,
+        stats: &mut Stats,
+    ) -> bool {
         let [a, b, c] = &self.v;
         self.area = signed_area(a, b, c);
         let count = if self.area == 0 {
@@ -107,7 +112,7 @@ impl ScreenTriangle {
             let mut words = [[0; 2]; 3];
             pack(&self.v, &mut words);
             let mut test = BoxTest::new(clip);
-            let row = test.first_row(words.each_ref());
+            let row = test.first_row::<F>(words.each_ref());
             test.finish(stats, 1);
             self.row = row.unwrap_or_default();
             return row.is_some();
@@ -136,16 +141,16 @@ impl<'t> BoxTest<'t> {
     /// Returns the first row that a triangle with these vertices can have a pixel in; `None` if it can have none in the
     /// rectangle.
     #[inline(never)]
-    pub(super) fn first_row(&mut self, v: [&[u32; 2]; 3]) -> Option<i32> {
-        self.first_row_inlined(v)
+    pub(super) fn first_row<F: Framebuffer>(&mut self, v: [&[u32; 2]; 3]) -> Option<i32> {
+        self.first_row_inlined::<F>(v)
     }
 
     /// Returns the first row as [`first_row`](Self::first_row) does; inlined, for the loop over recorded triangles.
     #[inline(always)]
-    fn first_row_inlined(&mut self, [a, b, c]: [&[u32; 2]; 3]) -> Option<i32> {
+    fn first_row_inlined<F: Framebuffer>(&mut self, [a, b, c]: [&[u32; 2]; 3]) -> Option<i32> {
         // Packed words compare as their coordinates do. Results are those of `pixel_rect`.
         let word = |axis: usize| [a[axis] as i32, b[axis] as i32, c[axis] as i32];
-        let range = |[a, b, c]: [i32; 3]| first_centre(a.min(b).min(c) >> 8)..first_centre(a.max(b).max(c) >> 8);
+        let range = |[a, b, c]: [i32; 3]| sampled(a.min(b).min(c) >> 8, a.max(b).max(c) >> 8, F::SAMPLES);
         let (y, x) = (range(word(1)), range(word(0)));
         if x.start >= x.end || y.start >= y.end {
             self.left_out[0] += 1;
@@ -294,7 +299,7 @@ impl<'m> Scan<'m> {
 /// Stage 5, the second part of culling, and stage 6, recording: leaves out those of the triangles recorded from `first`
 /// on that cover no pixel, and puts the others into the lists of the strips that they begin in.
 #[inline(never)]
-pub(super) fn place(
+pub(super) fn place<F: Framebuffer>(
     records: &mut Records<'_>,
     first: u16,
     strips: &StripRows,
@@ -306,7 +311,7 @@ pub(super) fn place(
     let count = triangles.count() - first;
     let mut test = BoxTest::new(clip);
     let strips = *strips;
-    triangles.keep_each(first, |v| test.first_row_inlined(v).map(|row| strips.of((row - band) as u32)));
+    triangles.keep_each(first, |v| test.first_row_inlined::<F>(v).map(|row| strips.of((row - band) as u32)));
     test.finish(stats, count.into());
     triangles.finish();
 }
@@ -319,10 +324,14 @@ mod tests {
     use crate::math::{Scalar, Vec3};
     use crate::mesh::{MeshData, Positions};
     use crate::span::SmallResult;
-    use crate::target::{DrawTriangles, Layout, TriangleRecord};
+    use crate::target::{DrawTriangles, Layout, Strip, TriangleRecord};
     use crate::vertex::Projected;
+    use embedded_graphics_core::pixelcolor::Gray8;
     use std::vec;
     use std::vec::Vec;
+
+    /// One sample per pixel.
+    type Pixels = Strip<'static, Gray8>;
 
     const STRIPS: usize = 15;
     const COUNT: usize = 600;
@@ -403,7 +412,7 @@ mod tests {
             loop {
                 let first = records.triangle_count();
                 let event = scan.next(&mut records, &mut stats);
-                place(&mut records, first, &strips, rows.start, &clip, &mut stats);
+                place::<Pixels>(&mut records, first, &strips, rows.start, &clip, &mut stats);
                 if event == ScanEvent::Done {
                     break;
                 }
@@ -421,7 +430,7 @@ mod tests {
                 triangle.v = packed.map(PackedVertex::screen);
                 if !packed.iter().all(|packed| packed.is_on_screen()) {
                     left.push((number as u16, corners));
-                } else if triangle.passes_culling(state.culling(), &clip, &mut expected) {
+                } else if triangle.passes_culling::<Pixels>(state.culling(), &clip, &mut expected) {
                     drawn[strips.of((triangle.row - rows.start) as u32)].push((corners, number, triangle.area > 0));
                 }
             }

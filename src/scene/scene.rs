@@ -38,6 +38,18 @@ pub(crate) struct Target<'a, F> {
     pub(crate) rows: Range<i32>,
 }
 
+impl<F: Framebuffer> Target<'_, F> {
+    /// Returns the target of one sample, of rows `width` px wide.
+    pub(super) fn sample(&mut self, sample: usize, width: u16) -> Target<'_, F> {
+        let Self { framebuffer, depth, rows } = self;
+        framebuffer.select_sample(sample);
+        // Depths are in the order of samples, too.
+        let pixels = usize::from(width).wrapping_mul((rows.end - rows.start) as usize);
+        let depth = depth.get_mut(pixels.wrapping_mul(sample)..).unwrap_or_default();
+        Target { framebuffer, depth, rows: rows.clone() }
+    }
+}
+
 /// The object that a frame is drawn through; see [`Renderer::frame`](crate::frame::Renderer::frame).
 ///
 /// A function that draws into scenes of any renderer takes `&mut Scene<'_, impl Framebuffer>`. One that is given a

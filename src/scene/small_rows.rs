@@ -3,7 +3,7 @@
 use super::scene::Target;
 use super::state::{State, Winding};
 use crate::color::PixelFormat;
-use crate::raster::{PixelRect, first_centre};
+use crate::raster::{PixelRect, moves, sampled};
 use crate::span::{BiasSteps, DepthBias, LeftState, SmallTarget};
 use crate::target::Framebuffer;
 use crate::vertex::ScreenVertex;
@@ -34,8 +34,8 @@ impl<'p> SmallRows<'p> {
 
     /// Returns the rows that a triangle with these vertices may have pixels in. Its highest vertex is the first.
     #[inline(never)]
-    pub(super) fn of(&self, [a, b, c]: &[ScreenVertex; 3]) -> Range<i32> {
-        let (start, end) = (first_centre(a.y), first_centre(b.y.max(c.y)));
+    pub(super) fn of<F: Framebuffer>(&self, [a, b, c]: &[ScreenVertex; 3]) -> Range<i32> {
+        let Range { start, end } = sampled(a.y, b.y.max(c.y), F::SAMPLES);
         start.max(self.clip.y.start)..end.min(self.clip.y.end)
     }
 
@@ -49,8 +49,14 @@ impl<'p> SmallRows<'p> {
     ) -> Option<SmallTarget<'t, Raw<F>>> {
         let (width, first) = (usize::from(self.screen.0), target.rows.start);
         let length = width.wrapping_mul((target.rows.end - first) as usize);
-        let together = target.framebuffer.rows(first as u32, width).is_some_and(|rows| rows.len() >= length);
-        let (color, depth, first, rows) = if together {
+        let together =
+            F::SAMPLES == 1 && target.framebuffer.rows(first as u32, width).is_some_and(|rows| rows.len() >= length);
+        let mut samples: &mut [_] = &mut [];
+        let (color, depth, first, rows) = if F::SAMPLES > 1 {
+            let [color, further] = target.framebuffer.samples()?;
+            samples = further;
+            (color, &mut *target.depth, first, self.clip.y.clone())
+        } else if together {
             let color = target.framebuffer.rows(first as u32, width).unwrap_or_default();
             (color, &mut *target.depth, first, self.clip.y.clone())
         } else {
@@ -59,6 +65,7 @@ impl<'p> SmallRows<'p> {
             (target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, y..y + 1)
         };
         let Self { screen, clip, clockwise_fronts, bias } = *self;
-        Some(SmallTarget { color, depth, first, columns: clip.x.clone(), rows, screen, clockwise_fronts, bias, state })
+        let (columns, moves) = (clip.x.clone(), moves(F::SAMPLES));
+        Some(SmallTarget { color, samples, moves, depth, first, columns, rows, screen, clockwise_fronts, bias, state })
     }
 }

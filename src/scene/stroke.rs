@@ -160,8 +160,18 @@ impl DrawStroke for Dashed {
 }
 
 /// Sets up a line one pixel wide, and draws it.
-#[inline(never)]
+/// Draws the pixels of a line. All samples of a pixel are drawn alike.
 fn thin<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
+    painter: &mut Painter<'_, '_, F, S>,
+    ends: &[(ScreenVertex, S::Varyings); 2],
+    flat: u32,
+    pattern: u32,
+) {
+    painter.each_sample(|painter, _| thin_at_sample::<F, S, DASHED>(painter, ends, flat, pattern));
+}
+
+#[inline(never)]
+fn thin_at_sample<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     painter: &mut Painter<'_, '_, F, S>,
     ends: &[(ScreenVertex, S::Varyings); 2],
     flat: u32,
@@ -570,9 +580,19 @@ fn mix<P: PixelFormat>(under: P::Raw, over: P::Raw, part: i32) -> P::Raw {
     P::pack([channel(r, r1), channel(g, g1), channel(b, b1)])
 }
 
-/// Draws the pixels of a rectangle, all with the same depth and varyings.
-#[inline(never)]
+/// Draws the pixels of a rectangle, all with the same depth and varyings, and all samples of a pixel alike.
 pub(super) fn block<F: Framebuffer, S: Shader<F::Format>>(
+    painter: &mut Painter<'_, '_, F, S>,
+    rect: &PixelRect,
+    z: u16,
+    varyings: &S::Varyings,
+    flat: u32,
+) {
+    painter.each_sample(|painter, _| block_at_sample(painter, rect, z, varyings, flat));
+}
+
+#[inline(never)]
+fn block_at_sample<F: Framebuffer, S: Shader<F::Format>>(
     painter: &mut Painter<'_, '_, F, S>,
     rect: &PixelRect,
     z: u16,

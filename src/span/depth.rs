@@ -89,6 +89,9 @@ pub trait DepthTest: DepthStorage<<Self as DepthTest>::Depth> {
     /// Set if small triangles that go on in the next strip leave their state, see [`Carrying`].
     const CARRIES: bool = false;
 
+    /// Set if pixels have several samples, see [`Sampled`].
+    const SAMPLED: bool = false;
+
     /// Stored depth of a pixel: `u16`, or `()` where depth plays no part.
     type Depth: Copy;
 
@@ -162,6 +165,41 @@ impl<D: DepthTest> DepthTest for Carrying<D> {
 }
 
 impl<D: DepthTest> DepthStorage<D::Depth> for Carrying<D> {
+    #[inline(always)]
+    fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [D::Depth] {
+        D::slots(depths, nothing)
+    }
+
+    #[inline(always)]
+    fn as_dyn(self, stored: &mut [D::Depth]) -> Option<(DepthDyn, &mut [u16])> {
+        self.0.as_dyn(stored)
+    }
+}
+
+/// A depth test of small triangles in pixels of several samples. As this is said by a type, programs without such
+/// pixels link nothing of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sampled<D>(pub D);
+
+impl<D: DepthTest> DepthTest for Sampled<D> {
+    const ENABLED: bool = D::ENABLED;
+
+    const SAMPLED: bool = true;
+
+    type Depth = D::Depth;
+
+    #[inline(always)]
+    fn passes(self, z: u16, stored: D::Depth) -> bool {
+        self.0.passes(z, stored)
+    }
+
+    #[inline(always)]
+    fn write(self, z: u16, stored: &mut D::Depth) {
+        self.0.write(z, stored);
+    }
+}
+
+impl<D: DepthTest> DepthStorage<D::Depth> for Sampled<D> {
     #[inline(always)]
     fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [D::Depth] {
         D::slots(depths, nothing)

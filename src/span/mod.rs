@@ -25,7 +25,7 @@ mod uv_stepper;
 pub(crate) use carried::{CARRIED, LeftState, MOST_CARRIED, STATE_UNIT, face_of, goes_on};
 pub(crate) use channels::ChannelBrush;
 pub use color_setup::ColorSetup;
-pub use depth::{Carrying, Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff, DepthState, DepthTest};
+pub use depth::{Carrying, Compare, DepthDyn, DepthLess, DepthLessEqual, DepthOff, DepthState, DepthTest, Sampled};
 pub(crate) use depth_bias::BiasSteps;
 pub use depth_bias::DepthBias;
 pub(crate) use interpolate::{interpolate, set_up_shader};

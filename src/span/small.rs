@@ -22,7 +22,9 @@ use super::carried::{
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
 use crate::color::PixelFormat;
-use crate::raster::{HEIGHT, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, tall_edges};
+use crate::raster::{
+    HEIGHT, Moves, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, sampled, tall_edges,
+};
 use crate::vertex::PackedVertex;
 use core::ops::Range;
 
@@ -31,6 +33,10 @@ pub struct SmallTarget<'a, R> {
     /// Colours and depths, from column 0 of the first row on.
     pub(crate) color: &'a mut [R],
     pub(crate) depth: &'a mut [u16],
+    /// Colours of samples 1 and up, one sample after the other. Depths of all samples are together.
+    pub(crate) samples: &'a mut [R],
+    /// What moves each sample to the centre of its pixel.
+    pub(crate) moves: Moves,
     /// The first row.
     pub(crate) first: i32,
     /// Columns that all of a triangle has to be in, and rows that may be drawn.
@@ -109,6 +115,9 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
     #[inline(always)]
     pub(crate) fn draw<B: Brush<P, D>>(self, brush: &B) -> SmallResult {
         let [a, b, c] = self.v;
+        if D::SAMPLED {
+            return draw_samples(self.target, [a, b, c], brush, self.test);
+        }
         match self.state {
             None => {
                 let result = draw_small::<P, D, B, false>(self.target, a, b, c, brush, self.test);
@@ -132,6 +141,56 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
 fn is_tall([a, b, c]: [&[u32; 2]; 3]) -> bool {
     let height = |v: &[u32; 2]| PackedVertex(*v).y() - PackedVertex(*a).y();
     (HEIGHT + 1..=TALL).contains(&height(b).max(height(c)))
+}
+
+/// Draws a triangle with its highest corner first, if it is small, at each sample: an ordinary triangle that is moved.
+///
+/// Moves change nothing that decides whether a triangle is small, but for the columns of the viewport. These are
+/// compared with the columns of all samples first. So all samples are drawn, or none.
+#[inline(never)]
+fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
+    target: &mut SmallTarget<'_, P::Raw>,
+    v: [&[u32; 2]; 3],
+    brush: &B,
+    test: D,
+) -> SmallResult {
+    let SmallTarget { color, depth, samples, moves, first, columns, rows, screen, clockwise_fronts, bias, .. } = target;
+    let [a, b, c] = v.map(|words| PackedVertex(*words).x());
+    let all = sampled(a.min(b).min(c), a.max(b).max(c), moves.len());
+    if all.start < columns.start || all.end > columns.end {
+        return SmallResult::Large;
+    }
+    let length = color.len();
+    let mut result = SmallResult::Empty;
+    for (sample, (x, y)) in moves.iter().enumerate() {
+        let color = match sample.checked_sub(1) {
+            None => &mut **color,
+            Some(further) => subslice(samples, further.wrapping_mul(length), length).unwrap_or_default(),
+        };
+        let depth = subslice(depth, sample.wrapping_mul(length), length).unwrap_or_default();
+        // The move changes no depth, because it leaves out the lowest byte of both words.
+        let [a, b, c] = v.map(|[to_x, to_y]| [to_x.wrapping_add_signed(x << 8), to_y.wrapping_add_signed(y << 8)]);
+        let target = &mut SmallTarget {
+            color,
+            depth,
+            samples: &mut [],
+            moves,
+            first: *first,
+            columns: columns.clone(),
+            rows: rows.clone(),
+            screen: *screen,
+            clockwise_fronts: *clockwise_fronts,
+            bias: *bias,
+            state: None,
+        };
+        match draw_small::<P, D, B, false>(target, &a, &b, &c, brush, test) {
+            SmallResult::Large => return SmallResult::Large,
+            SmallResult::Drawn => result = SmallResult::Drawn,
+            SmallResult::Outside if result == SmallResult::Empty => result = SmallResult::Outside,
+            SmallResult::Outside | SmallResult::Empty => {}
+        }
+    }
+    result
 }
 
 /// Draws a triangle with its highest corner first, if it is small. Edges of a tall one are made anew every 16 rows.

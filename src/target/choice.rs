@@ -1,9 +1,12 @@
 //! Types that say which buffers a renderer has beside its colours: a program links only the loops that it needs.
 
-/// Choice of a depth buffer, said by a type: [`WithDepth`] or [`WithoutDepth`].
+/// Choice of a depth buffer, said by a type: [`WithDepth`], [`WithSamples`] or [`WithoutDepth`].
 pub trait DepthChoice: sealed::Sealed {
     /// True if there is a depth buffer.
     const DEPTH: bool;
+
+    /// Number of samples per pixel.
+    const SAMPLES: usize = 1;
 }
 
 /// Choice of records, said by a type: [`WithRecords`], [`WithCarriedState`] or [`WithoutRecords`].
@@ -18,6 +21,11 @@ pub trait RecordsChoice: sealed::Sealed {
 /// Marks a renderer or strip with a depth buffer.
 #[derive(Clone, Copy, Debug)]
 pub struct WithDepth;
+
+/// Marks a renderer or strip with `N` samples per pixel, each with a colour and a depth: 2, 4 or 8. See
+/// [`Renderer::with_samples`](crate::frame::Renderer::with_samples).
+#[derive(Clone, Copy, Debug)]
+pub struct WithSamples<const N: usize>;
 
 /// Marks a renderer or strip without a depth buffer: every depth test passes, and later drawings cover earlier ones.
 #[derive(Clone, Copy, Debug)]
@@ -38,6 +46,21 @@ pub struct WithoutRecords;
 
 impl DepthChoice for WithDepth {
     const DEPTH: bool = true;
+}
+
+impl DepthChoice for WithSamples<2> {
+    const DEPTH: bool = true;
+    const SAMPLES: usize = 2;
+}
+
+impl DepthChoice for WithSamples<4> {
+    const DEPTH: bool = true;
+    const SAMPLES: usize = 4;
+}
+
+impl DepthChoice for WithSamples<8> {
+    const DEPTH: bool = true;
+    const SAMPLES: usize = 8;
 }
 
 impl DepthChoice for WithoutDepth {
@@ -62,6 +85,7 @@ mod sealed {
     pub trait Sealed {}
 
     impl Sealed for super::WithDepth {}
+    impl<const N: usize> Sealed for super::WithSamples<N> {}
     impl Sealed for super::WithoutDepth {}
     impl Sealed for super::WithRecords {}
     impl Sealed for super::WithCarriedState {}

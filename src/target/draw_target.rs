@@ -34,7 +34,8 @@ pub struct Overlay<'o, F, D> {
     framebuffer: Option<&'o mut F>,
     /// Depths of the strip's rows, one row after the other; empty without a depth buffer, so that every test passes.
     depth: &'o mut [u16],
-    first_row: i32,
+    /// Rows of the strip.
+    rows: Range<i32>,
     screen: (u16, u16),
     /// Area that may be drawn: never outside of the strip or of the viewport.
     clip: PixelRect,
@@ -46,7 +47,7 @@ pub struct Overlay<'o, F, D> {
 pub(crate) struct OverlayTarget<'o, F> {
     pub(crate) framebuffer: &'o mut F,
     pub(crate) depth: &'o mut [u16],
-    pub(crate) first_row: i32,
+    pub(crate) rows: Range<i32>,
     /// Pixels that may be drawn: in the strip and in the viewport, and at least one. The columns of an empty rectangle
     /// could be in the wrong order, and would have no length.
     pub(crate) clip: PixelRect,
@@ -56,12 +57,12 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     /// Makes an overlay over a strip of a screen, or one that draws nothing.
     pub(crate) fn new(target: Option<OverlayTarget<'o, F>>, screen: (u16, u16), z: u16, test: D) -> Self {
         match target {
-            Some(OverlayTarget { framebuffer, depth, first_row, clip }) => {
-                Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test }
+            Some(OverlayTarget { framebuffer, depth, rows, clip }) => {
+                Self { framebuffer: Some(framebuffer), depth, rows, screen, clip, z, test }
             }
             None => {
                 let clip = PixelRect { x: 0..0, y: 0..0 };
-                Self { framebuffer: None, depth: Default::default(), first_row: 0, screen, clip, z, test }
+                Self { framebuffer: None, depth: Default::default(), rows: 0..0, screen, clip, z, test }
             }
         }
     }
@@ -89,7 +90,7 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
                 framebuffer: self.framebuffer.as_deref_mut(),
                 depth: self.depth,
                 clip,
-                first_row: self.first_row,
+                rows: self.rows.clone(),
                 screen: self.screen,
                 z: self.z,
                 test: self.test,
@@ -116,6 +117,36 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
         };
         let mut moved = Moved { overlay: self, origin: corner, color: PhantomData };
         let Ok(()) = image.draw_sub_image(&mut moved, &Rectangle::new(Point::new(x, y), size));
+    }
+
+    /// Fills the part of a rectangle that may be drawn: all samples of its pixels.
+    #[inline(never)]
+    fn fill(&mut self, rect: &PixelRect, color: Color<F>) {
+        let part = self.clip.intersection(rect);
+        let Self { framebuffer: Some(framebuffer), depth, rows, screen, z, test, .. } = self else { return };
+        if part.is_empty() {
+            return;
+        }
+        let value = F::Format::from_color(color);
+        let mut nothing = [(); usize::MAX];
+        for sample in 0..F::SAMPLES {
+            framebuffer.select_sample(sample);
+            let first = rows.start - sample as i32 * (rows.end - rows.start);
+            for y in part.y.clone() {
+                let row = colors(*framebuffer, y, &part.x);
+                let stored = depths::<D>(depth, &mut nothing, y - first, screen.0, &part.x);
+                if D::ENABLED && !stored.is_empty() {
+                    for (pixel, stored) in row.iter_mut().zip(stored) {
+                        if passes(*test, *z, stored) {
+                            *pixel = value;
+                        }
+                    }
+                } else {
+                    fill(row, value);
+                }
+            }
+        }
+        framebuffer.select_sample(0);
     }
 }
 
@@ -233,7 +264,14 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
 
     /// Draws pixels. One that follows another in a row costs two comparisons; the row is looked up once.
     fn draw_iter<I: IntoIterator<Item = Pixel<Self::Color>>>(&mut self, pixels: I) -> Result<(), Infallible> {
-        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test } = self else {
+        if F::SAMPLES > 1 {
+            for Pixel(point, color) in pixels {
+                let columns = point.x..point.x.saturating_add(1);
+                self.fill(&PixelRect { x: columns, y: point.y..point.y.saturating_add(1) }, color);
+            }
+            return Ok(());
+        }
+        let Self { framebuffer: Some(framebuffer), depth, rows, screen, clip, z, test } = self else {
             return Ok(());
         };
         let (left, top, height) = (clip.x.start, clip.y.start, (clip.y.end - clip.y.start).max(0) as u32);
@@ -247,7 +285,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
                 }
                 y = point.y;
                 row = colors(*framebuffer, y, &clip.x);
-                stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &clip.x);
+                stored = depths::<D>(depth, &mut nothing, y - rows.start, screen.0, &clip.x);
             }
             // For columns to the left of the row, the difference wraps to a number beyond its end.
             let column = point.x.wrapping_sub(left) as usize;
@@ -269,9 +307,6 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
     ) -> Result<(), Infallible> {
         let all = PixelRect::of_area(area);
         let part = self.clip.intersection(&all);
-        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
-            return Ok(());
-        };
         if part.is_empty() {
             return Ok(());
         }
@@ -290,11 +325,21 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
             if skip > 0 && new.nth(skip - 1).is_none() {
                 return Ok(());
             }
+            if F::SAMPLES > 1 {
+                for (x, color) in part.x.clone().zip(&mut new) {
+                    self.fill(&PixelRect { x: x..x + 1, y: y..y + 1 }, color);
+                }
+                skip = width.wrapping_sub(part.x.len());
+                continue;
+            }
+            let Self { framebuffer: Some(framebuffer), depth, rows, screen, z, test, .. } = self else {
+                return Ok(());
+            };
             let row = colors(*framebuffer, y, &part.x);
             // Number of colours to pass over before the next row: those of the area's width that this row does not
             // draw.
             skip = width.wrapping_sub(row.len());
-            let mut stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x).iter_mut();
+            let mut stored = depths::<D>(depth, &mut nothing, y - rows.start, screen.0, &part.x).iter_mut();
             for (pixel, color) in row.iter_mut().zip(&mut new) {
                 if !D::ENABLED || stored.next().is_none_or(|stored| passes(*test, *z, stored)) {
                     *pixel = F::Format::from_color(color);
@@ -304,30 +349,8 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
         Ok(())
     }
 
-    #[inline(never)]
     fn fill_solid(&mut self, area: &Rectangle, color: Self::Color) -> Result<(), Infallible> {
-        let part = self.clip.intersection(&PixelRect::of_area(area));
-        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
-            return Ok(());
-        };
-        if part.is_empty() {
-            return Ok(());
-        }
-        let value = F::Format::from_color(color);
-        let mut nothing = [(); usize::MAX];
-        for y in part.y {
-            let row = colors(*framebuffer, y, &part.x);
-            let stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x);
-            if D::ENABLED && !stored.is_empty() {
-                for (pixel, stored) in row.iter_mut().zip(stored) {
-                    if passes(*test, *z, stored) {
-                        *pixel = value;
-                    }
-                }
-            } else {
-                fill(row, value);
-            }
-        }
+        self.fill(&PixelRect::of_area(area), color);
         Ok(())
     }
 }

@@ -14,7 +14,9 @@ mod stats;
 mod strip_rows;
 mod triangles;
 
-pub use choice::{DepthChoice, RecordsChoice, WithCarriedState, WithDepth, WithRecords, WithoutDepth, WithoutRecords};
+pub use choice::{
+    DepthChoice, RecordsChoice, WithCarriedState, WithDepth, WithRecords, WithSamples, WithoutDepth, WithoutRecords,
+};
 pub use draw_target::Overlay;
 pub(crate) use draw_target::OverlayTarget;
 pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};

@@ -14,7 +14,7 @@
 //! | `lines` | exactly these pixels, in drawing order |
 //! | `points` | exactly this rectangle |
 //! | `persp` | u and v within 1/16 of a unit |
-//! | `msaa4` | not yet checked |
+//! | `msaa4` | exactly the pixels of each sample |
 
 use std::fmt;
 use std::path::Path;
@@ -27,7 +27,7 @@ pub mod records;
 
 use hits::{Hits, Verdict, mask_of};
 pub use records::BadRecord;
-use records::{Record, Table};
+use records::{Record, Table, pixel_count};
 
 /// Three screen positions: 1/256 px, x right, y down, either winding.
 pub type ScreenTriangle = [[i32; 2]; 3];
@@ -51,6 +51,10 @@ pub trait Rasterizer {
     /// Covers one triangle: calls `hit(x, y)` once for every pixel.
     fn triangle(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(u32, u32));
 
+    /// Covers one triangle at four samples per pixel, at the standard places: calls `hit(sample, x, y)` once for every
+    /// sample.
+    fn samples(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(usize, u32, u32));
+
     /// Draws triangles with depth codes in order (test `Less`, clear value 65535), and returns, per pixel in rows, the
     /// winner (0 = none, else 1-based) and the stored depth.
     fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>);
@@ -73,14 +77,13 @@ pub trait Rasterizer {
 pub enum Outcome {
     /// `right` of `total` records (scenes, in the depth file) came out right.
     Checked { right: usize, total: usize, first_wrong: Option<String> },
-    /// The file is known, but there is no check for it yet.
-    NotYet,
 }
 
 impl Outcome {
     /// True if every record was checked and right.
     pub fn is_right(&self) -> bool {
-        matches!(self, Outcome::Checked { right, total, .. } if right == total)
+        let Outcome::Checked { right, total, .. } = self;
+        right == total
     }
 }
 
@@ -137,7 +140,7 @@ pub fn check_file(path: &Path, rasterizer: &mut dyn Rasterizer) -> Result<Outcom
         "lines" => (check_lines, 64),
         "points" => (check_points, 64),
         "persp" => (check_perspective, 128),
-        "msaa4" => return Ok(Outcome::NotYet),
+        "msaa4" => (check_samples, 64),
         _ => {
             return Err(CheckError::UnknownFile { file: path.display().to_string() });
         }
@@ -173,6 +176,28 @@ fn check_spans(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(St
         let expected = mask_of(record, table, &spans, record.number(7)?)?;
         let hits = draw_one(table, rasterizer, record.triangle(1)?);
         Ok((format!("id {}", record.text(0)?), hits.verdict(|i| (expected[i].into(), expected[i].into()))))
+    };
+    table.records.iter().map(check).collect()
+}
+
+fn check_samples(table: &Table, rasterizer: &mut dyn Rasterizer) -> Result<Vec<(String, Verdict)>, BadRecord> {
+    let check = |record: &Record| {
+        record.expect_fields(13)?;
+        let mut hits = [(); 4].map(|()| Hits::new(table));
+        let v = record.triangle(1)?;
+        rasterizer.samples(table.width, table.height, v, &mut |sample, x, y| hits[sample].add(1, x, y));
+        let (mut verdict, mut count) = (Ok(()), 0);
+        for (sample, hits) in hits.iter().enumerate() {
+            let spans = record.spans(9 + sample, (table.width, table.height))?;
+            let expected = mask_of(record, table, &spans, pixel_count(&spans))?;
+            count += pixel_count(&spans);
+            let of_sample = hits.verdict(|i| (expected[i].into(), expected[i].into()));
+            verdict = verdict.and(of_sample.map_err(|wrong| format!("sample {sample}: {wrong}")));
+        }
+        if count != record.number::<usize>(7)? {
+            return Err(record.bad(format!("{count} samples in the spans, not as many as announced")));
+        }
+        Ok((format!("id {}", record.text(0)?), verdict))
     };
     table.records.iter().map(check).collect()
 }

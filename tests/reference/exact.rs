@@ -43,6 +43,9 @@ pub fn covers(tri: Triangle, px: i64, py: i64) -> bool {
     covers_at(tri, center(px, py))
 }
 
+/// Places of the four samples of a pixel, in 1/256 px from its top left corner.
+pub const STANDARD_SAMPLES: [Point; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
+
 /// True if `sample` is inside `tri`, or on an edge that owns its points.
 ///
 /// ```text

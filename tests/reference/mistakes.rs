@@ -44,12 +44,14 @@ pub enum Mistake {
     NoPerspective,
     /// Texture coordinates are too large by 1/8.
     CoordinatesOff,
+    /// All samples are at the pixel's centre.
+    CentredSamples,
     /// Draws nothing.
     Nothing,
 }
 
 impl Mistake {
-    pub const ALL: [Mistake; 19] = [
+    pub const ALL: [Mistake; 20] = [
         Mistake::ShiftedByOne,
         Mistake::AllEdgesOwn,
         Mistake::BottomRight,
@@ -68,6 +70,7 @@ impl Mistake {
         Mistake::LeavesViewport,
         Mistake::NoPerspective,
         Mistake::CoordinatesOff,
+        Mistake::CentredSamples,
         Mistake::Nothing,
     ];
 
@@ -135,6 +138,16 @@ impl Rasterizer for Mistake {
     fn triangle(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(u32, u32)) {
         for (x, y) in self.pixels(width, height, v) {
             hit(x, y);
+        }
+    }
+
+    fn samples(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(usize, u32, u32)) {
+        for (sample, place) in exact::STANDARD_SAMPLES.into_iter().enumerate() {
+            let place = if *self == Mistake::CentredSamples { [128; 2] } else { place };
+            let moved = v.map(|[x, y]| [x + 128 - place[0] as i32, y + 128 - place[1] as i32]);
+            for (x, y) in self.pixels(width, height, moved) {
+                hit(sample, x, y);
+            }
         }
     }
 

@@ -16,6 +16,17 @@ impl Rasterizer for Model {
         exact::for_each_pixel(exact::widen(v), width, height, hit);
     }
 
+    fn samples(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(usize, u32, u32)) {
+        for (sample, place) in exact::STANDARD_SAMPLES.into_iter().enumerate() {
+            for (x, y) in (0..height).flat_map(|y| (0..width).map(move |x| (x, y))) {
+                let at = [256 * i64::from(x) + place[0], 256 * i64::from(y) + place[1]];
+                if exact::covers_at(exact::widen(v), at) {
+                    hit(sample, x, y);
+                }
+            }
+        }
+    }
+
     fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>) {
         let count = width as usize * height as usize;
         let (mut winners, mut depths) = (vec![0; count], vec![u16::MAX; count]);

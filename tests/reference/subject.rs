@@ -7,10 +7,11 @@
 use super::conformance::{ClipTriangle, PerspectiveTriangle, Rasterizer, ScreenTriangle};
 use std::cell::RefCell;
 use zstrip::embedded_graphics_core::geometry::Size;
-use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
-use zstrip::frame::FramebufferRenderer;
+use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
+use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::math::{Pixels, Projective, Scalar};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Vertices};
+use zstrip::shader::Flat;
 use zstrip::span::{DepthState, DepthTest, Fragment, Shader, SpanOf};
 use zstrip::target::FrameSlice;
 use zstrip::vertex::{Face, Perspective, VertexRef, VertexShader};
@@ -198,6 +199,37 @@ impl Rasterizer for Subject {
     fn triangle(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(u32, u32)) {
         let vertices = v.map(|p| on_screen(p, 0, width, height));
         self.reach((width, height), &vertices, &mut |_, x, y| hit(x, y));
+    }
+
+    /// The first sample's pixels become the means of all four. So it is what is left of the means without the others.
+    fn samples(&mut self, width: u32, height: u32, v: ScreenTriangle, hit: &mut dyn FnMut(usize, u32, u32)) {
+        let vertices = v.map(|p| on_screen(p, 0, width, height));
+        let mesh = Mesh::new(MeshData::new(Positions::Homogeneous(&vertices))).expect("a mesh");
+        assert!(self.strip_rows >= height as usize, "samples are read back from a buffer of the whole screen");
+        let pixels = (width * height) as usize;
+        let (mut color, mut samples, mut depth) = (vec![0; pixels], vec![0; 3 * pixels], vec![0; 4 * pixels]);
+        let mut records = vec![0; self.records];
+        let white = Flat::unlit(Rgb888::WHITE);
+        let mut renderer = Renderer::<Gray8>::new(Size::new(width, height))
+            .and_then(|renderer| renderer.with_samples::<4>(&mut depth, &mut samples))
+            .expect("a renderer")
+            .with_records(&mut records);
+        let mut frame = renderer.begin(Rgb888::BLACK);
+        let strip = frame.next_strip(&mut color, |scene| scene.draw_with(ALL, &mesh, &y_down(), &white));
+        assert!(strip.expect("one scene").is_some());
+        for (k, mean) in color.iter().enumerate() {
+            let (x, y) = (k as u32 % width, k as u32 / width);
+            let mut rest = (u32::from(*mean) * 4 + 128) / 255;
+            for (sample, color) in (1..).zip(samples.iter().skip(k).step_by(pixels)) {
+                if *color != 0 {
+                    rest -= 1;
+                    hit(sample, x, y);
+                }
+            }
+            if rest > 0 {
+                hit(0, x, y);
+            }
+        }
     }
 
     fn depth_scene(&mut self, width: u32, height: u32, tris: &[(ScreenTriangle, [u16; 3])]) -> (Vec<u32>, Vec<u16>) {
