@@ -172,7 +172,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         drawer: &mut dyn RecordDrawer<F>,
     ) {
         let clip = &self.clip_rect(&self.target.rows);
-        let end = Triangles::end_of(self.target.rows.end);
+        let end = Triangles::end_of(self.target.rows.end, F::SAMPLES);
         let (target, screen) = (&mut self.target, self.screen);
         let rows = SmallRows::new(screen, clip, state, bias.map(|bias| (bias, state.bias)));
         let mut triangles = self.records.triangles();

@@ -333,9 +333,9 @@ impl<'r> Triangles<'r> {
     }
 
     /// Returns the largest y that vertices of a triangle can have if the triangle ends above `row`.
-    pub(crate) const fn end_of(row: i32) -> i32 {
-        // The first pixel whose centre is at or after a coordinate is (coordinate + 127) / 256.
-        row * 256 + 128
+    pub(crate) const fn end_of(row: i32, samples: usize) -> i32 {
+        // The largest coordinate at which the range of `sampled` ends there.
+        row * 256 + if samples == 1 { 128 } else { 16 }
     }
 
     /// Returns the position of a vertex that the clipper added.

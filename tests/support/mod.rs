@@ -12,7 +12,7 @@ use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::internals::{ClipVertex, Outcode, Transform, clip_triangle, project, weighted};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Mesh, Positions};
-use zstrip::target::{DepthChoice, RecordsChoice, WithDepth, WithRecords, WithoutRecords};
+use zstrip::target::{DepthChoice, RecordsChoice, WithDepth, WithRecords, WithSamples, WithoutRecords};
 use zstrip::target::{FrameSlice, Stats, Strip, StripPixels};
 use zstrip::vertex::{DepthRange, ScreenVertex, Viewport};
 
@@ -51,6 +51,30 @@ pub fn unrecorded_strips<P: PixelFormat>(
     let renderer = Renderer::new(Size::new(u32::from(width), u32::from(height))).expect("a renderer");
     let renderer = renderer.with_depth(&mut depth).expect("a renderer");
     collect(renderer, &mut color, background, draw)
+}
+
+/// The same with `N` samples per pixel. Also returns the colours of samples 1 and up, and all depths, as the last strip
+/// left them.
+#[allow(clippy::type_complexity)]
+pub fn sampled_strips<P: PixelFormat, const N: usize>(
+    (width, height): (u16, u16),
+    rows: usize,
+    records: usize,
+    background: P::Color,
+    draw: impl FnMut(&mut Scene<'_, Strip<'_, P, WithSamples<N>, WithRecords>>),
+) -> (Vec<P::Raw>, Vec<P::Raw>, Vec<u16>, Stats)
+where
+    WithSamples<N>: DepthChoice,
+{
+    let pixels = usize::from(width) * rows;
+    let mut color = vec![P::pack([0xA5; 3]); pixels];
+    let (mut samples, mut depth) = (vec![P::pack([0x5A; 3]); (N - 1) * pixels], vec![0x1234; N * pixels]);
+    let mut records = vec![0xDEAD_BEEF; records];
+    let renderer = Renderer::<P>::new(Size::new(u32::from(width), u32::from(height)))
+        .and_then(|renderer| renderer.with_samples::<N>(&mut depth, &mut samples))
+        .expect("a renderer");
+    let (picture, stats) = collect(renderer.with_records(&mut records), &mut color, background, draw);
+    (picture, samples, depth, stats)
 }
 
 fn collect<P: PixelFormat, D: DepthChoice, R: RecordsChoice>(
