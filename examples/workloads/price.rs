@@ -2,12 +2,13 @@
 //! whether a figure is met by a path that only the benchmark takes.
 
 use super::{
-    Buffers, FaceColors, IN_VIEW, OF_TORUS, SCREEN, TORUS, TORUS_SURFACE, WIDTH, Workload, frame_on, spot, tiny_mesh,
+    BACKGROUND, Buffers, FaceColors, HEIGHT, IN_VIEW, OF_TORUS, SCREEN, TORUS, TORUS_SURFACE, WIDTH, Workload,
+    frame_on, spot, tiny_mesh,
 };
-use zstrip::State;
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
+use zstrip::frame::Renderer;
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::Mesh;
 use zstrip::scene::Cull;
@@ -15,8 +16,9 @@ use zstrip::shader::{Blend, Flat, Gouraud, Opacity, Textured};
 use zstrip::span::{
     DepthBias, DepthState, DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup,
 };
-use zstrip::target::Stats;
+use zstrip::target::{DepthChoice, Stats, Strip, WithRecords, WithSamples};
 use zstrip::vertex::{PackedCorners, VertexShader, Wrapper};
+use zstrip::{Scene, State};
 
 /// The workloads with prices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -228,6 +230,51 @@ pub fn draw_by(
     }
 }
 
+/// Memory of a frame with several samples per pixel: colours, those of further samples, depths and records.
+pub type SampledBuffers<'b> = (&'b mut [u16], &'b mut [u16], &'b mut [u16], &'b mut [u32]);
+
+/// Draws a frame of a workload with `N` samples per pixel.
+pub fn with_samples<const N: usize>(
+    workload: Priced,
+    buffers: SampledBuffers<'_>,
+    sink: &mut dyn FnMut(&[u16]),
+) -> Stats
+where
+    WithSamples<N>: DepthChoice,
+{
+    match workload {
+        Priced::W4 => torus(Flat::new(TORUS_SURFACE)).sampled::<N>(buffers, sink),
+        Priced::W5 => torus(Gouraud::new(TORUS_SURFACE)).sampled::<N>(buffers, sink),
+        Priced::W9 => cow(&spot::TEXTURED, Textured::new(&spot::TEXTURE).lit(spot::under_light([255; 3])))
+            .sampled::<N>(buffers, sink),
+        Priced::W10 => {
+            cow(&spot::PLAIN, Flat::new(const { spot::under_light(spot::COLOR) })).sampled::<N>(buffers, sink)
+        }
+        _ => sampled_frame::<N>(workload, buffers, sink, |_| {}),
+    }
+}
+
+/// Buffers that do not hold a row draw nothing.
+fn sampled_frame<const N: usize>(
+    workload: Priced,
+    (color, samples, depth, records): SampledBuffers<'_>,
+    sink: &mut dyn FnMut(&[u16]),
+    mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, WithSamples<N>, WithRecords>>),
+) -> Stats
+where
+    WithSamples<N>: DepthChoice,
+{
+    let screen = Size::new(workload.width() as u32, HEIGHT as u32);
+    let renderer = Renderer::<Rgb565>::new(screen).and_then(|renderer| renderer.with_samples::<N>(depth, samples));
+    let Ok(renderer) = renderer else { return Stats::default() };
+    let mut renderer = renderer.with_records(records);
+    let mut frame = renderer.begin(BACKGROUND);
+    while let Ok(Some(strip)) = frame.next_strip(color, &mut draw) {
+        sink(strip.pixels());
+    }
+    frame.stats()
+}
+
 const fn torus<S>(shader: S) -> Subject<'static, S> {
     Subject { screen: SCREEN, mesh: &TORUS, matrix: &OF_TORUS, shader }
 }
@@ -244,6 +291,15 @@ impl<S> Subject<'_, S> {
 }
 
 impl<S: Shader<Rgb565>> Subject<'_, S> {
+    fn sampled<const N: usize>(&self, buffers: SampledBuffers<'_>, sink: &mut dyn FnMut(&[u16])) -> Stats
+    where
+        WithSamples<N>: DepthChoice,
+    {
+        let &Self { screen, mesh, matrix, ref shader } = self;
+        let workload = if screen.width == spot::SCREEN.width { Priced::EmptySpot } else { Priced::Empty };
+        sampled_frame::<N>(workload, buffers, sink, |scene| scene.draw(mesh, matrix, shader))
+    }
+
     fn draw(&self, by: By, under: Under, buffers: Buffers<'_>, sink: &mut dyn FnMut(&[u16])) -> Stats {
         match by {
             By::Usual => self.draw_by(&self.shader, under, buffers, sink),

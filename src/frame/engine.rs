@@ -79,7 +79,10 @@ impl<'b> Engine<'b> {
     /// Takes the number of pixels that the colours of one more sample have, which limits the height of strips, too.
     #[inline]
     pub(super) fn with_samples(mut self, pixels: usize, further: usize) -> Result<Self, RendererError> {
-        let rows = self.strip_rows(pixels / further.max(1));
+        if further == 0 {
+            return Ok(self);
+        }
+        let rows = self.strip_rows(pixels / further);
         if rows == 0 {
             return Err(RendererError::SamplesTooShort { pixels, needed: further * self.width() });
         }

@@ -22,7 +22,7 @@ pub trait RecordsChoice: sealed::Sealed {
 #[derive(Clone, Copy, Debug)]
 pub struct WithDepth;
 
-/// Marks a renderer or strip with `N` samples per pixel, each with a colour and a depth: 2, 4 or 8. See
+/// Marks a renderer or strip with `N` samples per pixel, each with a colour and a depth: 1, 2, 4 or 8. See
 /// [`Renderer::with_samples`](crate::frame::Renderer::with_samples).
 #[derive(Clone, Copy, Debug)]
 pub struct WithSamples<const N: usize>;
@@ -45,6 +45,10 @@ pub struct WithCarriedState;
 pub struct WithoutRecords;
 
 impl DepthChoice for WithDepth {
+    const DEPTH: bool = true;
+}
+
+impl DepthChoice for WithSamples<1> {
     const DEPTH: bool = true;
 }
 

@@ -1,0 +1,94 @@
+//! What several samples per pixel cost: firmware that counts. `ci/samples` runs it and prints what it takes.
+//!
+//! It prints, for each run, `workload samples/rows ticks drawn hash`: SysTick's ticks over a frame in strips of that
+//! height (instructions on RISC-V), triangles drawn, and a hash of the picture.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+#[path = "firmware/count.rs"]
+mod count;
+#[cfg(target_os = "none")]
+mod firmware;
+#[cfg(target_os = "none")]
+#[path = "workloads/hash.rs"]
+mod hash;
+#[cfg(target_os = "none")]
+#[path = "firmware/ticks.rs"]
+mod ticks;
+#[cfg(target_os = "none")]
+mod workloads;
+
+#[cfg(target_os = "none")]
+mod counting {
+    use super::count;
+    use super::hash::Hash;
+    use super::workloads::price::{Priced, with_samples};
+    use super::workloads::{HEIGHT, WIDTH};
+    use core::hint::black_box;
+    use semihosting::println;
+    use zstrip::target::{DepthChoice, WithSamples};
+
+    /// Most samples that are counted.
+    const MOST: usize = 4;
+    const WORKLOADS: [(&str, Priced); 6] = [
+        ("empty", Priced::Empty),
+        ("empty_spot", Priced::EmptySpot),
+        ("w4", Priced::W4),
+        ("w5", Priced::W5),
+        ("w9", Priced::W9),
+        ("w10", Priced::W10),
+    ];
+
+    struct Memory {
+        color: [u16; WIDTH * HEIGHT],
+        samples: [u16; (MOST - 1) * WIDTH * HEIGHT],
+        depth: [u16; MOST * WIDTH * HEIGHT],
+        records: [u32; 256 * 1024],
+    }
+
+    static mut MEMORY: Memory = Memory { color: [0; _], samples: [0; _], depth: [0; _], records: [0; _] };
+
+    fn report<const N: usize>(memory: &mut Memory, (name, workload): (&str, Priced), rows: usize)
+    where
+        WithSamples<N>: DepthChoice,
+    {
+        let mut draw = |sink: &mut dyn FnMut(&[u16])| {
+            let pixels = workload.width() * rows;
+            let Memory { color, samples, depth, records } = &mut *memory;
+            let (samples, depth) = (&mut samples[..(N - 1) * pixels], &mut depth[..N * pixels]);
+            with_samples::<N>(workload, (&mut color[..pixels], samples, depth, records), sink)
+        };
+        let ticks = count::ticks_of(|| {
+            draw(&mut |strip| {
+                black_box(strip);
+            })
+        });
+        let mut hash = Hash::NEW;
+        let drawn = draw(&mut |strip| hash.add(strip)).drawn;
+        println!("{name} {N}/{rows} {ticks} {drawn} {:08x}", hash.0);
+    }
+
+    pub fn run() {
+        let memory = &raw mut MEMORY;
+        // SAFETY: `run` is called once; this is the only reference.
+        let memory = unsafe { &mut *memory };
+        if !count::start() {
+            return;
+        }
+        for workload in WORKLOADS {
+            for rows in [HEIGHT, 4] {
+                report::<1>(memory, workload, rows);
+                report::<2>(memory, workload, rows);
+                report::<4>(memory, workload, rows);
+            }
+        }
+    }
+}
+
+#[cfg(target_os = "none")]
+use counting::run;
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("this example is firmware: ci/samples builds it");
+}
