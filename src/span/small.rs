@@ -19,8 +19,9 @@ use super::carried::{
     CARRIED, LeftState, STATE_UNIT, TriangleAtRow, column_and_slopes, count_row, edge_from_bend, edges_and_depth,
     goes_on, set_edges_and_depth, take_rows,
 };
-use super::depth::DepthTest;
+use super::depth::{DepthOff, DepthTest};
 use super::depth_bias::{BiasSteps, DepthBias};
+use super::sampled::{MOST_SAMPLES, SampledSpans, SampledTriangle, draw_sampled_rows};
 use crate::color::PixelFormat;
 use crate::raster::{
     HEIGHT, Moves, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, sampled, tall_edges,
@@ -37,6 +38,8 @@ pub struct SmallTarget<'a, R> {
     pub(crate) samples: &'a mut [R],
     /// What moves each sample to the centre of its pixel.
     pub(crate) moves: Moves,
+    /// Memory for the spans of samples; `None` if there is one sample.
+    pub(crate) spans: Option<&'a mut SampledSpans<R>>,
     /// The first row.
     pub(crate) first: i32,
     /// Columns that all of a triangle has to be in, and rows that may be drawn.
@@ -82,9 +85,11 @@ pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
     /// Set if tall triangles are small, too. They take their code once more, which pays where the way of large ones is
     /// long.
     const TALL: bool = false;
+    /// Set if all pixels are drawn, whatever is there. Then pixels of several samples are shaded once.
+    const IS_OPAQUE: bool = false;
 
     /// Draws the spans of a triangle.
-    type Rows: BrushRows<P, D>;
+    type Rows: BrushRows<P, D> + BrushRows<P, DepthOff>;
 
     /// Sets up a triangle, of which (`column`, `row`) is the first pixel: spans are counted from there. `swapped` says
     /// that the last two corners have changed places in `planes`. Returns `None` if the brush cannot draw it.
@@ -106,6 +111,16 @@ pub(crate) trait BrushRows<P: PixelFormat, D: DepthTest> {
     /// Goes on to the next row.
     fn next_row(&mut self);
 
+    /// Returns rows whose pixels are shaded at places this far to the right and below their centres, in 1/256 px: at
+    /// most 127 / 256 px. Only called for brushes that are opaque.
+    fn beside(&self, by: (i32, i32)) -> Option<Self>
+    where
+        Self: Sized,
+    {
+        let _ = by;
+        None
+    }
+
     /// Draws a span that begins `column` pixels to the right of the first pixel.
     fn span(&self, color: &mut [P::Raw], depth: &mut [D::Depth], z: u32, dz_dx: i32, column: i32, test: D);
 }
@@ -115,14 +130,17 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
     #[inline(always)]
     pub(crate) fn draw<B: Brush<P, D>>(self, brush: &B) -> SmallResult {
         let [a, b, c] = self.v;
+        if D::SAMPLED && B::IS_OPAQUE {
+            return draw_small::<P, D, B, false, true>(self.target, a, b, c, brush, self.test);
+        }
         if D::SAMPLED {
             return draw_samples(self.target, [a, b, c], brush, self.test);
         }
         match self.state {
             None => {
-                let result = draw_small::<P, D, B, false>(self.target, a, b, c, brush, self.test);
+                let result = draw_small::<P, D, B, false, false>(self.target, a, b, c, brush, self.test);
                 if B::TALL && result == SmallResult::Large && is_tall([a, b, c]) {
-                    return draw_small::<P, D, B, true>(self.target, a, b, c, brush, self.test);
+                    return draw_small::<P, D, B, true, false>(self.target, a, b, c, brush, self.test);
                 }
                 result
             }
@@ -175,6 +193,7 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
             depth,
             samples: &mut [],
             moves,
+            spans: None,
             first: *first,
             columns: columns.clone(),
             rows: rows.clone(),
@@ -183,7 +202,7 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
             bias: *bias,
             state: None,
         };
-        match draw_small::<P, D, B, false>(target, &a, &b, &c, brush, test) {
+        match draw_small::<P, D, B, false, false>(target, &a, &b, &c, brush, test) {
             SmallResult::Large => return SmallResult::Large,
             SmallResult::Drawn => result = SmallResult::Drawn,
             SmallResult::Outside if result == SmallResult::Empty => result = SmallResult::Outside,
@@ -193,13 +212,14 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     result
 }
 
-/// Draws a triangle with its highest corner first, if it is small. Edges of a tall one are made anew every 16 rows.
+/// Draws a triangle with its highest corner first, if it is small. Edges of a tall one are made anew every 16 rows. With
+/// `ONCE`, pixels have several samples, and are shaded once.
 ///
 /// # Format
 /// Differences of depths are below 2¹⁶, and sides at most 60 · 2⁸: determinants are below 2 · 65,535 · 60 · 2⁸ < 2³¹.
 /// The planes' gradients are below 2²⁸.
 #[inline(never)]
-fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>(
+fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool, const ONCE: bool>(
     target: &mut SmallTarget<'_, P::Raw>,
     a: &[u32; 2],
     b: &[u32; 2],
@@ -216,14 +236,15 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>
     }
     let (mut bx, mut cx) = (b.x() - ax, c.x() - ax);
     let (least, most) = (bx.min(cx).min(0), bx.max(cx).max(0));
-    let (start, past) = (first_centre(ax + least), first_centre(ax + most));
+    let between = |least, most| sampled(least, most, if ONCE { MOST_SAMPLES } else { 1 });
+    let Range { start, end: past } = between(ax + least, ax + most);
     if most - least > WIDTH || start < target.columns.start || past > target.columns.end {
         return SmallResult::Large;
     }
     if IS_TALL && most - least + by.max(cy) > SUM {
         return SmallResult::Large;
     }
-    let (top, end) = (first_centre(ay), first_centre(ay + by.max(cy)));
+    let Range { start: top, end } = between(ay, ay + by.max(cy));
     let area = bx * cy - cx * by;
     if start >= past || top >= end || area == 0 {
         return SmallResult::Empty;
@@ -232,7 +253,8 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>
     if row >= end.min(target.rows.end) {
         return SmallResult::Outside;
     }
-    let column = (ax + least) >> 8;
+    // Where a pixel has samples to the left of its centre, edges there begin further left.
+    let column = (ax + least - if ONCE { 112 } else { 0 }) >> 8;
     let (z, mut bz, mut cz) = (a.z(), b.z(), c.z());
     // From here on, b is on the left and c on the right.
     let swapped = area > 0;
@@ -254,22 +276,37 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>
         let Some((dx, dy)) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 7) else {
             // Nearly all of these are seen edge on, and have no pixel.
             let rows = row..end.min(target.rows.end);
-            let covers =
-                IS_TALL || covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len());
+            let covers = IS_TALL
+                || ONCE
+                || covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len());
             return if covers { SmallResult::Large } else { SmallResult::Drawn };
         };
         (dz_dx, dz_dy) = (dx, dy);
         // As `Gradients` has it: from the vertex to the centre of its pixel, and from there on.
         let offset = ((dx >> 6) * to.0 + (dy >> 6) * to.1) >> 2;
-        depth = depth
-            .wrapping_add(offset as u32)
-            .wrapping_add_signed(dx.wrapping_mul(right))
-            .wrapping_add_signed(dy.wrapping_mul(down));
+        // Samples go from the vertex to places of their own.
+        if !ONCE {
+            depth = depth
+                .wrapping_add(offset as u32)
+                .wrapping_add_signed(dx.wrapping_mul(right))
+                .wrapping_add_signed(dy.wrapping_mul(down));
+        }
     }
     if let Some(bias) = &target.bias {
         depth = depth.wrapping_add(biased(bias, [z, bz, cz], dz_dx, dz_dy));
     }
     let Some(mut rows) = brush.set_up(&planes, swapped, (column, row), dz_dx) else { return SmallResult::Large };
+    if ONCE {
+        let triangle = SampledTriangle {
+            sides: [bx, by, cx, cy],
+            a: (ax, ay),
+            place: (column, row),
+            depth,
+            dz: (dz_dx, dz_dy),
+            end,
+        };
+        return draw_sampled_rows(target, &triangle, rows, test);
+    }
     let sides = core::hint::black_box([bx, by, cx, cy]);
     let start = ax - (column << 8);
     let p = 256 * row + 128 - ay;
@@ -279,7 +316,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>
     if D::CARRIES
         && !IS_TALL
         && end > target.rows.end
-        && let Some(length) = B::Rows::WORDS
+        && let Some(length) = <B::Rows as BrushRows<P, D>>::WORDS
     {
         let below = target.rows.end - row;
         let triangle = TriangleAtRow { sides, x: start, p, column, edges: [left, right], depth, dz: (dz_dx, dz_dy) };
@@ -287,7 +324,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>
             && let Some((words, state)) = left.words.split_first_chunk_mut()
         {
             triangle.store(below, words);
-            rows.save(below as u32, state);
+            BrushRows::<P, D>::save(&rows, below as u32, state);
             left.length = (CARRIED + length).next_multiple_of(STATE_UNIT);
         }
     }
@@ -339,7 +376,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool>
         right.step();
         at = at.wrapping_add(width);
         depth = depth.wrapping_add_signed(dz_dy);
-        rows.next_row();
+        BrushRows::<P, D>::next_row(&mut rows);
         count -= 1;
     }
 }
@@ -376,13 +413,13 @@ fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         right.step();
         at = at.wrapping_add(width);
         depth = depth.wrapping_add_signed(dz_dy);
-        rows.next_row();
+        BrushRows::<P, D>::next_row(&mut rows);
         count_row(words);
         count -= 1;
     }
     if goes_on(words) {
         set_edges_and_depth(words, left, right, depth);
-        rows.save(0, state);
+        BrushRows::<P, D>::save(&rows, 0, state);
     }
 }
 

@@ -75,6 +75,7 @@ pub(crate) struct ValueBrush<R>(pub(crate) R);
 
 impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ValueBrush<P::Raw> {
     const PLANES: bool = false;
+    const IS_OPAQUE: bool = true;
 
     type Rows = Self;
 
@@ -91,6 +92,11 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ValueBrush<P::Raw> {
 
 impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ValueBrush<P::Raw> {
     const WORDS: Option<usize> = Some(0);
+
+    #[inline(always)]
+    fn beside(&self, _: (i32, i32)) -> Option<Self> {
+        Some(Self(self.0))
+    }
 
     #[inline(always)]
     fn save(&self, _: u32, _: &mut [u32]) {}

@@ -231,6 +231,7 @@ const fn bits_of(n: i32) -> u32 {
 impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<P, D> for TexelBrush<'s, S, P, N> {
     const PLANES: bool = true;
     const TALL: bool = S::LIT;
+    const IS_OPAQUE: bool = S::Texture::IS_OPAQUE;
 
     type Rows = TexelRows<'s, S, P>;
 
@@ -311,6 +312,24 @@ impl<P: PixelFormat, D: DepthTest, S: TexelSource<P>> BrushRows<P, D> for TexelR
                 *words = [at(2), self.dx[2], self.dy[2], at(3), self.dx[3], self.dy[3]];
             }
         }
+    }
+
+    /// # Format
+    /// Changes are below 2²⁸, so 2⁻⁸ of them times 127 fit. Light has changes of at most 2¹⁶ in 9.7. Sums are cut.
+    #[inline(always)]
+    fn beside(&self, (right, down): (i32, i32)) -> Option<Self> {
+        let of_long = |k: usize| (self.dx[k] as i32 >> 8) * right + (self.dy[k] as i32 >> 8) * down;
+        let of_short = |dx: i32, dy: i32| ((dx * right + dy * down) >> 8) as u32;
+        let low = |word: u32| i32::from(word as i16);
+        let high = |word: u32| (word as i32).wrapping_sub(low(word)) >> 16;
+        let mut at = [self.at[0].wrapping_add_signed(of_long(0)), self.at[1].wrapping_add_signed(of_long(1)), 0, 0];
+        if S::LIT {
+            let ([_, _, dx, blue_dx], [_, _, dy, blue_dy]) = (self.dx, self.dy);
+            let red_green = (of_short(high(dx), high(dy)) << 16).wrapping_add(of_short(low(dx), low(dy)));
+            at[2] = self.at[2].wrapping_add(red_green);
+            at[3] = self.at[3].wrapping_add(of_short(high(blue_dx), high(blue_dy)) << 16);
+        }
+        Some(Self { at, ..*self })
     }
 
     #[inline(always)]
