@@ -8,8 +8,8 @@ use super::small_rows::SmallRows;
 use super::state::State;
 use crate::raster::{Gradients, Outline, PixelRect, PlaneEquation, Spans, moves};
 use crate::span::{
-    BiasSteps, DepthBias, DepthState, DepthTest, Primitive, SampledSpans, Shader, SmallResult, SmallTriangle, Span,
-    SpanOf, biased, interpolate, set_up_shader, subslice,
+    BiasSteps, DepthBias, DepthState, DepthTest, Primitive, Shader, SmallResult, SmallTriangle, Span, SpanOf, biased,
+    interpolate, set_up_shader, subslice,
 };
 use crate::target::{Framebuffer, turns as turns_of};
 use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, ScreenVertex, Varyings, VertexShader, pack, signed_area};
@@ -129,11 +129,9 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let (shader, bias) = (self.shader, self.bias_steps());
         let rows = SmallRows::new(self.screen, self.clip, self.state, bias);
         let Range { start: mut y, end } = rows.of::<F>(v);
-        let mut spans = SampledSpans::new();
         while y < end {
             // Not moved out: that would link `memcpy`.
-            let mut place =
-                rows.place(self.target, Some(y), None, if F::SAMPLES > 1 { Some(&mut spans) } else { None });
+            let mut place = rows.place(self.target, Some(y), None);
             let Some(target) = &mut place else { return SmallResult::Large };
             y = target.rows.end;
             let triangle = SmallTriangle { target, v: [a, b, c], state: None, test };

@@ -7,9 +7,7 @@ use super::scene::{Scene, Target};
 use super::small_rows::{Raw, SmallRows};
 use super::state::State;
 use crate::raster::PixelRect;
-use crate::span::{
-    BiasSteps, DepthTest, LeftState, SampledSpans, Shader, SmallResult, SmallTarget, SmallTriangle, face_of, goes_on,
-};
+use crate::span::{BiasSteps, DepthTest, LeftState, Shader, SmallResult, SmallTarget, SmallTriangle, face_of, goes_on};
 use crate::target::{DrawTriangles, Framebuffer, TriangleRecord, Triangles};
 use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, PackedVertex, ScreenVertex, Varyings, VertexShader};
 
@@ -188,11 +186,9 @@ impl<F: Framebuffer> Scene<'_, F> {
         // States are carried on if the rows of the next strip follow those that are drawn here.
         let carries = F::CARRIES && !waiting && clip.y.end == target.rows.end;
         let mut state = LeftState::NONE;
-        let mut spans = SampledSpans::new();
         loop {
             let state = if carries { Some(&mut state) } else { None };
-            let spans = if F::SAMPLES > 1 { Some(&mut spans) } else { None };
-            let mut place = if fits { rows.place(target, None, state, spans) } else { None };
+            let mut place = if fits { rows.place(target, None, state) } else { None };
             let tried = place.is_some();
             let draw = &mut SmallDrawer { place: &mut place, drawer };
             let found = if waiting {

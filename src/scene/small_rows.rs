@@ -4,7 +4,7 @@ use super::scene::Target;
 use super::state::{State, Winding};
 use crate::color::PixelFormat;
 use crate::raster::{PixelRect, moves, sampled};
-use crate::span::{BiasSteps, DepthBias, LeftState, SampledSpans, SmallTarget};
+use crate::span::{BiasSteps, DepthBias, LeftState, SmallTarget};
 use crate::target::Framebuffer;
 use crate::vertex::ScreenVertex;
 use core::ops::Range;
@@ -46,7 +46,6 @@ impl<'p> SmallRows<'p> {
         target: &'t mut Target<'_, F>,
         row: Option<i32>,
         state: Option<&'t mut LeftState>,
-        spans: Option<&'t mut SampledSpans<Raw<F>>>,
     ) -> Option<SmallTarget<'t, Raw<F>>> {
         let (width, first) = (usize::from(self.screen.0), target.rows.start);
         let length = width.wrapping_mul((target.rows.end - first) as usize);
@@ -67,19 +66,6 @@ impl<'p> SmallRows<'p> {
         };
         let Self { screen, clip, clockwise_fronts, bias } = *self;
         let (columns, moves) = (clip.x.clone(), moves(F::SAMPLES));
-        Some(SmallTarget {
-            color,
-            samples,
-            moves,
-            spans,
-            depth,
-            first,
-            columns,
-            rows,
-            screen,
-            clockwise_fronts,
-            bias,
-            state,
-        })
+        Some(SmallTarget { color, samples, moves, depth, first, columns, rows, screen, clockwise_fronts, bias, state })
     }
 }

@@ -61,7 +61,6 @@ fn channel([a, b, c]: [i32; 3], planes: &ShortPlanes, down: u32, half: i32) -> [
 
 impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ChannelBrush<'_, P> {
     const PLANES: bool = true;
-    const IS_OPAQUE: bool = true;
 
     type Rows = ChannelRows;
 
@@ -109,14 +108,14 @@ impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ChannelRows {
     /// # Format
     /// Changes of 8.8 are below 2¹⁶, and so is half of the sum of two. It is cut, so channels are off by one unit more.
     #[inline(always)]
-    fn beside(&self, (right, down): (i32, i32)) -> Option<Self> {
+    fn beside(&self, (right, down): (i32, i32)) -> Self {
         let beside = |dx: i32, dy: i32| ((dx * right + dy * down) >> 8) as u32;
         let low = |word: u32| i32::from(word as i16);
         let high = |word: u32| (word as i32).wrapping_sub(low(word)) >> 16;
         let ([dx, blue_dx], [dy, blue_dy]) = (self.dx, self.dy);
         let red_green = (beside(high(dx), high(dy)) << 16).wrapping_add(beside(low(dx), low(dy)));
         let blue = beside(high(blue_dx), high(blue_dy)) << 16;
-        Some(Self { at: [self.at[0].wrapping_add(red_green), self.at[1].wrapping_add(blue)], ..*self })
+        Self { at: [self.at[0].wrapping_add(red_green), self.at[1].wrapping_add(blue)], ..*self }
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use super::depth::DepthTest;
 use super::planar::PlanarBrush;
 use super::shader::{Shader, SpanOf};
 use super::small::{Brush, BrushRows, SmallResult, SmallTriangle};
-use super::span::{Primitive, Span, TriangleSetup};
+use super::span::{Primitive, Span, TriangleSetup, shift};
 use crate::color::PixelFormat;
 use crate::raster::{Gradients, ShortPlanes, homogenize, straighten, widen};
 use crate::vertex::{PackedVertex, ScreenVertex, Side, Varyings};
@@ -52,6 +52,8 @@ struct ShaderRows<'s, P: PixelFormat, S: Shader<P> + ?Sized> {
 
 impl<'s, P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> Brush<P, D> for ShaderBrush<'s, P, S> {
     const PLANES: bool = false;
+    // What a shader has set up is for the centres.
+    const SHIFTS: bool = size_of::<S::Setup>() == 0;
 
     type Rows = ShaderRows<'s, P, S>;
 
@@ -102,6 +104,13 @@ impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for Sh
             *first = [u32::from(*side == Side::Back), *dz_dx as u32];
             save_varyings([at_origin, d_dx, d_dy], words);
         }
+    }
+
+    #[inline(always)]
+    fn beside(&self, (right, down): (i32, i32)) -> Self {
+        let mut primitive = self.primitive;
+        shift(&mut primitive.at_origin, (&primitive.d_dx, right), (&primitive.d_dy, down));
+        Self { primitive, ..*self }
     }
 
     #[inline(always)]

@@ -34,7 +34,6 @@ pub(crate) use lit_textured::{is_light_in_range, lit_texture_span};
 pub(crate) use luma::luma_span;
 pub(crate) use packed::packed_span;
 pub use perspective::Corrected;
-pub(crate) use sampled::SampledSpans;
 pub(crate) use shader::draw_fragments;
 pub use shader::{Shader, SpanOf};
 pub use small::{SmallResult, SmallTarget, SmallTriangle};

@@ -17,7 +17,7 @@ use super::carried::{load_varyings, save_varyings, words_of};
 use super::depth::DepthTest;
 use super::shader::Shader;
 use super::small::{Brush, BrushRows};
-use super::span::Fragment;
+use super::span::{Fragment, shift};
 use crate::color::PixelFormat;
 use crate::raster::{ShortPlanes, gradients, least_and_most};
 use crate::vertex::{MAX_IN_REGISTERS, Side, Varyings};
@@ -159,6 +159,13 @@ impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for Pl
             *side = (self.side == Side::Back).into();
             save_varyings([base, &below, dx, dy, finer], words);
         }
+    }
+
+    #[inline(always)]
+    fn beside(&self, (right, down): (i32, i32)) -> Self {
+        let Planes { base, mut at, dx, dy, finer } = self.planes;
+        shift(&mut at, (&dx, right), (&dy, down));
+        Self { planes: Planes { base, at, dx, dy, finer }, ..*self }
     }
 
     #[inline(always)]

@@ -1,52 +1,26 @@
-//! Small triangles in pixels of several samples: each pixel is shaded once, and its colour is copied to the samples that
-//! are covered and pass the depth test.
+//! Small triangles in pixels of several samples: set up once, and drawn into the pixels of each sample.
 //!
 //! The plain loop:
 //!
 //! ```text
-//! for each sample, and for the centre:
-//!     for each row: the columns between the edges, moved so that the sample is at the centre
-//! for each row:
-//!     shade the pixels whose centre is covered
-//!     shade other pixels at their first covered sample
-//!     for each sample:
-//!         for each pixel: if z of the sample passes, store it, and copy the colour
+//! for each row: the columns in which the centre is covered
+//! for each sample:
+//!     for each row, of the triangle moved so that the sample is at the centre:
+//!         for each pixel:
+//!             if z of the sample passes: store it, and the colour at the centre or, if that is not covered, at the sample
 //! ```
-//! So neither colours nor texels come from outside of the triangle.
+//! So neither colours nor texels come from outside of the triangle, and pixels inside of it have equal samples, of which
+//! [`resolve`](crate::color::resolve) makes pixels in no time. Samples are not shaded once and copied: a copy under a
+//! depth test takes as long as flat or Gouraud shading does, and blending needs the colours of each sample.
 
-use super::depth::{DepthOff, DepthTest};
+use super::depth::DepthTest;
 use super::small::{BrushRows, SmallResult, SmallTarget, subslice};
 use crate::color::PixelFormat;
 use crate::raster::{ShortEdge, first_centre};
-use bytemuck::Zeroable;
 use core::ops::Range;
 
-/// Most samples of a pixel.
-pub(crate) const MOST_SAMPLES: usize = 8;
-/// Most rows in which a small triangle has samples: of 25 px, with a row more at either end.
+/// Most rows in which a triangle has samples: of 25 px, and one more at either end.
 const ROWS: usize = 27;
-/// Most columns: of 60 px, with a column more at either end, and one that the leftmost corner is in.
-const COLUMNS: usize = 63;
-
-/// The first column of a span, and the one after the last. There are none if the second is not larger.
-type Columns = [u8; 2];
-
-/// Memory for the spans of a triangle.
-pub struct SampledSpans<R> {
-    /// Columns of each sample, by rows. Those of the centre follow those of the last sample.
-    columns: [[Columns; ROWS]; MOST_SAMPLES + 1],
-    /// Depths of the samples at the first column of the row.
-    depths: [u32; MOST_SAMPLES],
-    /// Colours of a row.
-    colors: [R; COLUMNS],
-}
-
-impl<R: Zeroable + Copy> SampledSpans<R> {
-    /// Memory with nothing in it.
-    pub(crate) fn new() -> Self {
-        Self { columns: [[[0; 2]; ROWS]; _], depths: [0; _], colors: [R::zeroed(); _] }
-    }
-}
 
 /// A small triangle that is set up.
 pub(super) struct SampledTriangle {
@@ -54,7 +28,7 @@ pub(super) struct SampledTriangle {
     pub(super) sides: [i32; 4],
     /// The highest corner, 24.8.
     pub(super) a: (i32, i32),
-    /// The first column and row that any sample is in, and the row after the last one.
+    /// The first column and row that any sample may be in, and the row after the last one.
     pub(super) place: (i32, i32),
     pub(super) end: i32,
     /// Depth at the highest corner, and its changes to the right and down.
@@ -63,38 +37,48 @@ pub(super) struct SampledTriangle {
 }
 
 impl SampledTriangle {
-    /// Finds the columns of a sample in each row from the first one on, `columns.len()` rows in all. `to_centre` moves
-    /// the sample to the centre of its pixel.
+    /// Calls a function for each row in which a sample is covered, with the row's number from the first row on, and the
+    /// columns from the first column on. `to_centre` moves the sample to the centre of its pixel.
     ///
     /// # Format
     /// A move is below 128: relative to the first column, x is in 0..62 · 2⁸.
-    #[inline(never)]
-    fn columns(&self, to_centre: (i32, i32), columns: &mut [Columns]) {
+    #[inline(always)]
+    fn each_row(&self, to_centre: (i32, i32), mut span: impl FnMut(usize, Range<u32>)) {
         let [bx, by, cx, cy] = self.sides;
-        let (column, row) = self.place;
-        let (x, y) = (self.a.0 + to_centre.0 - (column << 8), self.a.1 + to_centre.1 - (row << 8));
-        // Rows and heights from here on are relative to the first row.
-        let top = first_centre(y).max(0);
-        let p = 256 * top + 128 - y;
-        let (left_end, right_end) = (first_centre(y + by), first_centre(y + cy));
-        let (bend, end) = (left_end.min(right_end), left_end.max(right_end));
+        let (x, y) = (self.a.0 + to_centre.0 - (self.place.0 << 8), self.a.1 + to_centre.1);
+        let (first, end) = (self.place.1, self.end);
+        let row = first_centre(y).max(first);
+        let p = 256 * row + 128 - y;
+        let (left_end, right_end) = (first_centre(y + by).min(end), first_centre(y + cy).min(end));
+        // Rows before the bend, and those from there on.
+        let (bend, all) = (left_end.min(right_end) - row, left_end.max(right_end) - row);
+        if all <= 0 {
+            return;
+        }
+        let (mut count, mut rest) = (bend, all - bend);
         let (mut left, mut right) = (ShortEdge::new(x, bx, by, p), ShortEdge::new(x, cx, cy, p));
-        for (number, columns) in (0..).zip(columns) {
-            if number < top || number >= end {
-                *columns = [0; 2];
-                continue;
-            }
-            if number == bend.max(top) {
-                let p = 256 * number + 128 - y;
+        let mut number = (row - first) as usize;
+        loop {
+            if count <= 0 {
+                if rest <= 0 {
+                    return;
+                }
+                (count, rest) = (count + rest, 0);
+                let p = p + 256 * bend.max(0);
                 if right_end < left_end {
                     right = ShortEdge::outlined(x + cx, bx - cx, by - cy, p - cy);
                 } else {
                     left = ShortEdge::outlined(x + bx, cx - bx, cy - by, p - by);
                 }
             }
-            *columns = [left.column() as u8, right.column() as u8];
+            let columns = left.column()..right.column();
+            if columns.start < columns.end {
+                span(number, columns);
+            }
             left.step();
             right.step();
+            number += 1;
+            count -= 1;
         }
     }
 
@@ -103,11 +87,12 @@ impl SampledTriangle {
     /// # Format
     /// As that of the moved triangle, bit for bit: from the vertex to the centre of its pixel, and from there on.
     #[inline(always)]
-    fn depth_at(&self, (x, y): (i32, i32), z: u32) -> u32 {
+    fn depth_at(&self, (x, y): (i32, i32)) -> u32 {
         let ((dx, dy), (ax, ay)) = (self.dz, (self.a.0 + x, self.a.1 + y));
         let to = (128 - (ax & 0xFF), 128 - (ay & 0xFF));
         let offset = ((dx >> 6) * to.0 + (dy >> 6) * to.1) >> 2;
-        z.wrapping_add(offset as u32)
+        self.depth
+            .wrapping_add(offset as u32)
             .wrapping_add_signed(dx.wrapping_mul(self.place.0 - (ax >> 8)))
             .wrapping_add_signed(dy.wrapping_mul(self.place.1 - (ay >> 8)))
     }
@@ -115,112 +100,78 @@ impl SampledTriangle {
 
 /// Draws the rows of a triangle.
 #[inline(always)]
-pub(super) fn draw_sampled_rows<P: PixelFormat, D: DepthTest, R: BrushRows<P, D> + BrushRows<P, DepthOff>>(
+pub(super) fn draw_sampled_rows<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
     target: &mut SmallTarget<'_, P::Raw>,
     triangle: &SampledTriangle,
-    mut rows: R,
+    rows: &R,
     test: D,
 ) -> SmallResult {
-    let SmallTarget { color, depth, samples, moves, spans: Some(spans), first, screen, rows: limits, .. } = target
-    else {
-        return SmallResult::Large;
-    };
-    let SampledSpans { columns, depths, colors } = &mut **spans;
-    let ((column, row), (dz_dx, dz_dy)) = (triangle.place, triangle.dz);
-    let count = (triangle.end.min(limits.end) - row) as usize;
-    let places = moves.iter().copied().chain([(0, 0)]);
-    for (to_centre, columns) in places.zip(&mut *columns) {
-        triangle.columns(to_centre, columns.get_mut(..count).unwrap_or_default());
-    }
-    for (to_centre, z) in moves.iter().zip(&mut *depths) {
-        *z = triangle.depth_at(*to_centre, triangle.depth);
-    }
-    let width = usize::from(screen.0);
-    let mut at = width.wrapping_mul((row - *first) as usize).wrapping_add(column as usize);
-    let (length, mut nothing) = (color.len(), [(); usize::MAX]);
-    for number in 0..count {
-        shade_row::<P, R>(&rows, columns, number, moves, colors);
-        for (sample, (z, columns)) in depths.iter_mut().zip(&*columns).take(moves.len()).enumerate() {
-            let [from, past] = columns.get(number).copied().unwrap_or_default().map(usize::from);
-            if from < past {
-                let plane = match sample.checked_sub(1) {
-                    None => &mut **color,
-                    Some(further) => subslice(samples, further.wrapping_mul(length), length).unwrap_or_default(),
-                };
-                let (start, length_of) = (at.wrapping_add(from), past - from);
-                let depths = D::slots(depth, &mut nothing);
-                let depths = subslice(depths, sample.wrapping_mul(length).wrapping_add(start), length_of);
-                let (Some(color), Some(depths), Some(shaded)) =
-                    (subslice(plane, start, length_of), depths, subslice(colors, from, length_of))
-                else {
-                    return SmallResult::Drawn;
-                };
-                copy_tested(color, depths, shaded, z.wrapping_add_signed(dz_dx.wrapping_mul(from as i32)), dz_dx, test);
+    let mut centres = [[0; 2]; ROWS];
+    if !R::IS_FLAT {
+        triangle.each_row((0, 0), |number, columns| {
+            if let Some(centres) = centres.get_mut(number) {
+                *centres = [columns.start, columns.end];
             }
-            *z = z.wrapping_add_signed(dz_dy);
-        }
-        at = at.wrapping_add(width);
-        BrushRows::<P, D>::next_row(&mut rows);
+        });
+    }
+    for sample in 0..target.moves.len() {
+        draw_sample(target, triangle, rows, &centres, sample, test);
     }
     SmallResult::Drawn
 }
 
-/// Shades the pixels of a row that have a covered sample.
-#[inline(always)]
-fn shade_row<P: PixelFormat, R: BrushRows<P, DepthOff>>(
-    rows: &R,
-    columns: &[[Columns; ROWS]; MOST_SAMPLES + 1],
-    number: usize,
-    moves: &[(i32, i32)],
-    colors: &mut [P::Raw; COLUMNS],
-) {
-    let of = |sample: usize| -> Range<u8> {
-        let [from, past] = columns.get(sample).and_then(|rows| rows.get(number)).copied().unwrap_or_default();
-        from..past
-    };
-    let mut nothing = [(); COLUMNS];
-    let centre = of(moves.len());
-    let mut shade = |rows: &R, columns: Range<u8>| {
-        let (from, length) = (usize::from(columns.start), columns.len());
-        if let (Some(colors), Some(nothing)) = (subslice(colors, from, length), nothing.get_mut(..length)) {
-            rows.span(colors, nothing, 0, 0, from as i32, DepthOff);
-        }
-    };
-    if !centre.is_empty() {
-        shade(rows, centre.clone());
-    }
-    for (sample, (x, y)) in moves.iter().enumerate() {
-        let covered = of(sample);
-        let beside = [covered.start..covered.end.min(centre.start), covered.start.max(centre.end)..covered.end];
-        for mut part in if centre.is_empty() { [covered.clone(), 0..0] } else { beside } {
-            // Pixels that an earlier sample covers, too, are shaded already.
-            while part.start < part.end {
-                if !(0..sample).any(|earlier| of(earlier).contains(&part.start)) {
-                    let beside = rows.beside((-x, -y));
-                    shade(beside.as_ref().unwrap_or(rows), part.start..part.start + 1);
-                }
-                part.start += 1;
-            }
-        }
-    }
-}
-
-/// Copies colours to the samples whose depths pass.
+/// Draws the rows of one sample. `centres` has the columns of each row in which the centre is covered.
 #[inline(never)]
-fn copy_tested<R: Copy, D: DepthTest>(
-    color: &mut [R],
-    depth: &mut [D::Depth],
-    shaded: &[R],
-    mut z: u32,
-    dz_dx: i32,
+fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
+    target: &mut SmallTarget<'_, P::Raw>,
+    triangle: &SampledTriangle,
+    rows: &R,
+    centres: &[[u32; 2]; ROWS],
+    sample: usize,
     test: D,
 ) {
-    for ((color, depth), shaded) in color.iter_mut().zip(depth).zip(shaded) {
-        let near = (z >> 16) as u16;
-        if test.passes(near, *depth) {
-            test.write(near, depth);
-            *color = *shaded;
+    let SmallTarget { color, depth, samples, moves, first, screen, .. } = target;
+    let (Some(to_centre), length) = (moves.get(sample), color.len()) else { return };
+    let color = match sample.checked_sub(1) {
+        None => &mut **color,
+        Some(further) => subslice(samples, further.wrapping_mul(length), length).unwrap_or_default(),
+    };
+    let mut nothing = [(); usize::MAX];
+    let depth = D::slots(subslice(depth, sample.wrapping_mul(length), length).unwrap_or_default(), &mut nothing);
+    // Both get one length, so that the compiler knows a span inside of one to be inside of the other.
+    let length = color.len().min(depth.len());
+    let (Some(color), Some(depth)) = (color.get_mut(..length), depth.get_mut(..length)) else { return };
+    let width = usize::from(screen.0);
+    let (column, row) = triangle.place;
+    let mut at = width.wrapping_mul((row - *first) as usize).wrapping_add(column as usize);
+    let (mut z, (dz_dx, dz_dy)) = (triangle.depth_at(*to_centre), triangle.dz);
+    let (mut rows, mut next) = (rows.beside((0, 0)), 0);
+    triangle.each_row(*to_centre, |number, columns| {
+        while next < number {
+            rows.next_row();
+            (at, z, next) = (at.wrapping_add(width), z.wrapping_add_signed(dz_dy), next + 1);
         }
-        z = z.wrapping_add_signed(dz_dx);
-    }
+        let mut draw = |rows: &R, columns: Range<u32>| {
+            let (from, count) = (columns.start, columns.end.wrapping_sub(columns.start) as usize);
+            let start = at.wrapping_add(from as usize);
+            if let (Some(color), Some(depth)) = (subslice(color, start, count), subslice(depth, start, count)) {
+                let z = z.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
+                rows.span(color, depth, z, dz_dx, from as i32, test);
+            }
+        };
+        let [start, end] = centres.get(number).copied().unwrap_or_default();
+        if R::IS_FLAT || columns.start >= start && columns.end <= end {
+            return draw(&rows, columns);
+        }
+        let beside = rows.beside((-to_centre.0, -to_centre.1));
+        let (inner, outer) = (columns.start.max(start), columns.end.min(end));
+        if inner >= outer {
+            return draw(&beside, columns);
+        }
+        for (rows, columns) in [(&beside, columns.start..inner), (&rows, inner..outer), (&beside, outer..columns.end)] {
+            if columns.start < columns.end {
+                draw(rows, columns);
+            }
+        }
+    });
 }

@@ -19,9 +19,9 @@ use super::carried::{
     CARRIED, LeftState, STATE_UNIT, TriangleAtRow, column_and_slopes, count_row, edge_from_bend, edges_and_depth,
     goes_on, set_edges_and_depth, take_rows,
 };
-use super::depth::{DepthOff, DepthTest};
+use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
-use super::sampled::{MOST_SAMPLES, SampledSpans, SampledTriangle, draw_sampled_rows};
+use super::sampled::{SampledTriangle, draw_sampled_rows};
 use crate::color::PixelFormat;
 use crate::raster::{
     HEIGHT, Moves, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, sampled, tall_edges,
@@ -38,8 +38,6 @@ pub struct SmallTarget<'a, R> {
     pub(crate) samples: &'a mut [R],
     /// What moves each sample to the centre of its pixel.
     pub(crate) moves: Moves,
-    /// Memory for the spans of samples; `None` if there is one sample.
-    pub(crate) spans: Option<&'a mut SampledSpans<R>>,
     /// The first row.
     pub(crate) first: i32,
     /// Columns that all of a triangle has to be in, and rows that may be drawn.
@@ -85,11 +83,12 @@ pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
     /// Set if tall triangles are small, too. They take their code once more, which pays where the way of large ones is
     /// long.
     const TALL: bool = false;
-    /// Set if all pixels are drawn, whatever is there. Then pixels of several samples are shaded once.
-    const IS_OPAQUE: bool = false;
+
+    /// Set if rows can be shaded beside the centres of pixels. Then pixels of several samples are set up once.
+    const SHIFTS: bool = true;
 
     /// Draws the spans of a triangle.
-    type Rows: BrushRows<P, D> + BrushRows<P, DepthOff>;
+    type Rows: BrushRows<P, D>;
 
     /// Sets up a triangle, of which (`column`, `row`) is the first pixel: spans are counted from there. `swapped` says
     /// that the last two corners have changed places in `planes`. Returns `None` if the brush cannot draw it.
@@ -104,6 +103,8 @@ pub(crate) trait Brush<P: PixelFormat, D: DepthTest> {
 pub(crate) trait BrushRows<P: PixelFormat, D: DepthTest> {
     /// Number of words of the state; `None` if it is not carried on to the next strip.
     const WORDS: Option<usize>;
+    /// Set if all pixels get one colour, wherever they are shaded.
+    const IS_FLAT: bool = false;
 
     /// Puts the state into words, as it is a number of rows further down.
     fn save(&self, down: u32, words: &mut [u32]);
@@ -111,15 +112,9 @@ pub(crate) trait BrushRows<P: PixelFormat, D: DepthTest> {
     /// Goes on to the next row.
     fn next_row(&mut self);
 
-    /// Returns rows whose pixels are shaded at places this far to the right and below their centres, in 1/256 px: at
-    /// most 127 / 256 px. Only called for brushes that are opaque.
-    fn beside(&self, by: (i32, i32)) -> Option<Self>
-    where
-        Self: Sized,
-    {
-        let _ = by;
-        None
-    }
+    /// Returns rows whose pixels are shaded this far to the right of and below their centres, 24.8: less than 1/2 px.
+    /// Only asked for if the brush [shifts](Brush::SHIFTS).
+    fn beside(&self, by: (i32, i32)) -> Self;
 
     /// Draws a span that begins `column` pixels to the right of the first pixel.
     fn span(&self, color: &mut [P::Raw], depth: &mut [D::Depth], z: u32, dz_dx: i32, column: i32, test: D);
@@ -130,7 +125,7 @@ impl<P: PixelFormat, D: DepthTest> SmallTriangle<'_, '_, P, D> {
     #[inline(always)]
     pub(crate) fn draw<B: Brush<P, D>>(self, brush: &B) -> SmallResult {
         let [a, b, c] = self.v;
-        if D::SAMPLED && B::IS_OPAQUE {
+        if D::SAMPLED && B::SHIFTS {
             return draw_small::<P, D, B, false, true>(self.target, a, b, c, brush, self.test);
         }
         if D::SAMPLED {
@@ -193,7 +188,6 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
             depth,
             samples: &mut [],
             moves,
-            spans: None,
             first: *first,
             columns: columns.clone(),
             rows: rows.clone(),
@@ -213,13 +207,13 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
 }
 
 /// Draws a triangle with its highest corner first, if it is small. Edges of a tall one are made anew every 16 rows. With
-/// `ONCE`, pixels have several samples, and are shaded once.
+/// `SAMPLED`, pixels have several samples.
 ///
 /// # Format
 /// Differences of depths are below 2¹⁶, and sides at most 60 · 2⁸: determinants are below 2 · 65,535 · 60 · 2⁸ < 2³¹.
 /// The planes' gradients are below 2²⁸.
 #[inline(never)]
-fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool, const ONCE: bool>(
+fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool, const SAMPLED: bool>(
     target: &mut SmallTarget<'_, P::Raw>,
     a: &[u32; 2],
     b: &[u32; 2],
@@ -236,7 +230,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
     }
     let (mut bx, mut cx) = (b.x() - ax, c.x() - ax);
     let (least, most) = (bx.min(cx).min(0), bx.max(cx).max(0));
-    let between = |least, most| sampled(least, most, if ONCE { MOST_SAMPLES } else { 1 });
+    let between = |least, most| sampled(least, most, if SAMPLED { 2 } else { 1 });
     let Range { start, end: past } = between(ax + least, ax + most);
     if most - least > WIDTH || start < target.columns.start || past > target.columns.end {
         return SmallResult::Large;
@@ -254,7 +248,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
         return SmallResult::Outside;
     }
     // Where a pixel has samples to the left of its centre, edges there begin further left.
-    let column = (ax + least - if ONCE { 112 } else { 0 }) >> 8;
+    let column = (ax + least - if SAMPLED { 112 } else { 0 }) >> 8;
     let (z, mut bz, mut cz) = (a.z(), b.z(), c.z());
     // From here on, b is on the left and c on the right.
     let swapped = area > 0;
@@ -277,7 +271,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
             // Nearly all of these are seen edge on, and have no pixel.
             let rows = row..end.min(target.rows.end);
             let covers = IS_TALL
-                || ONCE
+                || SAMPLED
                 || covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len());
             return if covers { SmallResult::Large } else { SmallResult::Drawn };
         };
@@ -285,7 +279,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
         // As `Gradients` has it: from the vertex to the centre of its pixel, and from there on.
         let offset = ((dx >> 6) * to.0 + (dy >> 6) * to.1) >> 2;
         // Samples go from the vertex to places of their own.
-        if !ONCE {
+        if !SAMPLED {
             depth = depth
                 .wrapping_add(offset as u32)
                 .wrapping_add_signed(dx.wrapping_mul(right))
@@ -296,7 +290,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
         depth = depth.wrapping_add(biased(bias, [z, bz, cz], dz_dx, dz_dy));
     }
     let Some(mut rows) = brush.set_up(&planes, swapped, (column, row), dz_dx) else { return SmallResult::Large };
-    if ONCE {
+    if SAMPLED {
         let triangle = SampledTriangle {
             sides: [bx, by, cx, cy],
             a: (ax, ay),
@@ -305,7 +299,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
             dz: (dz_dx, dz_dy),
             end,
         };
-        return draw_sampled_rows(target, &triangle, rows, test);
+        return draw_sampled_rows(target, &triangle, &rows, test);
     }
     let sides = core::hint::black_box([bx, by, cx, cy]);
     let start = ax - (column << 8);
@@ -316,7 +310,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
     if D::CARRIES
         && !IS_TALL
         && end > target.rows.end
-        && let Some(length) = <B::Rows as BrushRows<P, D>>::WORDS
+        && let Some(length) = B::Rows::WORDS
     {
         let below = target.rows.end - row;
         let triangle = TriangleAtRow { sides, x: start, p, column, edges: [left, right], depth, dz: (dz_dx, dz_dy) };
@@ -324,7 +318,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
             && let Some((words, state)) = left.words.split_first_chunk_mut()
         {
             triangle.store(below, words);
-            BrushRows::<P, D>::save(&rows, below as u32, state);
+            rows.save(below as u32, state);
             left.length = (CARRIED + length).next_multiple_of(STATE_UNIT);
         }
     }
@@ -376,7 +370,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
         right.step();
         at = at.wrapping_add(width);
         depth = depth.wrapping_add_signed(dz_dy);
-        BrushRows::<P, D>::next_row(&mut rows);
+        rows.next_row();
         count -= 1;
     }
 }
@@ -413,13 +407,13 @@ fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
         right.step();
         at = at.wrapping_add(width);
         depth = depth.wrapping_add_signed(dz_dy);
-        BrushRows::<P, D>::next_row(&mut rows);
+        rows.next_row();
         count_row(words);
         count -= 1;
     }
     if goes_on(words) {
         set_edges_and_depth(words, left, right, depth);
-        BrushRows::<P, D>::save(&rows, 0, state);
+        rows.save(0, state);
     }
 }
 

@@ -75,7 +75,6 @@ pub(crate) struct ValueBrush<R>(pub(crate) R);
 
 impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ValueBrush<P::Raw> {
     const PLANES: bool = false;
-    const IS_OPAQUE: bool = true;
 
     type Rows = Self;
 
@@ -92,10 +91,11 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ValueBrush<P::Raw> {
 
 impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ValueBrush<P::Raw> {
     const WORDS: Option<usize> = Some(0);
+    const IS_FLAT: bool = true;
 
     #[inline(always)]
-    fn beside(&self, _: (i32, i32)) -> Option<Self> {
-        Some(Self(self.0))
+    fn beside(&self, _: (i32, i32)) -> Self {
+        Self(self.0)
     }
 
     #[inline(always)]

@@ -82,6 +82,16 @@ pub struct Primitive<V: Varyings, T = ()> {
     pub flat: u32,
 }
 
+/// Moves values to the right and down by parts of a pixel, 24.8, modulo 2³².
+#[inline(never)]
+pub(super) fn shift<V: Varyings>(values: &mut V, (d_dx, right): (&V, i32), (d_dy, down): (&V, i32)) {
+    // Both parts of a change by themselves, because their sum times a part of a pixel may not fit.
+    let part = |change: i32, by: i32| (change >> 8).wrapping_mul(by).wrapping_add(((change & 0xFF) * by) >> 8);
+    for ((value, dx), dy) in values.as_mut().iter_mut().zip(d_dx.as_ref()).zip(d_dy.as_ref()) {
+        *value = value.wrapping_add(part(*dx, right)).wrapping_add(part(*dy, down));
+    }
+}
+
 impl<V: Varyings, T> Primitive<V, T> {
     /// Returns a primitive whose depth and varyings are the same at all of its pixels.
     #[inline]

@@ -231,7 +231,6 @@ const fn bits_of(n: i32) -> u32 {
 impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<P, D> for TexelBrush<'s, S, P, N> {
     const PLANES: bool = true;
     const TALL: bool = S::LIT;
-    const IS_OPAQUE: bool = S::Texture::IS_OPAQUE;
 
     type Rows = TexelRows<'s, S, P>;
 
@@ -317,7 +316,7 @@ impl<P: PixelFormat, D: DepthTest, S: TexelSource<P>> BrushRows<P, D> for TexelR
     /// # Format
     /// Changes are below 2²⁸, so 2⁻⁸ of them times 127 fit. Light has changes of at most 2¹⁶ in 9.7. Sums are cut.
     #[inline(always)]
-    fn beside(&self, (right, down): (i32, i32)) -> Option<Self> {
+    fn beside(&self, (right, down): (i32, i32)) -> Self {
         let of_long = |k: usize| (self.dx[k] as i32 >> 8) * right + (self.dy[k] as i32 >> 8) * down;
         let of_short = |dx: i32, dy: i32| ((dx * right + dy * down) >> 8) as u32;
         let low = |word: u32| i32::from(word as i16);
@@ -329,7 +328,7 @@ impl<P: PixelFormat, D: DepthTest, S: TexelSource<P>> BrushRows<P, D> for TexelR
             at[2] = self.at[2].wrapping_add(red_green);
             at[3] = self.at[3].wrapping_add(of_short(high(blue_dx), high(blue_dy)) << 16);
         }
-        Some(Self { at, ..*self })
+        Self { at, ..*self }
     }
 
     #[inline(always)]
