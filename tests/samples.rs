@@ -1,5 +1,5 @@
-//! Several samples per pixel: each sample is a picture of its own, whose triangles are moved; and a pixel is the mean of
-//! its samples, in any strips.
+//! Several samples per pixel: each sample is a picture of its own, whose triangles are moved; and a pixel is the mean
+//! of its samples, in any strips.
 
 mod reference;
 #[path = "../examples/scenes/mod.rs"]
@@ -201,9 +201,9 @@ fn what_covers_whole_pixels_looks_as_with_one_sample() {
         let colors = (0..400).map(|k| Rgb565::new(k as u8 & 31, 20, 7));
         overlay.fill_contiguous(&Rectangle::new(Point::new(118, 90), Size::new(20, 20)), colors).expect("cannot fail");
     }
-    let (expected, _, _) = whole::<Rgb565>((SIDE, SIDE), Rgb565::BLACK, |scene| draw(scene));
+    let (expected, _, _) = whole::<Rgb565>((SIDE, SIDE), Rgb565::BLACK, draw);
     for rows in [128, 7] {
-        let (picture, ..) = sampled_strips::<Rgb565, 4>((SIDE, SIDE), rows, AMPLE, Rgb565::BLACK, |scene| draw(scene));
+        let (picture, ..) = sampled_strips::<Rgb565, 4>((SIDE, SIDE), rows, AMPLE, Rgb565::BLACK, draw);
         assert_eq!(difference(&picture, &expected, SIDE), None, "strips of {rows} rows");
     }
     assert!(expected.iter().filter(|color| **color != 0).count() > 1000);
@@ -235,7 +235,7 @@ fn texels_come_from_inside_of_the_triangle() {
         }
         let corners = triangles.moved([0, 0]);
         let mut shown = [0; 2];
-        for kind in 0..2 {
+        for (kind, shown) in shown.iter_mut().enumerate() {
             // The triangles of one column.
             let mut part = Triangles { corners: vec![], colors: vec![], uvs: vec![] };
             for (k, uv) in triangles.uvs.iter().enumerate().filter(|(k, _)| k / 3 % 2 == kind) {
@@ -250,7 +250,7 @@ fn texels_come_from_inside_of_the_triangle() {
             let [own, other] = if kind == 0 { [0xF800, 0x07E0] } else { [0x07E0, 0xF800] };
             let wrong = samples.iter().filter(|color| **color == other).count();
             assert_eq!(wrong, 0, "seed {seed}, {size}/256 px, column {kind}");
-            shown[kind] = samples.iter().filter(|color| **color == own).count();
+            *shown = samples.iter().filter(|color| **color == own).count();
         }
         assert!(corners.len() == 180 && shown.iter().all(|shown| *shown > 20), "{shown:?}");
     }

@@ -113,8 +113,8 @@ fn both_ways_draw_the_same_pixels_and_depths() {
     assert!(drawn > 100_000, "{drawn} px");
 }
 
-/// Under a texture with light, and under shaders around it, tall triangles are small, too. They cover the pixels that flat ones cover, at the same
-/// depths.
+/// Under a texture with light, and under shaders around it, tall triangles are small, too. They cover the pixels that
+/// flat ones cover, at the same depths.
 #[test]
 fn tall_triangles_cover_the_same_pixels_at_the_same_depths() {
     static WHITE: Tile<'static, 1, 1> = Tile::new(&[[0xFFFF]]);

@@ -9,8 +9,8 @@
 //! ```
 //! So a triangle takes three planes of 32 bits and nothing per row, and a pixel takes two additions.
 
+use super::brush::{Brush, BrushRows};
 use super::depth::DepthTest;
-use super::small::{Brush, BrushRows};
 use crate::color::PixelFormat;
 use crate::raster::{ShortPlanes, high};
 use core::marker::PhantomData;

@@ -1,11 +1,11 @@
 //! Triangles of any shader: the planes of their varyings, a part of stage 8 of [the pipeline](crate#the-pipeline), and
 //! the brush that draws small ones by the shader's spans.
 
+use super::brush::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::carried::{load_varyings, save_varyings, words_of};
 use super::depth::DepthTest;
 use super::planar::PlanarBrush;
 use super::shader::{Shader, SpanOf};
-use super::small::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::span::{Primitive, Span, TriangleSetup, shift};
 use crate::color::PixelFormat;
 use crate::raster::{Gradients, ShortPlanes, homogenize, straighten, widen};

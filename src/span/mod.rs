@@ -1,6 +1,7 @@
 //! The seam between triangles and pixels: the depth test, and the trait that colours fragments. A program meets
 //! [`DepthState`] first, in a [`State`](crate::scene::State); [`Shader`] is for shaders of one's own.
 
+mod brush;
 mod carried;
 mod channels;
 mod color_setup;
@@ -23,6 +24,8 @@ mod texels;
 mod textured;
 mod uv_stepper;
 
+pub(crate) use brush::subslice;
+pub use brush::{SmallResult, SmallTarget, SmallTriangle};
 pub(crate) use carried::{CARRIED, LeftState, MOST_CARRIED, STATE_UNIT, face_of, goes_on};
 pub(crate) use channels::ChannelBrush;
 pub use color_setup::ColorSetup;
@@ -36,8 +39,7 @@ pub(crate) use packed::packed_span;
 pub use perspective::Corrected;
 pub(crate) use shader::draw_fragments;
 pub use shader::{Shader, SpanOf};
-pub use small::{SmallResult, SmallTarget, SmallTriangle};
-pub(crate) use small::{biased, subslice};
+pub(crate) use small::biased;
 pub(crate) use solid::{ValueBrush, flat_span};
 pub use span::{Fragment, Primitive, Span, TriangleSetup};
 pub(crate) use texels::{Light, TexelSource};

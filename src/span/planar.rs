@@ -13,10 +13,10 @@
 //! [textures](super::texels). Planes are those of differences to the first corner, with 8 more bits; of differences of
 //! more than 16 bits, the lower ones are cut.
 
+use super::brush::{Brush, BrushRows};
 use super::carried::{load_varyings, save_varyings, words_of};
 use super::depth::DepthTest;
 use super::shader::Shader;
-use super::small::{Brush, BrushRows};
 use super::span::{Fragment, shift};
 use crate::color::PixelFormat;
 use crate::raster::{ShortPlanes, gradients, least_and_most};

@@ -7,14 +7,15 @@
 //! for each sample:
 //!     for each row, of the triangle moved so that the sample is at the centre:
 //!         for each pixel:
-//!             if z of the sample passes: store it, and the colour at the centre or, if that is not covered, at the sample
+//!             if z of the sample passes:
+//!                 store it, and the colour at the centre or, if that is not covered, at the sample
 //! ```
-//! So neither colours nor texels come from outside of the triangle, and pixels inside of it have equal samples, of which
-//! [`resolve`](crate::color::resolve) makes pixels in no time. Samples are not shaded once and copied: a copy under a
-//! depth test takes as long as flat or Gouraud shading does, and blending needs the colours of each sample.
+//! So neither colours nor texels come from outside of the triangle, and a pixel inside of it has equal samples: it is
+//! that pixel already. Pixels are not shaded once and then copied to their samples: a copy under a depth test takes as
+//! long as flat or Gouraud shading does, and blending needs the colours of each sample.
 
+use super::brush::{BrushRows, SmallResult, SmallTarget, subslice};
 use super::depth::DepthTest;
-use super::small::{BrushRows, SmallResult, SmallTarget, subslice};
 use crate::color::PixelFormat;
 use crate::raster::{ShortEdge, first_centre};
 use core::ops::Range;

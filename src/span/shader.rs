@@ -1,8 +1,8 @@
 //! The seam of the fragment stage, and the loops that call a shader for the pixels of a span.
 
+use super::brush::{SmallResult, SmallTriangle};
 use super::depth::{DepthDyn, DepthState, DepthTest};
 use super::perspective::{correct_at, longest_log_step, straight_log_step};
-use super::small::{SmallResult, SmallTriangle};
 use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
 use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, Varyings, VertexShader};

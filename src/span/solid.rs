@@ -19,10 +19,10 @@
 //! 3. **Short spans stay in the caller**, because a line draws each of its pixels as a span. A pixel of a thin line:
 //!    40.4 → 36.4 and 35.1 → 26.1.
 
+use super::brush::{Brush, BrushRows};
 use super::color_setup::ColorSetup;
 use super::depth::{DepthTest, RUN, count_passing_prefix};
 use super::packed::packed_span;
-use super::small::{Brush, BrushRows};
 use super::span::{Primitive, Span};
 use crate::color::{PixelFormat, fill, squeeze, unpacked};
 use crate::math::SMALL_CORE;

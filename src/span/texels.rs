@@ -26,8 +26,8 @@
 //! share of the weight that moves from some corners to others. That share is largest where q takes its two extremes:
 //! (√r - 1) / (√r + 1), which is at most (r - 1) / 4.
 
+use super::brush::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::depth::DepthTest;
-use super::small::{Brush, BrushRows, SmallResult, SmallTriangle};
 use crate::color::PixelFormat;
 use crate::raster::{ShortPlanes, gradients, least_and_most};
 use crate::texture::Texture;
