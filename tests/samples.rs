@@ -14,12 +14,14 @@ use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::frame::{Renderer, RendererError};
+use zstrip::light::Unlit;
 use zstrip::math::{Angle16, Pixels, Projective, Scalar};
 use zstrip::mesh::{LineTopology, Lines, Mesh, MeshData, Points, Positions, Vertices};
-use zstrip::shader::{Flat, Textured};
-use zstrip::span::{DepthState, Shader};
+use zstrip::shader::{Blend, Flat, Gouraud, Opacity, Textured};
+use zstrip::span::{DepthState, Fragment, Shader};
 use zstrip::target::{DepthChoice, Strip, WithRecords, WithSamples};
 use zstrip::texture::{Bilinear, Tile};
+use zstrip::vertex::{Perspective, VertexRef, VertexShader};
 use zstrip::{Cull, Scene, ScreenPoint, State, Thick, Thin};
 
 const SCREEN: (u16, u16) = (160, 120);
@@ -201,9 +203,13 @@ fn what_covers_whole_pixels_looks_as_with_one_sample() {
         let colors = (0..400).map(|k| Rgb565::new(k as u8 & 31, 20, 7));
         overlay.fill_contiguous(&Rectangle::new(Point::new(118, 90), Size::new(20, 20)), colors).expect("cannot fail");
     }
-    let (expected, _, _) = whole::<Rgb565>((SIDE, SIDE), Rgb565::BLACK, draw);
+    let (expected, _, _) = whole::<Rgb565>((SIDE, SIDE), Rgb565::BLACK, |scene| {
+        draw(scene);
+    });
     for rows in [128, 7] {
-        let (picture, ..) = sampled_strips::<Rgb565, 4>((SIDE, SIDE), rows, AMPLE, Rgb565::BLACK, draw);
+        let (picture, ..) = sampled_strips::<Rgb565, 4>((SIDE, SIDE), rows, AMPLE, Rgb565::BLACK, |scene| {
+            draw(scene);
+        });
         assert_eq!(difference(&picture, &expected, SIDE), None, "strips of {rows} rows");
     }
     assert!(expected.iter().filter(|color| **color != 0).count() > 1000);
@@ -266,4 +272,84 @@ fn short_buffers_are_errors_with_both_numbers() {
     assert_eq!(new(400, 300), Ok(()));
     assert_eq!(new(399, 300), Err(RendererError::DepthTooShort { pixels: 399, needed: 400 }));
     assert_eq!(new(400, 299), Err(RendererError::SamplesTooShort { pixels: 299, needed: 300 }));
+}
+
+/// A shader of a program's own, fragment by fragment: four varyings, one of them perspective-correct.
+struct Own;
+
+impl VertexShader for Own {
+    type Varyings = Perspective<1, 4>;
+
+    const IS_TOLERANT: bool = true;
+
+    fn vertex(&self, vertex: &VertexRef<'_>) -> Perspective<1, 4> {
+        let [u, v] = vertex.uv().map(|c| c.to_bits());
+        Perspective::new([u], [v, (u ^ v) & 0xFFFF])
+    }
+}
+
+impl Shader<Rgb565> for Own {
+    type Setup = ();
+
+    fn fragment(&self, fragment: &Fragment<'_, Perspective<1, 4>>) -> Option<u16> {
+        let ([u], [v, w, ..]) = (fragment.varyings.corrected(), fragment.varyings.linear()) else { return None };
+        Some((u as u16 >> 11) << 11 | (*v as u16 >> 10) << 5 | *w as u16 >> 11 | 1)
+    }
+}
+
+/// A pixel whose samples are all covered is shaded at its centre. It looks as it does with one sample per pixel, up to
+/// some levels of its channels: a word of packed channels is rounded where its span begins.
+fn assert_inside_is_as_with_one_sample(name: &str, shader: &impl Shader<Rgb565>, levels: u16) {
+    let seed = 17;
+    let mut rng = Rng::new(seed);
+    let all = usize::from(SIDE) * usize::from(SIDE);
+    let mut inside = 0;
+    for size in [1200, 4000, 6300, 12_000, 40_000] {
+        for case in 0..80 {
+            let triangles = Triangles::new(&mut rng, 1, size);
+            // With samples beyond a side of the screen, a triangle is large that is small with one sample.
+            let side = 256 * i32::from(SIDE);
+            let ends = || triangles.corners.iter().map(|[x, ..]| *x);
+            let (least, most) = (ends().min().unwrap_or_default(), ends().max().unwrap_or_default());
+            if (-127..-15).contains(&least) || (side + 17..side + 129).contains(&most) {
+                continue;
+            }
+            // Under a texture with light, so is a tall one.
+            let heights = || triangles.corners.iter().map(|[_, y, _]| *y);
+            let height = heights().max().unwrap_or_default() - heights().min().unwrap_or_default();
+            if name == "lit" && (6401..=15_360).contains(&height) {
+                continue;
+            }
+            let corners = triangles.moved([0, 0]);
+            let (one, _, _) = whole::<Rgb565>((SIDE, SIDE), Rgb565::BLACK, |scene| {
+                triangles.draw(scene, &corners, DepthState::LESS, shader);
+            });
+            let (four, _, depths, _) =
+                sampled_strips::<Rgb565, 4>((SIDE, SIDE), SIDE.into(), AMPLE, Rgb565::BLACK, |s| {
+                    triangles.draw(s, &corners, DepthState::LESS, shader);
+                });
+            for (k, (one, four)) in one.iter().zip(&four).enumerate() {
+                if depths[k..].iter().step_by(all).all(|depth| *depth < 65_535) {
+                    let levels_of = |color: u16| [color >> 11, color >> 5 & 63, color & 31];
+                    let is_near = levels_of(*four).iter().zip(levels_of(*one)).all(|(a, b)| a.abs_diff(b) <= levels);
+                    let case = format!("{name}, seed {seed}, {size}/256 px, triangle {case}, pixel {k}");
+                    assert!(is_near, "{case}: {four:04x} is not {one:04x}");
+                    inside += 1;
+                }
+            }
+        }
+    }
+    assert!(inside > 40_000, "{name}: only {inside} px inside of triangles");
+}
+
+#[test]
+fn pixels_inside_of_triangles_look_as_with_one_sample() {
+    static TILE: Tile<'static, 4, 2> = Tile::new(&[[0xF800, 0x07E0, 0x1F, 0xFFFF], [0x1234, 0x4321, 0xABCD, 0x7FFF]]);
+    assert_inside_is_as_with_one_sample("flat", &Flat::vertex_colors(), 0);
+    assert_inside_is_as_with_one_sample("Gouraud", &Gouraud::vertex_colors(), 1);
+    assert_inside_is_as_with_one_sample("textured", &Textured::new(&TILE), 0);
+    assert_inside_is_as_with_one_sample("lit", &Textured::new(&TILE).lit(Unlit::vertex_colors()), 1);
+    assert_inside_is_as_with_one_sample("bilinear", &Textured::new(&TILE).filter(Bilinear), 0);
+    assert_inside_is_as_with_one_sample("own", &Own, 0);
+    assert_inside_is_as_with_one_sample("blended", &Blend::new(Gouraud::vertex_colors(), Opacity(100)), 1);
 }

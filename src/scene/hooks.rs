@@ -15,7 +15,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
     /// Small triangles have a way of their own if the shader [`fits`] it.
     const fn by<D: StateTest>() -> Self {
         Self {
-            spans: |painter, set_up| painter.spans(set_up, D::of(painter.test())),
+            spans: |painter, set_up, centre| painter.spans(set_up, centre, D::of(painter.test())),
             // Without varyings both ways draw the same, and one triangle by itself gains little.
             small: if fits::<F, S>() && S::Varyings::LEN > 0 {
                 |painter, v, varyings, flat| {
@@ -60,7 +60,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> RasterHooks<F, S> {
     /// Functions for any state.
     pub(super) const ANY: Self = if F::DEPTH {
         Self {
-            spans: |painter, set_up| (Self::of_test(painter.test()).spans)(painter, set_up),
+            spans: |painter, set_up, centre| (Self::of_test(painter.test()).spans)(painter, set_up, centre),
             small: |painter, v, varyings, flat| (Self::of_test(painter.test()).small)(painter, v, varyings, flat),
             replay: |scene, state, hooks, shader, waiting| {
                 (Self::of_test(state.depth).replay)(scene, state, hooks, shader, waiting)

@@ -31,7 +31,8 @@ pub(super) struct Painter<'p, 't, F: Framebuffer, S: Shader<F::Format>> {
 pub(super) struct RasterHooks<F: Framebuffer, S: Shader<F::Format>> {
     /// Draws the spans of a triangle under a depth test: stage 9 of [the pipeline](crate#the-pipeline).
     #[expect(clippy::type_complexity, reason = "an alias would have to repeat the bounds of both types")]
-    pub(super) spans: fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>),
+    pub(super) spans:
+        fn(&mut Painter<'_, '_, F, S>, &SetUp<'_, S::Varyings, S::Setup>, Option<&SetUp<'_, S::Varyings, S::Setup>>),
     /// Draws a triangle in the way of small ones, stages 8 and 9, and returns whether it is small.
     pub(super) small: Small<F, S>,
     /// Draws triangles in the records.
@@ -67,16 +68,26 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         }
     }
 
-    /// Draws a triangle in the way of large ones, unless its area is 0. Its highest corner is the first. Each sample is
-    /// a picture of its own, in which the triangle is moved.
+    /// Draws a triangle in the way of large ones, unless its area is 0. Its highest corner is the first.
     #[inline(never)]
     fn large(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
+        let area = signed_area(&v[0], &v[1], &v[2]);
+        if area == 0 {
+            return;
+        }
+        let primitive = Primitive::constant(S::Varyings::ZERO, flat, self.state.side(area), S::Setup::default());
+        let mut set_up = SetUp { v, area, depth: PlaneEquation::default(), primitive };
+        self.set_up(&mut set_up, varyings);
+        // Stage 9, in a loop for each kind of depth test.
+        if F::SAMPLES == 1 {
+            return (self.hooks.spans)(self, &set_up, None);
+        }
+        // Each sample is a picture of its own, in which the triangle is moved.
         self.each_sample(|painter, (x, y)| {
-            if F::SAMPLES == 1 {
-                return painter.large_at_sample(v, varyings, flat);
-            }
-            let moved = v.each_ref().map(|v| ScreenVertex { x: v.x + x, y: v.y + y, z: v.z });
-            painter.large_at_sample(&moved, varyings, flat);
+            let moved = &v.each_ref().map(|v| ScreenVertex { x: v.x + x, y: v.y + y, z: v.z });
+            let mut at_sample = SetUp { v: moved, area, depth: PlaneEquation::default(), primitive };
+            painter.set_up(&mut at_sample, varyings);
+            (painter.hooks.spans)(painter, &at_sample, Some(&set_up));
         });
     }
 
@@ -93,19 +104,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
             draw(&mut Painter { target, screen, clip, state, shader, hooks }, *to_centre);
         }
         self.target.framebuffer.select_sample(0);
-    }
-
-    #[inline(always)]
-    fn large_at_sample(&mut self, v: &[ScreenVertex; 3], varyings: &[S::Varyings; 3], flat: u32) {
-        let area = signed_area(&v[0], &v[1], &v[2]);
-        if area == 0 {
-            return;
-        }
-        let primitive = Primitive::constant(S::Varyings::ZERO, flat, self.state.side(area), S::Setup::default());
-        let mut set_up = SetUp { v, area, depth: PlaneEquation::default(), primitive };
-        self.set_up(&mut set_up, varyings);
-        // Stage 9, in a loop for each kind of depth test.
-        (self.hooks.spans)(self, &set_up);
     }
 
     /// Draws a triangle, if it is small.
@@ -177,7 +175,20 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
 
     /// Draws the spans between the edges of a triangle, row by row: stage 9 of [the pipeline](crate#the-pipeline).
     #[inline(never)]
-    pub(super) fn spans<D: DepthTest>(&mut self, set_up: &SetUp<'_, S::Varyings, S::Setup>, test: D) {
+    ///
+    /// With several samples per pixel, `set_up` is the triangle moved for a sample, and `centre` as it is: pixels are
+    /// shaded at their centre or, if that is not covered, at the sample.
+    pub(super) fn spans<D: DepthTest>(
+        &mut self,
+        set_up: &SetUp<'_, S::Varyings, S::Setup>,
+        centre: Option<&SetUp<'_, S::Varyings, S::Setup>>,
+        test: D,
+    ) {
+        if F::SAMPLES > 1
+            && let Some(centre) = centre
+        {
+            return self.spans_at_sample(set_up, centre, test);
+        }
         if S::Varyings::LEN > MAX_IN_REGISTERS {
             return self.spans_outlined(set_up, test);
         }
@@ -254,7 +265,40 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let shader = self.shader;
         while spans.next_in(&self.clip.x) {
             // Stages 10 and 11: depth test and fragments.
-            shader.span(self.span_at::<D>(set_up, &spans, &mut nothing), test);
+            let place = (spans.y, spans.x.clone());
+            shader.span(self.span_at::<D>(&set_up.depth, &set_up.primitive, place, &mut nothing), test);
+        }
+    }
+
+    /// Draws the spans of a triangle at a sample.
+    #[inline(never)]
+    fn spans_at_sample<D: DepthTest>(
+        &mut self,
+        set_up: &SetUp<'_, S::Varyings, S::Setup>,
+        centre: &SetUp<'_, S::Varyings, S::Setup>,
+        test: D,
+    ) {
+        let mut nothing = [(); usize::MAX];
+        let (rows, columns) = (&self.clip.y, &self.clip.x);
+        let mut spans = Spans::new(set_up.v, set_up.area, rows);
+        let mut centres = Spans::new(centre.v, centre.area, rows);
+        let (shader, mut has_centres) = (self.shader, centres.next_in(columns));
+        while spans.next_in(columns) {
+            let (y, Range { start, end }) = (spans.y, spans.x.clone());
+            while has_centres && centres.y < y {
+                has_centres = centres.next_in(columns);
+            }
+            let (mut inner, mut outer) = (end, end);
+            if has_centres && centres.y == y && centres.x.start < end && start < centres.x.end {
+                (inner, outer) = (start.max(centres.x.start), end.min(centres.x.end));
+            }
+            let parts =
+                [(&set_up.primitive, start..inner), (&centre.primitive, inner..outer), (&set_up.primitive, outer..end)];
+            for (primitive, part) in parts {
+                if !part.is_empty() {
+                    shader.span(self.span_at::<D>(&set_up.depth, primitive, (y, part), &mut nothing), test);
+                }
+            }
         }
     }
 
@@ -262,12 +306,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     #[inline(never)]
     fn span_at<'a, D: DepthTest>(
         &'a mut self,
-        set_up: &'a SetUp<'_, S::Varyings, S::Setup>,
-        spans: &Spans<'_>,
+        plane: &PlaneEquation,
+        primitive: &'a Primitive<S::Varyings, S::Setup>,
+        (y, x): (i32, Range<i32>),
         nothing: &'a mut [()],
     ) -> SpanOf<'a, F::Format, S, D> {
-        let (y, x) = (spans.y, &spans.x);
-        let SetUp { depth: plane, primitive, .. } = set_up;
         let row = usize::from(self.screen.0).wrapping_mul((y - self.target.rows.start) as usize);
         let color = self.target.framebuffer.span(y as u32, x.start as usize, x.len());
         let depths = D::slots(self.target.depth, nothing);
