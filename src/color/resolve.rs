@@ -1,6 +1,7 @@
 //! Several samples of a pixel → the pixel.
 
 use super::format::PixelFormat;
+use super::mean::{MeanOfCodes, mean};
 
 /// Makes each pixel the mean of its samples. `pixels` has sample 0 of each, and `samples` the others, one sample after
 /// the other. There are 2, 4 or 8 samples in all. Channels are rounded to nearest.
@@ -42,25 +43,10 @@ fn means<P: PixelFormat>(pixels: &mut [P::Raw], samples: &[P::Raw], range: core:
         if let Some(pixel) = pixels.get_mut(k)
             && further().any(|sample| bytemuck::bytes_of(sample) != bytemuck::bytes_of(&*pixel))
         {
-            *pixel = mean::<P>(*pixel, further());
+            let count = 1 + further().len() as u32;
+            let shift = count.trailing_zeros() & 31;
+            let all = core::iter::once(*pixel).chain(further().copied());
+            *pixel = mean::<P, MeanOfCodes>(all, count, |sum| sum >> shift);
         }
     }
-}
-
-/// Returns the mean of the samples of a pixel.
-#[inline(never)]
-fn mean<'s, P: PixelFormat>(first: P::Raw, further: impl Iterator<Item = &'s P::Raw>) -> P::Raw
-where
-    P::Raw: 's,
-{
-    let (mut sum, mut count) = (P::unpack(first).map(u32::from), 1_u32);
-    for sample in further {
-        for (sum, channel) in sum.iter_mut().zip(P::unpack(*sample)) {
-            *sum += u32::from(channel);
-        }
-        count += 1;
-    }
-    // The count is a power of two.
-    let shift = count.trailing_zeros() & 31;
-    P::pack(sum.map(|sum| ((sum + (count >> 1)) >> shift) as u8))
 }

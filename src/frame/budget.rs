@@ -32,6 +32,33 @@ impl RamBudget {
         Self { color: bytes(pixels, size_of::<P::Raw>()), depth: bytes(pixels, 2), records: 0, rows }
     }
 
+    /// Counts `samples` per pixel: 2, 4 or 8. The colours of all samples, those of the strip among them, are in `color`.
+    ///
+    /// ```
+    /// use embedded_graphics_core::pixelcolor::Rgb565;
+    /// use zstrip::frame::RamBudget;
+    /// assert_eq!(RamBudget::new::<Rgb565>(320, 4).with_samples(4).total(), 20_480);
+    /// ```
+    #[must_use]
+    pub const fn with_samples(self, samples: usize) -> Self {
+        let Self { color, depth, .. } = self;
+        Self { color: color.saturating_mul(samples), depth: depth.saturating_mul(samples), ..self }
+    }
+
+    /// Counts a screen that is `scale` times as wide and as high, for strips that become as high as these; see
+    /// [`Supersampled`](super::Supersampled).
+    ///
+    /// ```
+    /// use embedded_graphics_core::pixelcolor::Rgb565;
+    /// use zstrip::frame::RamBudget;
+    /// assert_eq!(RamBudget::new::<Rgb565>(320, 4).supersampled(2).total(), 20_480);
+    /// ```
+    #[must_use]
+    pub const fn supersampled(self, scale: usize) -> Self {
+        let Self { rows, .. } = self;
+        Self { rows: rows.saturating_mul(scale as u32), ..self.with_samples(scale * scale) }
+    }
+
     /// Leaves out the depth buffer, for scenes drawn from back to front and for 2-D drawing.
     #[must_use]
     pub const fn without_depth(self) -> Self {

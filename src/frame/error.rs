@@ -3,10 +3,10 @@
 use crate::vertex::ViewportError;
 use core::convert::Infallible;
 use core::fmt;
+use embedded_graphics_core::geometry::Size;
 
 /// The error of a renderer that could not be built.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RendererError {
     /// The screen is empty, or larger than [`Viewport::MAX_SIZE`](crate::vertex::Viewport::MAX_SIZE).
@@ -17,6 +17,13 @@ pub enum RendererError {
         pixels: usize,
         /// Pixels of a row, times the samples of a pixel.
         needed: usize,
+    },
+    /// The size of the screen is not a multiple of the pixels that become one.
+    NotAMultiple {
+        /// Columns and rows of the finer screen.
+        screen: Size,
+        /// Pixels that become one, in each direction.
+        scale: u32,
     },
     /// The buffer for the colours of samples does not hold those of one row.
     SamplesTooShort {
@@ -34,6 +41,9 @@ impl fmt::Display for RendererError {
             Self::DepthTooShort { pixels, needed } => {
                 write!(f, "depth buffer of {pixels} pixels, one row has {needed}")
             }
+            Self::NotAMultiple { screen: Size { width, height }, scale } => {
+                write!(f, "a screen of {width}x{height} is no multiple of {scale} in both directions")
+            }
             Self::SamplesTooShort { pixels, needed } => {
                 write!(f, "buffer for {pixels} colours of samples, one row has {needed} of them")
             }
@@ -42,6 +52,13 @@ impl fmt::Display for RendererError {
 }
 
 impl core::error::Error for RendererError {}
+
+#[cfg(feature = "defmt")]
+impl defmt::Format for RendererError {
+    fn format(&self, f: defmt::Formatter<'_>) {
+        defmt::write!(f, "{}", defmt::Debug2Format(self));
+    }
+}
 
 /// The error of a frame that ended early, or of a strip that could not be drawn. `E` is the error of the sink.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
