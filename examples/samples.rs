@@ -1,6 +1,6 @@
-//! What several samples per pixel cost: firmware that counts. `ci/samples` runs it and prints what it takes.
+//! What several samples per pixel, and supersampling, cost: firmware that counts. `ci/samples` runs it and prints what it takes.
 //!
-//! It prints, for each run, `workload samples/rows ticks drawn hash`: SysTick's ticks over a frame in strips of that
+//! It prints, for each run, `workload samples/rows ticks drawn hash`, or `2x2` for supersampling: SysTick's ticks over a frame in strips of that
 //! height (instructions on RISC-V), triangles drawn, and a hash of the picture.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
@@ -22,11 +22,11 @@ mod workloads;
 mod counting {
     use super::count;
     use super::hash::Hash;
-    use super::workloads::price::{Priced, with_samples};
+    use super::workloads::price::{Priced, supersampled, with_samples};
     use super::workloads::{HEIGHT, WIDTH};
     use core::hint::black_box;
     use semihosting::println;
-    use zstrip::target::{DepthChoice, WithSamples};
+    use zstrip::target::{DepthChoice, Stats, WithSamples};
 
     /// Most samples that are counted.
     const MOST: usize = 4;
@@ -40,7 +40,7 @@ mod counting {
     ];
 
     struct Memory {
-        color: [u16; WIDTH * HEIGHT],
+        color: [u16; MOST * WIDTH * HEIGHT],
         samples: [u16; (MOST - 1) * WIDTH * HEIGHT],
         depth: [u16; MOST * WIDTH * HEIGHT],
         records: [u32; 256 * 1024],
@@ -48,16 +48,34 @@ mod counting {
 
     static mut MEMORY: Memory = Memory { color: [0; _], samples: [0; _], depth: [0; _], records: [0; _] };
 
-    fn report<const N: usize>(memory: &mut Memory, (name, workload): (&str, Priced), rows: usize)
+    fn report<const N: usize>(memory: &mut Memory, workload: (&str, Priced), rows: usize)
     where
         WithSamples<N>: DepthChoice,
     {
-        let mut draw = |sink: &mut dyn FnMut(&[u16])| {
+        let how = ["", "1", "2", "", "4"][N];
+        count(memory, workload, (how, rows), |workload, memory, sink| {
             let pixels = workload.width() * rows;
-            let Memory { color, samples, depth, records } = &mut *memory;
+            let Memory { color, samples, depth, records } = memory;
             let (samples, depth) = (&mut samples[..(N - 1) * pixels], &mut depth[..N * pixels]);
             with_samples::<N>(workload, (&mut color[..pixels], samples, depth, records), sink)
-        };
+        });
+    }
+
+    fn report_supersampled(memory: &mut Memory, workload: (&str, Priced), rows: usize) {
+        count(memory, workload, ("2x2", rows), |workload, memory, sink| {
+            let pixels = 4 * workload.width() * rows;
+            let Memory { color, depth, records, .. } = memory;
+            supersampled(workload, (&mut color[..pixels], &mut depth[..pixels], records), sink)
+        });
+    }
+
+    fn count(
+        memory: &mut Memory,
+        (name, workload): (&str, Priced),
+        (how, rows): (&str, usize),
+        draw: impl Fn(Priced, &mut Memory, &mut dyn FnMut(&[u16])) -> Stats,
+    ) {
+        let mut draw = |sink: &mut dyn FnMut(&[u16])| draw(workload, memory, sink);
         let ticks = count::ticks_of(|| {
             draw(&mut |strip| {
                 black_box(strip);
@@ -65,7 +83,7 @@ mod counting {
         });
         let mut hash = Hash::NEW;
         let drawn = draw(&mut |strip| hash.add(strip)).drawn;
-        println!("{name} {N}/{rows} {ticks} {drawn} {:08x}", hash.0);
+        println!("{name} {how}/{rows} {ticks} {drawn} {:08x}", hash.0);
     }
 
     pub fn run() {
@@ -80,6 +98,7 @@ mod counting {
                 report::<1>(memory, workload, rows);
                 report::<2>(memory, workload, rows);
                 report::<4>(memory, workload, rows);
+                report_supersampled(memory, workload, rows);
             }
         }
     }

@@ -5,10 +5,11 @@ use super::{
     BACKGROUND, Buffers, FaceColors, HEIGHT, IN_VIEW, OF_TORUS, SCREEN, TORUS, TORUS_SURFACE, WIDTH, Workload,
     frame_on, spot, tiny_mesh,
 };
+use core::convert::Infallible;
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
-use zstrip::frame::Renderer;
+use zstrip::frame::{Renderer, Supersampled};
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::Mesh;
 use zstrip::scene::Cull;
@@ -16,7 +17,7 @@ use zstrip::shader::{Blend, Flat, Gouraud, Opacity, Textured};
 use zstrip::span::{
     DepthBias, DepthState, DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup,
 };
-use zstrip::target::{DepthChoice, Stats, Strip, WithRecords, WithSamples};
+use zstrip::target::{DepthChoice, Stats, Strip, StripPixels, WithRecords, WithSamples};
 use zstrip::vertex::{PackedCorners, VertexShader, Wrapper};
 use zstrip::{Scene, State};
 
@@ -252,6 +253,37 @@ where
         }
         _ => sampled_frame::<N>(workload, buffers, sink, |_| {}),
     }
+}
+
+/// Draws a frame of a workload with 2 × 2 pixels for one. Colours and depths are those of the finer screen.
+pub fn supersampled(
+    workload: Priced,
+    (color, depth, records): (&mut [u16], &mut [u16], &mut [u32]),
+    sink: &mut dyn FnMut(&[u16]),
+) -> Stats {
+    let screen = Size::new(workload.width() as u32, HEIGHT as u32) * 2;
+    let renderer = Renderer::<Rgb565>::new(screen).and_then(|renderer| renderer.with_depth(depth));
+    let renderer = renderer.map(|renderer| renderer.with_records(records));
+    let Ok(mut renderer) = renderer.and_then(Supersampled::<_, _, _, 2>::new) else { return Stats::default() };
+    let sink = |strip: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(sink(strip.pixels()));
+    let stats = match workload {
+        Priced::W4 => {
+            renderer.frame_to(sink, color, BACKGROUND, |s| s.draw(&TORUS, &OF_TORUS, &Flat::new(TORUS_SURFACE)))
+        }
+        Priced::W5 => {
+            renderer.frame_to(sink, color, BACKGROUND, |s| s.draw(&TORUS, &OF_TORUS, &Gouraud::new(TORUS_SURFACE)))
+        }
+        Priced::W9 => {
+            let shader = Textured::new(&spot::TEXTURE).lit(spot::under_light([255; 3]));
+            renderer.frame_to(sink, color, BACKGROUND, |s| s.draw(&spot::TEXTURED, &spot::MATRIX, &shader))
+        }
+        Priced::W10 => {
+            let shader = Flat::new(const { spot::under_light(spot::COLOR) });
+            renderer.frame_to(sink, color, BACKGROUND, |s| s.draw(&spot::PLAIN, &spot::MATRIX, &shader))
+        }
+        _ => renderer.frame_to(sink, color, BACKGROUND, |_| {}),
+    };
+    stats.unwrap_or_default()
 }
 
 /// Buffers that do not hold a row draw nothing.

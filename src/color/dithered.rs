@@ -77,6 +77,18 @@ impl<P: Ditherable> PixelFormat for Dithered<P> {
         P::add(a, b)
     }
 
+    const SUMS: bool = P::SUMS;
+
+    #[inline(always)]
+    fn summand(raw: P::Raw) -> u32 {
+        P::summand(raw)
+    }
+
+    #[inline(always)]
+    fn of_sum(sum: u32, count: u32) -> P::Raw {
+        P::of_sum(sum, count)
+    }
+
     const DITHER: Option<[u32; 3]> = Some(P::BITS);
 
     #[inline(always)]

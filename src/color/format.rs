@@ -62,6 +62,26 @@ pub trait PixelFormat {
         Self::pack([ar.saturating_add(br), ag.saturating_add(bg), ab.saturating_add(bb)])
     }
 
+    /// True if a word holds the sums of up to 16 pixels' channels: see [`summand`](Self::summand).
+    const SUMS: bool = false;
+
+    /// Returns a word for the sum of up to 16 pixels, with room above each channel.
+    #[inline(always)]
+    #[must_use]
+    fn summand(raw: Self::Raw) -> u32 {
+        let _ = raw;
+        0
+    }
+
+    /// Returns the mean of `count` pixels, each channel rounded to nearest, from the sum of their
+    /// [summands](Self::summand). `count` is 2, 4, 8, 9 or 16.
+    #[inline(always)]
+    #[must_use]
+    fn of_sum(sum: u32, count: u32) -> Self::Raw {
+        let _ = (sum, count);
+        Self::pack([0; 3])
+    }
+
     /// Set if there is an alpha channel. Only [`Rgba8888`](crate::color::Rgba8888) has one, for colours that are about
     /// to be blended.
     const ALPHA: bool = false;

@@ -3,7 +3,7 @@
 use super::dithered::{DitherWords, Ditherable, WORDS_332, WORDS_565};
 use super::format::PixelFormat;
 use super::luma::luma;
-use super::rgb565::{add_rgb565, mix_rgb565, pack_rgb565, unpack_rgb565};
+use super::rgb565::{add_rgb565, mean_rgb565, mix_rgb565, pack_rgb565, spread_rgb565, unpack_rgb565};
 use crate::math::SMALL_CORE;
 use core::convert::identity;
 use embedded_graphics_core::pixelcolor::raw::RawU16;
@@ -91,6 +91,18 @@ macro_rules! sixteen_bits {
             #[inline(always)]
             fn add(a: u16, b: u16) -> u16 {
                 $store(add_rgb565($load(a), $load(b)))
+            }
+
+            const SUMS: bool = true;
+
+            #[inline(always)]
+            fn summand(raw: u16) -> u32 {
+                spread_rgb565($load(raw))
+            }
+
+            #[inline(always)]
+            fn of_sum(sum: u32, count: u32) -> u16 {
+                $store(mean_rgb565(sum, count))
             }
 
             const PACKED: bool = true;

@@ -2,9 +2,14 @@
 
 use super::dither::LIGHT;
 use super::format::PixelFormat;
+use core::marker::PhantomData;
 
 /// A way to take the mean of colours: [`MeanOfCodes`] or [`MeanOfLight`].
 pub trait Mean: sealed::Sealed {
+    /// Set if channels are added up as they are.
+    #[doc(hidden)]
+    const IS_OF_CODES: bool;
+
     /// Returns what is added up for a channel: below 2¹⁶.
     #[doc(hidden)]
     fn amount(code: u8) -> u32;
@@ -25,6 +30,8 @@ pub struct MeanOfCodes;
 pub struct MeanOfLight;
 
 impl Mean for MeanOfCodes {
+    const IS_OF_CODES: bool = true;
+
     #[inline(always)]
     fn amount(code: u8) -> u32 {
         code.into()
@@ -37,6 +44,8 @@ impl Mean for MeanOfCodes {
 }
 
 impl Mean for MeanOfLight {
+    const IS_OF_CODES: bool = false;
+
     #[inline(always)]
     fn amount(code: u8) -> u32 {
         LIGHT[usize::from(code)].into()
@@ -60,22 +69,47 @@ impl Mean for MeanOfLight {
     }
 }
 
-/// Returns the mean of pixels, each channel rounded to nearest: up to 2¹⁶ pixels.
-///
-/// `divide` divides a sum below 2³² by their number.
-#[inline(always)]
-pub(crate) fn mean<P: PixelFormat, M: Mean>(
-    pixels: impl Iterator<Item = P::Raw>,
-    count: u32,
-    divide: impl Fn(u32) -> u32,
-) -> P::Raw {
-    let mut sum = [count >> 1; 3];
-    for pixel in pixels {
-        for (sum, channel) in sum.iter_mut().zip(P::unpack(pixel)) {
+/// A sum of pixels: of up to 16.
+pub(crate) struct PixelSum<P, M> {
+    /// The sum of [summands](PixelFormat::summand), if the format has them.
+    word: u32,
+    channels: [u32; 3],
+    how: PhantomData<(P, M)>,
+}
+
+impl<P: PixelFormat, M: Mean> PixelSum<P, M> {
+    const IN_A_WORD: bool = P::SUMS && M::IS_OF_CODES;
+
+    #[inline(always)]
+    pub(crate) const fn new() -> Self {
+        Self { word: 0, channels: [0; 3], how: PhantomData }
+    }
+
+    #[inline(always)]
+    pub(crate) fn add(&mut self, pixel: P::Raw) {
+        if Self::IN_A_WORD {
+            self.word = self.word.wrapping_add(P::summand(pixel));
+            return;
+        }
+        for (sum, channel) in self.channels.iter_mut().zip(P::unpack(pixel)) {
             *sum += M::amount(channel);
         }
     }
-    P::pack(sum.map(|sum| M::code(divide(sum))))
+
+    /// Returns the mean of 2, 4, 8, 9 or 16 pixels, each channel rounded to nearest: to the levels of the format if
+    /// they are added up in one word, otherwise to 8 bits.
+    #[inline(always)]
+    pub(crate) fn mean(self, count: u32) -> P::Raw {
+        if Self::IN_A_WORD {
+            return P::of_sum(self.word, count);
+        }
+        // Sums are below 2²⁰: for them, ⌈2³² / 9⌉ / 2³² is as good as a ninth.
+        let divided = |sum: u32| match count {
+            9 => (u64::from(sum) * 0x1C71_C71D >> 32) as u32,
+            _ => sum >> (count.trailing_zeros() & 31),
+        };
+        P::pack(self.channels.map(|sum| M::code(divided(sum + (count >> 1)))))
+    }
 }
 
 mod sealed {

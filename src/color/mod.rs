@@ -20,7 +20,7 @@ pub use dithered::{DitherWords, Ditherable, Dithered};
 pub(crate) use fill::{clear, clear_words, fill};
 pub use format::PixelFormat;
 pub use formats::{Bgr565Be, Rgb332, Rgb565Be};
-pub(crate) use mean::mean;
+pub(crate) use mean::PixelSum;
 pub use mean::{Mean, MeanOfCodes, MeanOfLight};
 pub(crate) use packed::{load, pack, spread, spread_step, squeeze, store, unsqueeze, word};
 pub(crate) use resolve::resolve;

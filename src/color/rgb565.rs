@@ -30,6 +30,23 @@ pub(crate) const fn fold_rgb565(word: u32) -> u16 {
     (word | word >> 16) as u16
 }
 
+/// Returns the mean of 2, 4, 8, 9 or 16 colours from the sum of them, [spread](spread_rgb565): each channel rounded to
+/// nearest.
+///
+/// # Format
+/// Sums are at most 16 · 63, 10 bits, and 16 · 31, 9 bits, and the half that rounds is at most 8: they fit. A ninth is
+/// 7,282 / 2¹⁶, exact for sums below 2¹³.
+#[inline(always)]
+pub(super) const fn mean_rgb565(sum: u32, count: u32) -> u16 {
+    const UNITS: u32 = 1 << 21 | 1 << 11 | 1;
+    let sum = sum.wrapping_add(UNITS.wrapping_mul(count >> 1));
+    if count == 9 {
+        let (g, r, b) = (sum >> 21, sum >> 11 & 0x3FF, sum & 0x7FF);
+        return (((r * 7282 >> 16) << 11) | ((g * 7282 >> 16) << 5) | (b * 7282 >> 16)) as u16;
+    }
+    fold_rgb565(sum >> (count.trailing_zeros() & 31) & SPREAD)
+}
+
 /// Mixes two spread colours: `weight` 32nds of `a` and the rest of `b`, each channel rounded to nearest.
 ///
 /// # Format

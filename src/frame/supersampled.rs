@@ -3,7 +3,7 @@
 use super::error::{FrameError, RendererError};
 use super::frame::Frame;
 use super::renderer::Renderer;
-use crate::color::{Mean, MeanOfCodes, PixelFormat, mean};
+use crate::color::{Mean, MeanOfCodes, PixelFormat, PixelSum};
 use crate::scene::Scene;
 use crate::target::{DepthChoice, OnDisplay, RecordsChoice, Stats, Strip, StripPixels, StripSink};
 use core::fmt;
@@ -187,30 +187,66 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice, const N: usize, M> fmt::D
 
 /// Makes the mean of each square of `N` × `N` pixels in rows of `width`, one after the other from the first pixel on.
 ///
-/// A mean lies in front of the pixels that are still to be read: mean number y · w + x, in rows of w = `width` / `N`, is
-/// of pixels from `N`² y · w + `N` x on.
+/// Means lie in front of the rows that are still to be read. Those of the first `N` rows lie on them: mean x takes the
+/// place of pixel x, when pixels from `N` x on are read.
 #[inline(never)]
 fn average<P: PixelFormat, M: Mean, const N: usize>(pixels: &mut [P::Raw], width: usize) {
-    let count = (N * N) as u32;
-    let mut to = 0;
-    let mut row = 0;
-    while row < pixels.len() {
-        let mut at = row;
-        while at < row + width {
-            let square = |k: usize| pixels.get(at + k / N * width + k % N).copied();
-            let Some(first) = square(0) else { return };
-            let is_first =
-                |k: usize| square(k).is_none_or(|pixel| bytemuck::bytes_of(&pixel) == bytemuck::bytes_of(&first));
-            let value = if (1..N * N).all(is_first) {
-                first
-            } else {
-                mean::<P, M>((0..N * N).filter_map(square), count, |sum| sum / count)
-            };
-            if let Some(pixel) = pixels.get_mut(to) {
-                *pixel = value;
-            }
-            (at, to) = (at + N, to + 1);
+    let (means, rows) = (width / N, N * width);
+    for x in 0..means {
+        let mut sum = PixelSum::<P, M>::new();
+        for y in 0..N {
+            let row = pixels.get(y * width + N * x..).and_then(|row| row.first_chunk::<N>());
+            row.into_iter().flatten().for_each(|pixel| sum.add(*pixel));
         }
-        row += N * width;
+        if let Some(pixel) = pixels.get_mut(x) {
+            *pixel = sum.mean((N * N) as u32);
+        }
+    }
+    let (mut to, mut from) = (means, rows);
+    while let Some((before, rest)) = pixels.split_at_mut_checked(from)
+        && let (Some(before), Some(rest)) = (before.get_mut(to..to + means), rest.get(..rows))
+    {
+        average_rows::<P, M, N>(before, rest, width);
+        (to, from) = (to + means, from + rows);
+    }
+}
+
+/// Makes the means of the squares in `N` rows.
+#[inline(always)]
+fn average_rows<P: PixelFormat, M: Mean, const N: usize>(means: &mut [P::Raw], rows: &[P::Raw], width: usize) {
+    // Rows that are not there, of two or three, are some others.
+    let row = |y: usize| rows.get(y.min(N - 1) * width..).unwrap_or_default().chunks_exact(N);
+    let mean = |squares: [&[P::Raw]; 4]| {
+        let mut sum = PixelSum::<P, M>::new();
+        let [a, b, c, d] = squares;
+        add_row::<P, M, N>(&mut sum, a);
+        add_row::<P, M, N>(&mut sum, b);
+        if N > 2 {
+            add_row::<P, M, N>(&mut sum, c);
+        }
+        if N > 3 {
+            add_row::<P, M, N>(&mut sum, d);
+        }
+        sum.mean((N * N) as u32)
+    };
+    let to = means.iter_mut().zip(row(0).zip(row(1)));
+    if N == 2 {
+        to.for_each(|(to, (a, b))| *to = mean([a, b, a, b]));
+    } else {
+        to.zip(row(2).zip(row(3))).for_each(|((to, (a, b)), (c, d))| *to = mean([a, b, c, d]));
+    }
+}
+
+/// Adds `N` pixels. Unrolled by hand: at `opt-level = "s"` a loop would stay a loop.
+#[inline(always)]
+fn add_row<P: PixelFormat, M: Mean, const N: usize>(sum: &mut PixelSum<P, M>, pixels: &[P::Raw]) {
+    let Some([a, b, rest @ ..]) = pixels.first_chunk::<N>().map(<[_; N]>::as_slice) else { return };
+    sum.add(*a);
+    sum.add(*b);
+    if let [c, rest @ ..] = rest {
+        sum.add(*c);
+        if let [d, ..] = rest {
+            sum.add(*d);
+        }
     }
 }
