@@ -5,7 +5,8 @@
 //! The words are shows, one after the other: a head, `turntable::show_head`, and a container. It prints
 //! `stage show.number ticks hash vertices triangles drawn`: SysTick's ticks over a stage of a frame, which are
 //! instructions on RISC-V. The stages are `check`, which is `Model::from_bytes`, `clear`, a frame without a model, and
-//! for each frame of a turntable's show `pose` (of models with clips), `place` and `draw`.
+//! for each frame of a turntable's show `pose` (of models with clips), `place`, `cull` (of shows with clusters) and
+//! `draw`.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
@@ -27,12 +28,14 @@ mod counting {
     use super::count;
     use super::hash::Hash;
     use super::turntable::{
-        self, BACKGROUND, HEAD, MAGIC, MOST_DRAWS, MOST_POSE, MOST_RECORDS, MOST_STRIP, MOST_WORDS, Panel, Turntable,
+        self, BACKGROUND, HEAD, MAGIC, MOST_CLUSTERS, MOST_DRAWS, MOST_POSE, MOST_RECORDS, MOST_STRIP, MOST_WORDS,
+        Panel, Turntable, Way,
     };
     use core::hint::black_box;
     use semihosting::println;
     use zstrip::embedded_graphics_core::pixelcolor::Rgb565;
     use zstrip::light::Sunlit;
+    use zstrip::mesh::BoundsNode;
     use zstrip::model::{Model, Place, Placed};
     use zstrip::prelude::*;
     use zstrip::target::{Stats, Strip, WithDepth, WithRecords};
@@ -43,6 +46,7 @@ mod counting {
         records: [u32; MOST_RECORDS],
         pose: [u32; MOST_POSE],
         places: [Option<Place<Sunlit>>; MOST_DRAWS],
+        nodes: [BoundsNode; MOST_CLUSTERS],
     }
 
     /// Colours, depths and records of a frame.
@@ -72,6 +76,7 @@ mod counting {
         panel: Panel,
         bytes: &'w [u8],
         frames: u32,
+        way: Way,
     }
 
     impl Show<'_> {
@@ -100,7 +105,8 @@ mod counting {
             let Some(Ok(model)) = model else { return Err("the container is wrong") };
             let table = Turntable::new(&model, &panel).map_err(|_| "the model is out of the range of numbers")?;
             let pixels = (panel.width as usize).saturating_mul(panel.rows as usize);
-            let Memory { color, depth, records, pose: pose_words, places } = memory;
+            let Memory { color, depth, records, pose: pose_words, places, nodes } = memory;
+            let records = if self.way.directly { &mut [] } else { &mut records[..] };
             let (Some(color), Some(depth)) = (color.get_mut(..pixels), depth.get_mut(..pixels)) else {
                 return Err("a strip has too many pixels");
             };
@@ -133,7 +139,13 @@ mod counting {
                     .ok();
                 });
                 self.report("place", number, ticks, &none, &Hash::NEW);
-                draw("draw", number, Some(&placed.ok_or("the model has too many draws")?));
+                let mut placed = Some(placed.ok_or("the model has too many draws")?);
+                if self.way.clusters {
+                    let ticks =
+                        count::ticks_of(|| placed = placed.take().map(|placed| placed.cull_clusters(&mut *nodes)));
+                    self.report("cull", number, ticks, &none, &Hash::NEW);
+                }
+                draw("draw", number, placed.as_ref());
             }
             Ok(())
         }
@@ -142,7 +154,7 @@ mod counting {
     /// Counts all shows that stand in some words.
     fn count_all(mut words: &[u32], memory: &mut Memory) -> Result<(), &'static str> {
         let (mut bytes, mut number): (&[u8], _) = (&[], 0);
-        while let Some((&[MAGIC, width, height, rows, zoom, length, frames, _], rest)) =
+        while let Some((&[MAGIC, width, height, rows, zoom, length, frames, way], rest)) =
             words.split_first_chunk::<HEAD>()
         {
             let length = length as usize;
@@ -153,7 +165,7 @@ mod counting {
                 bytes = zstrip::bytemuck::cast_slice(container).get(..length).unwrap_or_default();
             }
             let panel = Panel { width, height, rows, zoom };
-            Show { number, panel, bytes, frames }.run(memory)?;
+            Show { number, panel, bytes, frames, way: Way::of(way) }.run(memory)?;
             (words, number) = (rest, number + 1);
         }
         if number == 0 { Err("the words are not those of a show") } else { Ok(()) }
@@ -162,8 +174,14 @@ mod counting {
     pub fn run() {
         /// Where QEMU puts the words: PSRAM of the MPS2 boards, RAM of `virt` behind that of `memory.x`.
         const WORDS_AT: usize = if cfg!(target_arch = "arm") { 0x2100_0000 } else { 0x8100_0000 };
-        static mut MEMORY: Memory =
-            Memory { color: [0; _], depth: [0; _], records: [0; _], pose: [0; _], places: [None; _] };
+        static mut MEMORY: Memory = Memory {
+            color: [0; _],
+            depth: [0; _],
+            records: [0; _],
+            pose: [0; _],
+            places: [None; _],
+            nodes: [BoundsNode::EMPTY; _],
+        };
 
         let memory = &raw mut MEMORY;
         // SAFETY: `run` is called once; this is the only reference.

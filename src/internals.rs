@@ -4,4 +4,4 @@
 pub use crate::raster::{Line, PixelRect, spans, square};
 pub use crate::vertex::clip::{ClipVertex, DepthSlab, Outcode, clip_triangle, weighted};
 pub use crate::vertex::project::{Projected, project, projected, signed_area};
-pub use crate::vertex::transform::{ScreenMatrix, Transform};
+pub use crate::vertex::transform::{Planes, ScreenMatrix, Transform};

@@ -10,7 +10,7 @@ use std::ops::Range;
 use support::{difference, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
-use zstrip::internals::{Outcode, ScreenMatrix};
+use zstrip::internals::{Outcode, Planes, ScreenMatrix};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};
 use zstrip::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions, Topology};
 use zstrip::shader::Gouraud;
@@ -101,6 +101,11 @@ fn boxes_are_culled_if_all_corners_are_outside_of_a_plane_and_only_then() {
         let mut screen = ScreenMatrix::EMPTY;
         screen.set_from(&camera, &viewport);
         let sees = screen.sees(&bounds, &columns, &lines, Outcode(clamped));
+
+        // The way of nodes, whose sides are made once for many boxes.
+        let mut planes_of_nodes = Planes::EMPTY;
+        screen.set_planes(&mut planes_of_nodes, &columns, &lines, Outcode(clamped));
+        assert_eq!(planes_of_nodes.sees(&bounds), sees, "seed {seed}");
 
         let counts = |k: usize| match k {
             4 => clamped & Outcode::NEAR == 0,

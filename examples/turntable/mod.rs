@@ -25,6 +25,8 @@ pub const MOST_STRIP: usize = 320 * 320;
 pub const MOST_DRAWS: usize = 256;
 /// Words of records that it has.
 pub const MOST_RECORDS: usize = 400 * 1024;
+/// Clusters of all draws together, the most that it has memory for.
+pub const MOST_CLUSTERS: usize = 4096;
 /// Words of a pose, the most that it has memory for.
 pub const MOST_POSE: usize = 192 * 1024;
 /// Words of all shows together, the most that it has memory for.
@@ -35,11 +37,34 @@ pub const MAGIC: u32 = u32::from_le_bytes(*b"SHOW");
 /// Words before the container.
 pub const HEAD: usize = 8;
 
+/// The way in which a show is drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Way {
+    /// Set if each strip goes over all of the model, because nothing is recorded.
+    pub directly: bool,
+    /// Set if the clusters of parts are culled one by one.
+    pub clusters: bool,
+}
+
+impl Way {
+    /// Returns the way that the last word of a head says.
+    #[must_use]
+    pub const fn of(word: u32) -> Self {
+        Self { directly: word & 1 != 0, clusters: word & 2 != 0 }
+    }
+
+    /// Returns the last word of a head.
+    #[must_use]
+    pub const fn word(self) -> u32 {
+        self.directly as u32 | (self.clusters as u32) << 1
+    }
+}
+
 /// Returns the words before a container of `bytes` bytes; 0 stands for the container of the show before. Of all frames,
 /// about `frames` are counted and not drawn again for their hashes; 0 stands for all, with hashes.
 #[must_use]
-pub const fn show_head(panel: &Panel, bytes: u32, frames: u32) -> [u32; HEAD] {
-    [MAGIC, panel.width, panel.height, panel.rows, panel.zoom, bytes, frames, 0]
+pub const fn show_head(panel: &Panel, bytes: u32, frames: u32, way: Way) -> [u32; HEAD] {
+    [MAGIC, panel.width, panel.height, panel.rows, panel.zoom, bytes, frames, way.word()]
 }
 
 /// Returns the numbers of the frames of a show of which about `frames` are counted, or all for 0.

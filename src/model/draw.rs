@@ -134,7 +134,7 @@ impl<S: Surface + Copy> PartDraw<'_, S> {
 
     #[inline(always)]
     fn by<F: Framebuffer, T: Shader<F::Format>>(&self, scene: &mut Scene<'_, F>, depth: DepthState, shader: T) {
-        scene.draw_with(self.state(depth), &self.mesh, &self.place.mvp, &shader);
+        scene.draw_clusters(self.state(depth), &self.mesh, &self.place.mvp, &shader);
     }
 
     /// Returns a textured shader on the part's texture coordinates.

@@ -5,6 +5,7 @@
 
 mod assembly;
 mod canvas;
+mod clusters;
 mod cull;
 mod draw;
 mod hooks;

@@ -15,6 +15,7 @@ use crate::vertex::{
     CLIPPED_CORNERS, ClipVertex, Clipping, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face, Outcode,
     PackedVertex, Transform, Varyings,
 };
+use core::ops::Range;
 
 /// Work that a draw does only in some states, as function pointers that are set where the state is known. So a program
 /// links only the functions that its states need.
@@ -62,6 +63,16 @@ pub(super) struct MeshProgram<'s, F: Framebuffer, S: Shader<F::Format>> {
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> MeshProgram<'_, F, S> {
+    /// Stage 2, vertices: projects a range of the vertices of a draw that keeps them.
+    #[inline(never)]
+    pub(super) fn project(&self, scene: &mut Scene<'_, F>, vertices: Range<usize>) {
+        if F::RECORDS {
+            let places = scene.records.positions_mut().get_mut(vertices.clone()).unwrap_or_default();
+            scene.stats.vertices = scene.stats.vertices.wrapping_add(places.len() as u32);
+            self.stage.project_range(vertices, places);
+        }
+    }
+
     fn face_of(&self, number: usize, corners: [u16; 3], area: i64) -> u32 {
         let VertexStage { mesh, shader, .. } = self.stage;
         shader.face(&Face::new(mesh, number, corners, self.state.side(area)))

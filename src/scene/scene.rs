@@ -7,7 +7,8 @@ use crate::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions};
 use crate::raster::PixelRect;
 use crate::target::{Framebuffer, Records, Stats, StripRows};
 use crate::vertex::{
-    DepthRange, DepthScale, MAX_DISTANCES, ScreenMatrix, Transform, VERTEX_WORDS, Varyings, VertexShader, Viewport,
+    DepthRange, DepthScale, MAX_DISTANCES, Planes, ScreenMatrix, Transform, VERTEX_WORDS, Varyings, VertexShader,
+    Viewport,
 };
 use core::ops::Range;
 use embedded_graphics_core::geometry::Size;
@@ -130,6 +131,15 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let PixelRect { x, y } = self.clip_rect(&self.band);
         let (x, y) = (x.start - reach..x.end + reach, y.start - reach..y.end + reach);
         screen.sees(bounds, &x, &y, range.clamped())
+    }
+
+    /// Sets planes to the sides of the part of the view volume that is seen through the band.
+    #[inline(never)]
+    pub(super) fn set_planes(&self, planes: &mut Planes, mvp: &Projective, range: DepthRange) {
+        let mut screen = ScreenMatrix::EMPTY;
+        screen.set_from(mvp, &self.viewport);
+        let PixelRect { x, y } = self.clip_rect(&self.band);
+        screen.set_planes(planes, &x, &y, range.clamped());
     }
 
     /// Tests up to 32 nodes of a hierarchy, from `next` on, and moves `next` past them. Returns one bit per node, the

@@ -8,6 +8,7 @@ use crate::vertex::{
     ClipCorner, ClipVertex, MAX_DISTANCES, Outcode, PackedVertex, Projected, Transform, Varyings, VertexRef,
     VertexShader, inverse_w, weighted,
 };
+use core::ops::Range;
 
 /// The inputs of the vertex stage.
 pub(super) struct VertexStage<'s, S> {
@@ -23,6 +24,21 @@ impl<S: VertexShader> VertexStage<'_, S> {
         match self.transform.short_points(&self.mesh.data().positions) {
             Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => self.transform.project_all(points, places),
             _ => self.project_each(places),
+        }
+    }
+
+    /// Projects a range of the vertices of a draw, as [`project_all`](Self::project_all) does all of them.
+    #[inline(never)]
+    pub(super) fn project_range(&self, vertices: Range<usize>, places: &mut [[u32; 2]]) {
+        match self.transform.short_points(&self.mesh.data().positions) {
+            Some(points) if !S::DISPLACES && S::CLIP_DISTANCES == 0 => {
+                self.transform.project_all(points.get(vertices).unwrap_or_default(), places);
+            }
+            _ => {
+                for (index, place) in vertices.zip(places) {
+                    *place = self.project(index).words();
+                }
+            }
         }
     }
 

@@ -30,7 +30,7 @@ pub use painters_order::{SortError, SortReport, SortScratch, painters_order};
 pub use project::{DepthScale, ScreenVertex};
 pub(crate) use project::{Projected, inverse_w, project, signed_area, small};
 pub use shader::{Face, Side, VertexRef, VertexShader};
-pub(crate) use transform::{ScreenMatrix, Transform};
+pub(crate) use transform::{Planes, ScreenMatrix, Transform};
 pub(crate) use varyings::{MAX_IN_REGISTERS, PerspectiveClass, PerspectivePlane, PerspectiveSetup, Plane64};
 pub use varyings::{Perspective, Varyings};
 pub use viewport::{Viewport, ViewportError};

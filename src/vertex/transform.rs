@@ -83,6 +83,32 @@ fn excess(values: &[i64], bits: i32) -> i32 {
     64 - leading_zeros_long(all) as i32 - bits
 }
 
+/// A plane, cut to 15 bits and a sign.
+type ShortPlane = [i32; 4];
+
+/// Returns the plane `a` `row` + `b` `w`.
+#[inline(always)]
+fn short_plane(row: &[i64; 4], a: i32, w: &[i64; 4], b: i32) -> ShortPlane {
+    let entries: [i64; 4] = core::array::from_fn(|k| row[k] * i64::from(a) + w[k] * i64::from(b));
+    let cut = excess(&entries, 15).max(17);
+    entries.map(|entry| (entry >> cut) as i32)
+}
+
+/// The sides of a part of the view volume. See [`ScreenMatrix::set_planes`].
+pub struct Planes([[ShortPlane; 2]; 3]);
+
+impl Planes {
+    /// Sides that see everything: a place for [`ScreenMatrix::set_planes`] to fill.
+    pub const EMPTY: Self = Self([[[0; 4]; 2]; 3]);
+
+    /// Returns whether any part of a box may be visible, as [`ScreenMatrix::sees`] does.
+    #[inline(never)]
+    pub fn sees(&self, bounds: &Bounds) -> bool {
+        let short = ShortBox::new(bounds);
+        self.0.as_flattened().iter().all(|plane| short.reaches_plane(plane))
+    }
+}
+
 /// A bounding box cut to 14 bits, in units of 2^`shift`.
 struct ShortBox {
     /// Centre and half size of the box.
@@ -109,13 +135,17 @@ impl ShortBox {
     /// Returns whether `a` `row` + `b` `w` may be positive anywhere in the box.
     #[inline(never)]
     fn reaches(&self, row: &[i64; 4], a: i32, w: &[i64; 4], b: i32) -> bool {
-        let entries: [i64; 4] = core::array::from_fn(|k| row[k] * i64::from(a) + w[k] * i64::from(b));
-        let cut = excess(&entries, 15).max(17);
+        self.reaches_plane(&short_plane(row, a, w, b))
+    }
+
+    /// Returns whether a plane may be positive anywhere in the box.
+    #[inline(always)]
+    fn reaches_plane(&self, plane: &ShortPlane) -> bool {
+        let [.., last] = plane;
         // The last entry belongs to a coordinate of 1, which is 2¹⁶ here.
-        let mut value = self.slack + (((entries[3] >> cut) as i32) << 15 >> self.shift);
+        let mut value = self.slack + (*last << 15 >> self.shift);
         let [center, half] = &self.sides;
-        for (entry, (center, half)) in entries.iter().zip(center.iter().zip(half)) {
-            let entry = (entry >> cut) as i32;
+        for (entry, (center, half)) in plane.iter().zip(center.iter().zip(half)) {
             let size = entry.abs();
             value += ((entry * center) >> 1) + ((size * half) >> 1) + size;
         }
@@ -174,6 +204,22 @@ impl ScreenMatrix {
             (clamped & Outcode::FAR != 0 || short.reaches(row, -512, w, range.end))
                 && (clamped & Outcode::NEAR != 0 || short.reaches(row, 512, w, -range.start))
         })
+    }
+
+    /// Sets planes to those that [`sees`](Self::sees) tests, for tests of many boxes: a test by them takes some 380
+    /// instructions on a Cortex-M0+, instead of 3,800. A side that does not count is 0, which every box reaches.
+    #[inline(never)]
+    pub fn set_planes(&self, planes: &mut Planes, columns: &Range<i32>, lines: &Range<i32>, clamped: Outcode) {
+        let [.., w] = &self.rows;
+        let axes = [(columns, 0), (lines, 0), (&(0..512), clamped.0)];
+        for (([end, start], row), (range, clamped)) in planes.0.iter_mut().zip(&self.rows).zip(axes) {
+            if clamped & Outcode::FAR == 0 {
+                *end = short_plane(row, -512, w, range.end);
+            }
+            if clamped & Outcode::NEAR == 0 {
+                *start = short_plane(row, 512, w, -range.start);
+            }
+        }
     }
 
     /// Returns the least w in a box.

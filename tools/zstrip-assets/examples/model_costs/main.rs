@@ -17,7 +17,7 @@ mod shapes;
 
 use std::path::Path;
 use std::process::ExitCode;
-use zstrip_assets::preview::{Container, Format, MOST_WORDS, Panel, Stage, show_head};
+use zstrip_assets::preview::{Container, Format, MOST_WORDS, Panel, Stage, Way, show_head};
 
 /// A made-up model, and how it is counted.
 pub struct Show {
@@ -47,7 +47,7 @@ fn write(to: &Path) -> Result<(), String> {
     for show in &shows()? {
         for (k, panel) in show.panels.iter().enumerate() {
             let bytes = if k == 0 { show.container.bytes() } else { &[] };
-            words.extend(show_head(panel, bytes.len() as u32, FRAMES));
+            words.extend(show_head(panel, bytes.len() as u32, FRAMES, Way::default()));
             words.extend(bytes.chunks(4).map(|chunk| {
                 let mut word = [0; 4];
                 word[..chunk.len()].copy_from_slice(chunk);

@@ -67,6 +67,8 @@ pub const CORES: [Core; 3] = [
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Counted {
     pub stage: String,
+    /// The number of the show.
+    pub show: usize,
     /// The number of the frame.
     pub number: u32,
     pub instructions: u64,
@@ -184,10 +186,11 @@ pub fn run(
 fn parse(line: &str) -> Option<Counted> {
     let mut words = line.split(' ');
     let (stage, run) = (words.next()?.to_owned(), words.next()?);
-    let number = run.split_once('.')?.1.parse().ok()?;
+    let (show, number) = run.split_once('.')?;
+    let (show, number) = (show.parse().ok()?, number.parse().ok()?);
     let instructions = words.next()?.parse().ok()?;
     let hash = u32::from_str_radix(words.next()?, 16).ok()?;
-    Some(Counted { stage, number, instructions, hash })
+    Some(Counted { stage, show, number, instructions, hash })
 }
 
 /// Reads a line of the plugin: `REGION number insns=n cycles=c`.
@@ -215,8 +218,8 @@ mod tests {
 
     #[test]
     fn lines_of_firmware_and_plugin_are_read() {
-        let counted = Counted { stage: "draw".to_owned(), number: 7, instructions: 123, hash: 0x811C_9DC5 };
-        assert_eq!(parse("draw 0.7 123 811c9dc5 10 20 30"), Some(counted));
+        let counted = Counted { stage: "draw".to_owned(), show: 2, number: 7, instructions: 123, hash: 0x811C_9DC5 };
+        assert_eq!(parse("draw 2.7 123 811c9dc5 10 20 30"), Some(counted));
         assert_eq!(parse("error: the container is wrong"), None);
         assert_eq!(instructions("REGION 0 insns=1234 cycles=2000"), Some(1234));
         assert_eq!(instructions("TOTAL 0 insns=1234"), None);

@@ -25,4 +25,6 @@ pub use estimate::{
 };
 pub use picture::{Picture, contact_sheet};
 pub use stage::{Container, Format, Stage};
-pub use turntable::{MOST_DRAWS, MOST_POSE, MOST_RECORDS, MOST_STRIP, MOST_WORDS, Panel, Step, TURN, show_head};
+pub use turntable::{
+    MOST_CLUSTERS, MOST_DRAWS, MOST_POSE, MOST_RECORDS, MOST_STRIP, MOST_WORDS, Panel, Step, TURN, Way, show_head,
+};

@@ -191,6 +191,14 @@ impl<'m> Stage<'m> {
         self.model
     }
 
+    /// Returns the number of clusters of all draws, each of the level of detail that has most of them: as many nodes as
+    /// `Placed::cull_clusters` may use.
+    #[must_use]
+    pub fn clusters(&self) -> usize {
+        let parts = self.items::<zstrip::model::container::Part>(SectionKind::Parts);
+        self.nodes_parts().filter_map(|part| parts.get(part)).map(|part| usize::from(part.clusters)).sum()
+    }
+
     /// Returns the number of frames in which the model turns round and plays its clips.
     #[must_use]
     pub fn steps(&self) -> u32 {
