@@ -30,6 +30,7 @@
 //! | simplify | triangles, a budget | fewer triangles | `simplify.rs` |
 //! | normals | faces | a normal per vertex | `normals.rs` |
 //! | cluster | triangles | clusters, meshes of at most 65,535 vertices | `cluster.rs` |
+//! | levels of detail | meshes | meshes of fewer triangles, with measured errors | `lods.rs`, `distance.rs` |
 //!
 //! # From meshes to a container
 //!
@@ -54,12 +55,14 @@
 
 mod clean;
 mod cluster;
+mod distance;
 mod draft;
 mod error;
 mod files;
 mod geometry;
 mod gltf;
 mod image;
+mod lods;
 mod model;
 mod mtl;
 mod normals;
@@ -80,6 +83,7 @@ mod stl;
 mod triangulate;
 mod vertices;
 mod weld;
+mod words;
 mod write;
 
 use std::path::Path as FilePath;
@@ -94,7 +98,9 @@ pub use report::{Counts, Note, Report};
 pub use save::save;
 pub use script::{build, build_with};
 pub use source::write_rust;
-pub use write::{Errors, TextureKind, UvSize, WriteError, WriteNote, WriteOptions, WriteReport, Written, write};
+pub use write::{
+    Errors, LevelReport, TextureKind, UvSize, WriteError, WriteNote, WriteOptions, WriteReport, Written, write,
+};
 
 use draft::Context;
 use files::Files;
@@ -210,14 +216,17 @@ pub fn import_with_progress(
     // Each draft keeps the same part of its triangles.
     let share = |of: usize| options.max_triangles.map(|most| part(of, most, triangles));
     let count = groups.len();
-    let mut meshes_of_drafts = Vec::new();
+    let (mut meshes_of_drafts, mut shapes) = (Vec::new(), Vec::new());
     for (k, group) in groups.into_iter().enumerate() {
         progress(Progress::Mesh { number: k + 1, count });
+        let first = import.meshes.len();
         for meshes in process::finish(group, &share, &mut context) {
             meshes_of_drafts.push(import.meshes.len()..import.meshes.len() + meshes.len());
             import.meshes.extend(meshes);
         }
+        shapes.push(first..import.meshes.len());
     }
+    let meshes = import.meshes.len();
     if let Some(image) = image {
         paint(&mut import, image);
     }
@@ -226,6 +235,7 @@ pub fn import_with_progress(
         context.take_numbers(2 * count as u64, || Place::File)?;
         node.meshes = node.meshes.iter().flat_map(|draft| meshes_of_drafts[*draft].clone()).collect();
     }
+    lods::add(&mut import, &shapes, options, &mut context.report);
     if !scene.is_static {
         place::place_nodes(&mut import, up, &context)?;
     }
@@ -234,9 +244,9 @@ pub fn import_with_progress(
     (report.files, report.missing) = (context.files.read, context.files.missing);
     report.add(Note::Mirrored { nodes: import.mirrored() });
     report.after = Counts {
-        vertices: import.meshes.iter().map(|mesh| mesh.vertices.len()).sum(),
-        triangles: import.meshes.iter().map(|mesh| mesh.triangles.len()).sum(),
-        meshes: import.meshes.len(),
+        vertices: import.meshes[..meshes].iter().map(|mesh| mesh.vertices.len()).sum(),
+        triangles: import.meshes[..meshes].iter().map(|mesh| mesh.triangles.len()).sum(),
+        meshes,
     };
     report.bounds = import.bounds();
     Ok((import, report))

@@ -100,6 +100,12 @@ pub struct Mesh {
     pub triangles: Vec<[u32; 3]>,
     /// Consecutive runs of triangles, which together are all of them.
     pub clusters: Vec<Cluster>,
+    /// A mesh of a higher number that can stand for this one where it is small on the screen: its next level of detail.
+    /// No node shows it.
+    pub coarser: Option<usize>,
+    /// Of a level of detail: a bound of the distance between it and the mesh that it stands for, in units of the mesh.
+    /// It grows from level to level.
+    pub error: f64,
 }
 
 /// A run of triangles that lie close to each other, with bounds to cull it as a whole.

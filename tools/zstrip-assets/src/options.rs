@@ -30,6 +30,11 @@ pub struct Options {
     pub weld_distance: f64,
     /// A budget of triangles for the whole model. Models of more are simplified.
     pub max_triangles: Option<usize>,
+    /// Levels of detail that are made of each mesh, beside the mesh itself: 0 to 15. `zstrip::model::Model::place` then
+    /// chooses the coarsest one whose error is below a pixel.
+    pub lods: usize,
+    /// The part of a level's triangles that the next level has: 0.05 to 0.9.
+    pub lod_ratio: f64,
     /// The most vertices of a mesh; models of more are split. 3 to 65,535.
     pub max_vertices: usize,
     /// The most vertices of a cluster: 3 to 255.
@@ -53,6 +58,8 @@ impl Default for Options {
             crease_angle: 50.0,
             weld_distance: 0.0,
             max_triangles: None,
+            lods: 0,
+            lod_ratio: 0.5,
             max_vertices: 65_535,
             cluster_vertices: 64,
             cluster_triangles: 124,
@@ -78,6 +85,10 @@ impl Options {
             wrong("the most vertices of a cluster", self.cluster_vertices.to_string(), "3 to 255")
         } else if !(4..=512).contains(&self.cluster_triangles) || !self.cluster_triangles.is_multiple_of(4) {
             wrong("the most triangles of a cluster", self.cluster_triangles.to_string(), "a multiple of 4, 4 to 512")
+        } else if self.lods > 15 {
+            wrong("the number of levels of detail", self.lods.to_string(), "0 to 15")
+        } else if !(0.05..=0.9).contains(&self.lod_ratio) {
+            wrong("the ratio of levels of detail", self.lod_ratio.to_string(), "0.05 to 0.9")
         } else if self.max_triangles == Some(0) {
             wrong("the budget of triangles", "0".to_owned(), "1 or more")
         } else {

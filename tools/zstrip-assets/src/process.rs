@@ -161,7 +161,7 @@ fn is_missing(draft: &Draft, v: u32) -> bool {
 }
 
 /// Positions as parts of the largest extent, from 0 to 1, and that extent: meshopt squares numbers in 32 bits.
-fn unit_positions(positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, f32) {
+pub(crate) fn unit_positions(positions: &[[f32; 3]]) -> (Vec<[f32; 3]>, f32) {
     let Some(bounds) = Bounds::around(positions.iter().copied()) else { return (Vec::new(), 0.0) };
     let extent = |k: usize| f64::from(bounds.max[k]) - f64::from(bounds.min[k]);
     let size = (0..3).map(extent).fold(0.0, f64::max);

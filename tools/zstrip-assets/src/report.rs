@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use crate::model::Bounds;
+use crate::words::{count, verb};
 
 /// Sizes of a model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -115,6 +116,17 @@ pub enum Note {
         /// The largest distance that the surface moved, in units of the file.
         error: f32,
     },
+    /// Meshes have fewer levels of detail than were asked for, because simplifying them further leaves nearly as many
+    /// triangles.
+    LevelsEnded {
+        /// The number of meshes.
+        meshes: usize,
+    },
+    /// Meshes that joints or morph targets move have no levels of detail.
+    LevelsOfMoved {
+        /// The number of meshes.
+        meshes: usize,
+    },
     /// A mesh had too many vertices and was split.
     Split {
         /// Its name.
@@ -176,43 +188,77 @@ pub enum Note {
 impl fmt::Display for Note {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Triangulated { polygons } => write!(f, "{polygons} polygons divided into triangles"),
-            Self::Crossed { polygons } => {
-                write!(f, "{polygons} polygons cross themselves or have no plane; divided as fans, so look at them")
+            Self::Triangulated { polygons } => write!(f, "{} divided into triangles", count(*polygons, "polygon")),
+            Self::Crossed { polygons } => write!(
+                f,
+                "{} with crossing sides or without a plane divided as fans, so look at them",
+                count(*polygons, "polygon")
+            ),
+            Self::Moved { vertices } => {
+                write!(f, "{} moved to others within the weld distance", count(*vertices, "vertex"))
             }
-            Self::Moved { vertices } => write!(f, "{vertices} vertices moved to others within the weld distance"),
-            Self::Welded { vertices } => write!(f, "{vertices} equal or unused vertices left out"),
-            Self::Degenerate { triangles } => write!(f, "{triangles} triangles without area dropped"),
-            Self::Duplicate { triangles } => write!(f, "{triangles} duplicate triangles dropped"),
-            Self::Flipped { triangles } => write!(f, "{triangles} triangles turned over"),
-            Self::Opposed { triangles } => {
-                write!(
-                    f,
-                    "{triangles} triangles have normals that point to their back; Winding::FromNormals turns them"
-                )
+            Self::Welded { vertices } => write!(f, "{} left out as equal or unused", count(*vertices, "vertex")),
+            Self::Degenerate { triangles } => write!(f, "{} without area dropped", count(*triangles, "triangle")),
+            Self::Duplicate { triangles } => write!(f, "{} dropped as duplicates", count(*triangles, "triangle")),
+            Self::Flipped { triangles } => write!(f, "{} turned over", count(*triangles, "triangle")),
+            Self::Opposed { triangles } => write!(
+                f,
+                "{} with normals that point to the back; --fix-winding (Winding::FromNormals) turns such triangles over",
+                count(*triangles, "triangle")
+            ),
+            Self::OpenEdges { edges } => {
+                write!(f, "{}; the inside can be seen through open edges", count(*edges, "open edge"))
             }
-            Self::OpenEdges { edges } => write!(f, "{edges} open edges; the inside can be seen through them"),
-            Self::NonManifold { edges } => write!(f, "{edges} edges join more than two triangles"),
-            Self::Inconsistent { edges } => write!(f, "{edges} edges join triangles that face opposite ways"),
-            Self::NormalsMade { corners } => write!(f, "normals made for {corners} corners"),
-            Self::CrowdedPoints { points } => write!(f, "{points} points join so many triangles that all look smooth"),
+            Self::NonManifold { edges } => {
+                write!(f, "{} {} more than two triangles", count(*edges, "edge"), verb(*edges, "joins", "join"))
+            }
+            Self::Inconsistent { edges } => {
+                let joins = verb(*edges, "joins", "join");
+                write!(f, "{} {joins} triangles that face opposite ways", count(*edges, "edge"))
+            }
+            Self::NormalsMade { corners } => write!(f, "normals made for {}", count(*corners, "corner")),
+            Self::CrowdedPoints { points } => {
+                let joins = verb(*points, "joins", "join");
+                write!(f, "{} {joins} so many triangles that all look smooth", count(*points, "point"))
+            }
             Self::Simplified { from, to, budget, error } => {
-                write!(f, "simplified from {from} to {to} triangles (budget {budget}); moved by {error} at most")
+                let to = count(*to, "triangle");
+                write!(f, "simplified from {from} to {to} (budget {budget}); moved by {error} at most")
             }
+            Self::LevelsEnded { meshes } => write!(
+                f,
+                "{} with fewer levels of detail than --lods asks for: seams and borders leave no more to simplify",
+                count(*meshes, "mesh")
+            ),
+            Self::LevelsOfMoved { meshes } => write!(
+                f,
+                "{} without levels of detail: those that joints or morph targets move cannot have any",
+                count(*meshes, "mesh")
+            ),
             Self::Split { mesh, parts } => write!(f, "mesh {mesh:?} has too many vertices; split into {parts}"),
             Self::WeightsDropped { vertices, most } => {
-                write!(f, "{vertices} vertices follow more than 4 joints; weights of {most} at most dropped")
+                let follows = verb(*vertices, "follows", "follow");
+                let vertices = count(*vertices, "vertex");
+                write!(f, "{vertices} {follows} more than 4 joints; weights of {most} at most dropped")
             }
             Self::WeightsMissing { vertices } => {
-                write!(f, "{vertices} vertices have no weights; they follow the first joint")
+                let follow = verb(*vertices, "follows", "follow");
+                write!(f, "{} without weights {follow} the first joint", count(*vertices, "vertex"))
             }
             Self::ExtensionIgnored { name } => write!(f, "extension {name} ignored"),
             Self::Ignored { what, count } => write!(f, "{count} × {what} ignored"),
             Self::TextureMissing { reason } => write!(f, "texture left out: {reason}"),
             Self::MaterialMissing { reason } => write!(f, "material left out: {reason}"),
-            Self::NotUtf8 { lines } => write!(f, "{lines} lines are not UTF-8; save the file as UTF-8 to keep names"),
-            Self::Mirrored { nodes } => write!(f, "{nodes} nodes mirror their meshes"),
-            Self::RotationsNormalized { rotations } => write!(f, "{rotations} rotations brought to length 1"),
+            Self::NotUtf8 { lines } => {
+                let is = verb(*lines, "is", "are");
+                write!(f, "{} {is} not UTF-8; save the file as UTF-8 to keep names", count(*lines, "line"))
+            }
+            Self::Mirrored { nodes } => {
+                write!(f, "{} {} meshes", count(*nodes, "node"), verb(*nodes, "mirrors", "mirror"))
+            }
+            Self::RotationsNormalized { rotations } => {
+                write!(f, "{} brought to length 1", count(*rotations, "rotation"))
+            }
         }
     }
 }
@@ -221,11 +267,11 @@ impl Report {
     /// Adds a note, unless it counts nothing. A note of a kind that is there already adds to that one's count.
     pub(crate) fn add(&mut self, note: Note) {
         use Note::{
-            Crossed, CrowdedPoints, Degenerate, Duplicate, Flipped, Inconsistent, MaterialMissing, Mirrored, Moved,
-            NonManifold, NormalsMade, NotUtf8, OpenEdges, Opposed, RotationsNormalized, TextureMissing, Triangulated,
-            WeightsMissing, Welded,
+            Crossed, CrowdedPoints, Degenerate, Duplicate, Flipped, Inconsistent, LevelsEnded, LevelsOfMoved,
+            MaterialMissing, Mirrored, Moved, NonManifold, NormalsMade, NotUtf8, OpenEdges, Opposed,
+            RotationsNormalized, TextureMissing, Triangulated, WeightsMissing, Welded,
         };
-        fn count(note: &mut Note) -> Option<&mut usize> {
+        fn number_of(note: &mut Note) -> Option<&mut usize> {
             match note {
                 Triangulated { polygons: n }
                 | Crossed { polygons: n }
@@ -240,6 +286,8 @@ impl Report {
                 | Inconsistent { edges: n }
                 | NormalsMade { corners: n }
                 | CrowdedPoints { points: n }
+                | LevelsEnded { meshes: n }
+                | LevelsOfMoved { meshes: n }
                 | WeightsMissing { vertices: n }
                 | NotUtf8 { lines: n }
                 | Mirrored { nodes: n }
@@ -255,12 +303,12 @@ impl Report {
             reason.truncate(end);
             reason.push('…');
         }
-        if let Some(&mut more) = count(&mut note) {
+        if let Some(&mut more) = number_of(&mut note) {
             let same = |other: &&mut Note| std::mem::discriminant(*other) == std::mem::discriminant(&note);
             if more == 0 {
                 return;
             }
-            if let Some(n) = self.notes.iter_mut().find(same).and_then(count) {
+            if let Some(n) = self.notes.iter_mut().find(same).and_then(number_of) {
                 *n += more;
                 return;
             }
@@ -273,7 +321,8 @@ impl fmt::Display for Report {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let line = |f: &mut fmt::Formatter<'_>, name: &str, counts: &Counts| {
             let Counts { vertices, triangles, meshes } = counts;
-            writeln!(f, "{name}: {vertices} vertices, {triangles} triangles, {meshes} meshes")
+            let [vertices, triangles] = [count(*vertices, "vertex"), count(*triangles, "triangle")];
+            writeln!(f, "{name}: {vertices}, {triangles}, {}", count(*meshes, "mesh"))
         };
         line(f, "read", &self.before)?;
         line(f, "imported", &self.after)?;

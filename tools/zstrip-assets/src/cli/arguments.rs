@@ -24,6 +24,8 @@ Geometry:
   --crease DEGREES        the largest angle between faces at which normals that are made look smooth [default: 50]
   --weld DISTANCE         joins vertices up to that far apart, in units of the file [default: 0]
   --budget TRIANGLES      simplifies the model to about so many triangles
+  --lods N                makes N levels of detail of each mesh, which are drawn where it is small [default: 0]
+  --lod-ratio PART        the part of a level's triangles that the next one has [default: 0.5]
 
 Textures:
   --texture FILE          an image for materials without one, as for OBJ without MTL
@@ -69,6 +71,8 @@ impl Conversion {
             }
             "crease" => import.crease_angle = number(name, A_NUMBER, parser)?,
             "weld" => import.weld_distance = number(name, A_NUMBER, parser)?,
+            "lods" => import.lods = number(name, A_COUNT, parser)?,
+            "lod-ratio" => import.lod_ratio = number(name, A_NUMBER, parser)?,
             "budget" => import.max_triangles = Some(number(name, A_COUNT, parser)?),
             "texture" => import.texture = Some(parser.value()?.into()),
             "textures" => {
@@ -203,6 +207,8 @@ mod tests {
             ("--scale", import.scale.to_string()),
             ("--crease", import.crease_angle.to_string()),
             ("--weld", import.weld_distance.to_string()),
+            ("--lods", import.lods.to_string()),
+            ("--lod-ratio", import.lod_ratio.to_string()),
             ("--max-texture", write.max_texture.to_string()),
             ("--key-error", write.key_error.to_string()),
             ("--screen", format!("{width}x{height}")),

@@ -6,7 +6,7 @@ use super::{help, source};
 use lexopt::Parser;
 use std::fmt::Write;
 use std::path::PathBuf;
-use zstrip_assets::preview::{CORES, contact_sheet, estimate};
+use zstrip_assets::preview::{CORES, LevelUse, contact_sheet, estimate};
 
 const CHECK: &str = "\
 zstrip-assets check FILE [options]: prints what a conversion loses, and what the model takes, before it is flashed
@@ -15,6 +15,22 @@ zstrip-assets check FILE [options]: prints what a conversion loses, and what the
   --m4-clock MHZ          clock of the Cortex-M4 [default: 168]
   --tsv                   prints only lines of core, stage, and mean and largest number of instructions, between tabs
 ";
+
+/// Returns the levels of detail, if there are any, and those that the frames of a turn draw.
+fn levels(levels: &[LevelUse]) -> String {
+    if levels.len() < 2 {
+        return String::new();
+    }
+    let all: usize = levels.iter().map(|level| level.draws).sum();
+    let mut text = String::from("\nlevels of detail   triangles   vertices      error   draws of a turn\n");
+    for (k, LevelUse { vertices, triangles, error, draws }) in levels.iter().enumerate() {
+        let name = if k == 0 { "the model".to_owned() } else { format!("level {k}") };
+        // Writing to a string does not fail.
+        _ = writeln!(text, "  {name:<16} {triangles:>9} {vertices:>10} {error:>10.5}   {draws} of {all}");
+    }
+    text.push_str("The coarsest level is drawn whose error is below a pixel.\n");
+    text
+}
 
 /// Runs `check`.
 pub fn check(parser: &mut Parser) -> Result<String, Failure> {
@@ -43,7 +59,7 @@ pub fn check(parser: &mut Parser) -> Result<String, Failure> {
             }
         }
     } else {
-        _ = write!(text, "\n{estimate}");
+        _ = write!(text, "\n{estimate}{}", levels(&stage.levels()?));
     }
     if let Some(path) = sheet {
         contact_sheet(&stage)?.write_png(&path)?;

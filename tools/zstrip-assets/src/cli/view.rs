@@ -138,6 +138,9 @@ pub fn view(parser: &mut Parser) -> Result<String, Failure> {
         None => 0,
         Some(name) => clip_of(&clips, &name)?,
     };
+    if time > 0 && clips.is_empty() {
+        return Err(Failure::Usage("--time: the model has no clips, so no time changes it".to_owned()));
+    }
     let name = file.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let show = Show { name, screen, clip, angle: Angle16::from_degrees(turn), time, passed: 0, paused: false };
     let mut text = String::new();

@@ -24,7 +24,7 @@ pub use estimate::{
     work_of,
 };
 pub use picture::{Picture, contact_sheet};
-pub use stage::{Container, Format, Stage};
+pub use stage::{Container, Format, LevelUse, Stage};
 pub use turntable::{
     MOST_CLUSTERS, MOST_DRAWS, MOST_POSE, MOST_RECORDS, MOST_STRIP, MOST_WORDS, Panel, Step, TURN, Way, show_head,
 };

@@ -11,7 +11,7 @@ use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888};
 use zstrip::frame::Renderer;
 use zstrip::light::Sunlit;
 use zstrip::mesh::Mesh;
-use zstrip::model::container::{Header, Section, SectionKind};
+use zstrip::model::container::{Header, Part, Section, SectionKind};
 use zstrip::model::{Model, Placed, Pose};
 use zstrip::scene::Scene;
 use zstrip::target::{Stats, Strip, WithDepth, WithRecords, records_len};
@@ -84,6 +84,19 @@ impl Format {
             Self::Gray8 => 1,
         }
     }
+}
+
+/// A level of detail, of all parts that have it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LevelUse {
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// The largest error of a part, in units of its mesh.
+    pub error: f64,
+    /// Draws in the frames of a turn.
+    pub draws: usize,
 }
 
 /// The most words of records that a frame is drawn with: 64 MB.
@@ -191,11 +204,45 @@ impl<'m> Stage<'m> {
         self.model
     }
 
+    /// Returns the levels of detail of all parts, the finest first, and how many draws of a turn each has.
+    ///
+    /// # Errors
+    ///
+    /// Those of [`picture`](Self::picture).
+    pub fn levels(&self) -> Result<Vec<LevelUse>, PreviewError> {
+        let parts = self.items::<Part>(SectionKind::Parts);
+        let mut levels: Vec<LevelUse> = Vec::new();
+        let mut level_of = vec![None; parts.len()];
+        for first in self.nodes_parts() {
+            let (mut number, mut level) = (first, 0);
+            // A level has a higher number than the one before it, so this ends.
+            while let Some(part) = parts.get(number).filter(|_| level_of[number].is_none()) {
+                if levels.len() == level {
+                    levels.push(LevelUse::default());
+                }
+                level_of[number] = Some(level);
+                let sum = &mut levels[level];
+                sum.vertices += part.vertices as usize;
+                sum.triangles += part.triangles as usize;
+                sum.error = sum.error.max(f64::from(part.error) / 65_536.0);
+                (number, level) = (part.coarser.into(), level + 1);
+            }
+        }
+        for step in 0..self.steps() {
+            let drawn =
+                self.posed(&self.step(step), |placed, _| placed.draws().map(|(_, part)| part).collect::<Vec<_>>())?;
+            for level in drawn.into_iter().filter_map(|part| *level_of.get(part)?) {
+                levels[level].draws += 1;
+            }
+        }
+        Ok(levels)
+    }
+
     /// Returns the number of clusters of all draws, each of the level of detail that has most of them: as many nodes as
     /// `Placed::cull_clusters` may use.
     #[must_use]
     pub fn clusters(&self) -> usize {
-        let parts = self.items::<zstrip::model::container::Part>(SectionKind::Parts);
+        let parts = self.items::<Part>(SectionKind::Parts);
         self.nodes_parts().filter_map(|part| parts.get(part)).map(|part| usize::from(part.clusters)).sum()
     }
 

@@ -58,6 +58,17 @@ pub(super) fn check(import: &Import) -> Result<(), WriteError> {
         if let Some(material) = mesh.material {
             index(format!("meshes[{k}], material"), material, import.materials.len())?;
         }
+        if let Some(coarser) = mesh.coarser {
+            index(format!("meshes[{k}], coarser mesh"), coarser, import.meshes.len())?;
+            let place = format!("meshes[{k}], coarser mesh");
+            if coarser <= k {
+                return Err(WriteError::Order { place, found: coarser, least: k + 1 });
+            }
+            let (finer, error) = (mesh.error, import.meshes[coarser].error);
+            if !error.is_finite() || error < finer {
+                return Err(WriteError::LevelError { mesh: coarser, found: error, least: finer });
+            }
+        }
         for v in mesh.triangles.as_flattened() {
             index(format!("meshes[{k}], vertex of a triangle"), *v as usize, count)?;
         }

@@ -11,12 +11,13 @@ mod sections;
 mod skins;
 mod textures;
 mod verify;
+mod wraps;
 
 use bytemuck::Zeroable;
 use zstrip::model::container::{AlphaMode as Mode, Header, Material as MaterialItem, NONE, Node, SectionKind};
 
 pub use options::{TextureKind, UvSize, WriteOptions};
-pub use report::{Errors, WriteError, WriteNote, WriteReport, Written};
+pub use report::{Errors, LevelReport, WriteError, WriteNote, WriteReport, Written};
 #[cfg(feature = "cli")]
 pub(crate) use sections::SECTION_NAMES;
 
@@ -68,7 +69,8 @@ pub fn write(import: &Import, options: &WriteOptions) -> Result<Written, WriteEr
         return Err(WriteError::TooMany { what: "materials", found: materials, most: NONE.into() });
     }
 
-    let pieces = parts::pieces(import, &mut report)?;
+    let mut pieces = parts::pieces(import, &mut report)?;
+    wraps::unwrap(&mut pieces.list, import, &textures.sizes, &mut report);
     let skins = skins::skins(import, &pieces.list, &mut report)?;
     let rest = import.pose(None);
     let (rest_box, size) = extent(import, &rest);
@@ -77,8 +79,14 @@ pub fn write(import: &Import, options: &WriteOptions) -> Result<Written, WriteEr
         WriteNote::Small { size, factor }
     });
     let texel_sizes = texel_sizes(import, &pieces, &rest, &textures.sizes);
-    let around =
-        Around { import, uvs: options.uvs, skins: &skins, textures: &textures.sizes, texel_sizes: &texel_sizes };
+    let around = Around {
+        import,
+        uvs: options.uvs,
+        skins: &skins,
+        textures: &textures.sizes,
+        texel_sizes: &texel_sizes,
+        pieces: &pieces.list,
+    };
     let weights = pieces.weights.last().map_or(0, |range| range.end);
     let joints = skins.iter().map(|(_, numbers)| numbers.iter().filter(|n| **n != u16::MAX).count()).max();
     let mut pose_words = (12 * (nodes.items.len() + joints.unwrap_or(0)) + weights) as u32;
@@ -123,13 +131,35 @@ pub fn write(import: &Import, options: &WriteOptions) -> Result<Written, WriteEr
     report.sections = to.sizes();
     (report.draws, report.pose_words) = (draws, pose_words as usize);
     report.parts = pieces.list.len();
-    report.vertices = pieces.list.iter().map(|piece| piece.vertices.len()).sum();
-    report.triangles = pieces.list.iter().map(|piece| piece.triangles.len()).sum();
+    let shown = &pieces.list[..pieces.shown];
+    report.vertices = shown.iter().map(|piece| piece.vertices.len()).sum();
+    report.triangles = shown.iter().map(|piece| piece.triangles.len()).sum();
+    report.levels = levels(import, &pieces.list);
     let mut notes = Vec::new();
     report.notes.drain(..).for_each(|note| merge(&mut notes, note));
     report.notes = notes;
     verify::verify(&bytes, import, &pieces, &nodes.numbers, &textures.sizes, &mut report.errors)?;
     Ok(Written { bytes, report })
+}
+
+/// Returns the levels of detail of all parts together.
+fn levels(import: &Import, pieces: &[parts::Piece]) -> Vec<LevelReport> {
+    let mut levels: Vec<LevelReport> = Vec::new();
+    for piece in pieces.iter().filter(|piece| piece.finest.is_none()) {
+        let (mut coarser, mut number) = (piece.coarser, 0);
+        while let Some(level) = coarser.map(|k| &pieces[k]) {
+            if levels.len() == number {
+                levels.push(LevelReport::default());
+            }
+            let report = &mut levels[number];
+            report.parts += 1;
+            report.triangles += level.triangles.len();
+            report.vertices += level.vertices.len();
+            report.error = report.error.max(import.meshes[level.mesh].error);
+            (coarser, number) = (level.coarser, number + 1);
+        }
+    }
+    levels
 }
 
 /// Adds a note, or its number to a note of that kind that is there already.

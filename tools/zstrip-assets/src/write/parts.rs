@@ -12,7 +12,7 @@ use super::quantize::{Cube, Extent, MOST, fixed, fraction_box, normal_bytes};
 use super::report::{WriteError, WriteNote, WriteReport};
 use super::sections::Sections;
 use crate::geometry::{Vector, cross, dot, unit};
-use crate::model::{Import, Mesh, Vertices, Wrap};
+use crate::model::{Import, Mesh, Vertices};
 
 /// The most vertices, and the most triangles, of a part.
 const MOST_ITEMS: usize = 65_535;
@@ -24,6 +24,10 @@ const CLUSTER: usize = 124;
 pub(super) struct Piece {
     /// The mesh in the import.
     pub mesh: usize,
+    /// The piece of the next level of detail.
+    pub coarser: Option<usize>,
+    /// The piece that a level of detail stands for.
+    pub finest: Option<usize>,
     /// The first node that shows it.
     pub node: usize,
     /// The numbers of its vertices in the mesh.
@@ -70,6 +74,8 @@ impl Piece {
 /// The pieces of a model, and those of each node.
 pub(super) struct Pieces {
     pub list: Vec<Piece>,
+    /// The number of those that nodes show. Levels of detail follow.
+    pub shown: usize,
     pub of_nodes: Vec<Range<usize>>,
     /// The first weight of morph targets of each node, and their number.
     pub weights: Vec<Range<usize>>,
@@ -77,7 +83,7 @@ pub(super) struct Pieces {
 
 /// Cuts meshes into pieces. Nodes that show the same meshes share pieces, unless morph targets move them.
 pub(super) fn pieces(import: &Import, report: &mut WriteReport) -> Result<Pieces, WriteError> {
-    let mut pieces = Pieces { list: Vec::new(), of_nodes: Vec::new(), weights: Vec::new() };
+    let mut pieces = Pieces { list: Vec::new(), shown: 0, of_nodes: Vec::new(), weights: Vec::new() };
     let mut known = HashMap::new();
     let mut weights = 0;
     for (k, node) in import.nodes.iter().enumerate() {
@@ -104,6 +110,8 @@ pub(super) fn pieces(import: &Import, report: &mut WriteReport) -> Result<Pieces
         pieces.of_nodes.push(range);
         pieces.weights.push(own);
     }
+    pieces.shown = pieces.list.len();
+    add_levels(import, &mut pieces.list, report);
     let draws = pieces.of_nodes.iter().map(ExactSizeIterator::len).sum();
     for (what, found) in [("parts", pieces.list.len()), ("draws", draws), ("weights of morph targets", weights)] {
         if found > MOST_ITEMS {
@@ -111,6 +119,37 @@ pub(super) fn pieces(import: &Import, report: &mut WriteReport) -> Result<Pieces
         }
     }
     Ok(pieces)
+}
+
+/// Adds the levels of detail of pieces that are whole meshes and that nothing moves.
+fn add_levels(import: &Import, list: &mut Vec<Piece>, report: &mut WriteReport) {
+    let mut known: HashMap<usize, Option<usize>> = HashMap::new();
+    let mut left_out = HashSet::new();
+    let mut number = 0;
+    while let Some(piece) = list.get(number) {
+        if let Some(coarser) = import.meshes[piece.mesh].coarser {
+            let is_whole = piece.triangles.len() == import.meshes[piece.mesh].triangles.len();
+            let (mesh, node, is_posed) = (piece.mesh, piece.node, piece.is_posed());
+            let finest = piece.finest.unwrap_or(number);
+            let level = if is_posed || !is_whole {
+                None
+            } else {
+                *known.entry(coarser).or_insert_with(|| {
+                    let mut cut_up = Vec::new();
+                    cut(import, coarser, node, 0, &mut cut_up);
+                    let level = cut_up.pop().filter(|level| cut_up.is_empty() && !level.is_posed())?;
+                    list.push(Piece { finest: Some(finest), ..level });
+                    Some(list.len() - 1)
+                })
+            };
+            if level.is_none() {
+                left_out.insert(mesh);
+            }
+            list[number].coarser = level;
+        }
+        number += 1;
+    }
+    report.note(left_out.len(), |meshes| WriteNote::NoLevels { meshes });
 }
 
 /// Cuts a mesh between its clusters where a part has too many vertices or triangles.
@@ -161,6 +200,8 @@ fn piece(
     let skin = import.nodes[node].skin.filter(|_| !mesh.vertices.joints.is_empty());
     Piece {
         mesh: number,
+        coarser: None,
+        finest: None,
         node,
         vertices: mesh.vertices.select(&numbers),
         numbers,
@@ -198,6 +239,7 @@ pub(super) struct Around<'a> {
     pub textures: &'a [Option<[u32; 2]>],
     /// The texels per unit of length of each piece.
     pub texel_sizes: &'a [f64],
+    pub pieces: &'a [Piece],
 }
 
 /// Writes a part, and returns its positions.
@@ -244,11 +286,6 @@ pub(super) fn part(
     let uvs = if is_textured { Uvs::of(&vertices.uvs, around.uvs, &name)? } else { Uvs::default() };
     report.note(usize::from(!is_textured && !vertices.uvs.is_empty()), |parts| WriteNote::UnusedUvs { parts });
     report.note(usize::from(is_textured && vertices.uvs.is_empty()), |parts| WriteNote::MissingUvs { parts });
-    let wraps = material.and_then(|material| material.texture).map_or([Wrap::Repeat; 2], |texture| texture.wrap);
-    let leaves = (0..2).any(|k| {
-        wraps[k] != Wrap::Repeat && vertices.uvs.iter().any(|uv| !(-1e-4..=1.0 + 1e-4).contains(&f64::from(uv[k])))
-    });
-    report.note(usize::from(is_textured && leaves), |_| WriteNote::Wrapped { mesh: piece.mesh });
 
     let influences = match piece.skin {
         Some(skin) => influences(vertices, &around.skins[skin].1),
@@ -290,17 +327,29 @@ pub(super) fn part(
         half: bounds.half.to_bits(),
         uv_offset: uvs.offset,
         texels_per_unit: (around.texel_sizes[number] * 256.0).clamp(0.0, f64::from(u32::MAX)) as u32,
-        error: 0,
+        error: error_of(piece, &cube, around)?,
         clusters: (to.count(SectionKind::Clusters) - first_cluster) as u16,
         targets: vertices.morphs.len() as u16,
         material: piece.material as u16,
         skin: piece.skin.map_or(NONE, |skin| skin as u16),
-        coarser: NONE,
+        coarser: piece.coarser.map_or(NONE, |coarser| coarser as u16),
         uv_shift: uvs.shift,
         uv_bits: uvs.bits,
     };
     to.add(SectionKind::Parts, &[item]);
     Ok((points, influences))
+}
+
+/// Returns the error of a level of detail, 16.16, rounded up, with what positions lose: half a step along each axis, of
+/// the level's and of the finest part's.
+fn error_of(piece: &Piece, cube: &Cube, around: &Around<'_>) -> Result<u32, WriteError> {
+    let Some(finest) = piece.finest else { return Ok(0) };
+    let (extent, longest) = around.pieces[finest].extent();
+    let of_finest = Cube::around(&extent, longest, "the size of a mesh")?;
+    let step = |cube: &Cube| f64::from(cube.scale) / 65_536.0 / 32_768.0;
+    let lost = (step(cube) + step(&of_finest)) / 2.0 * 3.0_f64.sqrt();
+    let error = around.import.meshes[piece.mesh].error + lost;
+    Ok((error * 65_536.0).ceil().min(f64::from(u32::MAX)) as u32)
 }
 
 /// Packed texture coordinates.

@@ -2,6 +2,9 @@
 
 use std::fmt;
 
+use crate::model::Wrap;
+use crate::words::{count, verb};
+
 /// A container, and the report of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Written {
@@ -24,18 +27,33 @@ pub struct WriteReport {
     pub draws: usize,
     /// Words of 32 bits that a pose takes.
     pub pose_words: usize,
-    /// Vertices, triangles and parts, each once.
+    /// Vertices of parts, each once, without levels of detail.
     pub vertices: usize,
-    /// Triangles.
+    /// Triangles of them.
     pub triangles: usize,
-    /// Parts.
+    /// Parts, with levels of detail.
     pub parts: usize,
+    /// Levels of detail, from fine to coarse.
+    pub levels: Vec<LevelReport>,
     /// Clips: name, milliseconds, keys before, keys written.
     pub clips: Vec<(String, u32, usize, usize)>,
     /// The worst errors, of the container as it was read back.
     pub errors: Errors,
     /// Everything that was left out or changed.
     pub notes: Vec<WriteNote>,
+}
+
+/// A level of detail, of all parts that have it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct LevelReport {
+    /// Parts.
+    pub parts: usize,
+    /// Vertices.
+    pub vertices: usize,
+    /// Triangles.
+    pub triangles: usize,
+    /// The largest error of a part, in units of its mesh.
+    pub error: f64,
 }
 
 /// The worst differences between the container, as the library reads it, and the import, in 64-bit floats.
@@ -83,10 +101,16 @@ pub enum WriteNote {
         /// The number of parts.
         parts: usize,
     },
-    /// A texture is to be clamped or mirrored, and repeats.
+    /// A texture is to be clamped or mirrored beyond its sides, coordinates go there, and it repeats.
     Wrapped {
-        /// The number of the mesh in the import.
-        mesh: usize,
+        /// The number of the material in the import.
+        material: usize,
+        /// Its name.
+        name: String,
+        /// The way along u and v.
+        wrap: [Wrap; 2],
+        /// The least and the largest u, and the least and the largest v.
+        range: [[f32; 2]; 2],
     },
     /// A texture was shrunk or brought to sides that are powers of two.
     Resized {
@@ -150,6 +174,11 @@ pub enum WriteNote {
         /// A factor that brings it to about 4 units.
         factor: f64,
     },
+    /// Levels of detail of meshes were left out: the mesh is moved, or it or its level takes more than one part.
+    NoLevels {
+        /// The number of meshes.
+        meshes: usize,
+    },
     /// Parts moved by joints or morph targets are not culled by clusters.
     NoClusters {
         /// The number of parts.
@@ -160,11 +189,26 @@ pub enum WriteNote {
 impl fmt::Display for WriteNote {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::VertexAlpha { vertices } => write!(f, "alpha of {vertices} vertices left out; use the material's"),
-            Self::UnusedUvs { parts } => write!(f, "texture coordinates of {parts} parts without texture left out"),
-            Self::MissingUvs { parts } => write!(f, "{parts} parts have a texture and no coordinates: one texel shows"),
-            Self::Wrapped { mesh } => {
-                write!(f, "mesh {mesh} goes beyond a texture that does not repeat; here it repeats")
+            Self::VertexAlpha { vertices } => {
+                write!(f, "alpha of {} left out; use the material's", count(*vertices, "vertex"))
+            }
+            Self::UnusedUvs { parts } => {
+                write!(f, "texture coordinates of {} without texture left out", count(*parts, "part"))
+            }
+            Self::MissingUvs { parts } => {
+                write!(f, "{} with a texture and no coordinates: one texel shows", count(*parts, "part"))
+            }
+            Self::Wrapped { material, name, wrap, range } => {
+                write!(f, "material {material} {name:?}: its texture repeats here")?;
+                for ((axis, wrap), [low, high]) in ["u", "v"].iter().zip(wrap).zip(range) {
+                    let way = match wrap {
+                        Wrap::Repeat => continue,
+                        Wrap::Mirror => "mirrored",
+                        Wrap::Clamp => "clamped",
+                    };
+                    write!(f, ", and is {way} along {axis} in the file, where {axis} goes from {low:.3} to {high:.3}")?;
+                }
+                write!(f, "; keep coordinates within 0 to 1, or draw what is beyond into the image")
             }
             Self::Resized { image, from, to } => {
                 write!(f, "image {image:?} resized from {}×{} to {}×{}", from[0], from[1], to[0], to[1])
@@ -172,13 +216,30 @@ impl fmt::Display for WriteNote {
             Self::Quantized { image, colors, palette } => {
                 write!(f, "image {image:?} brought from {colors} colours to {palette}")
             }
-            Self::UnusedJoints { joints } => write!(f, "{joints} joints that move nothing left out of skins"),
-            Self::KeysMerged { keys } => write!(f, "{keys} keys closer than 1/65535 of their clip merged"),
-            Self::CurvesCut { channels } => write!(f, "curves of {channels} channels cut into straight pieces"),
-            Self::WeightsLimited { weights } => write!(f, "{weights} weights of morph targets limited to ±2"),
-            Self::ChannelsDropped { channels } => write!(f, "{channels} channels left out: nothing that they move"),
-            Self::Sheared { nodes } => write!(f, "{nodes} nodes with sheared matrices became two nodes each"),
-            Self::Divided { mesh, parts } => write!(f, "mesh {mesh} divided into {parts} parts"),
+            Self::UnusedJoints { joints } => {
+                let moves = verb(*joints, "moves", "move");
+                write!(f, "{} that {moves} nothing left out of skins", count(*joints, "joint"))
+            }
+            Self::KeysMerged { keys } => write!(f, "{} closer than 1/65535 of a clip merged", count(*keys, "key")),
+            Self::CurvesCut { channels } => {
+                write!(f, "curves of {} cut into straight pieces", count(*channels, "channel"))
+            }
+            Self::WeightsLimited { weights } => {
+                write!(f, "{} of morph targets limited to ±2", count(*weights, "weight"))
+            }
+            Self::ChannelsDropped { channels } => {
+                let moves = verb(*channels, "it moves", "they move");
+                write!(f, "{} left out: nothing that {moves}", count(*channels, "channel"))
+            }
+            Self::Sheared { nodes } => {
+                let became =
+                    verb(*nodes, "a sheared matrix became two nodes", "sheared matrices became two nodes each");
+                write!(f, "{} with {became}", count(*nodes, "node"))
+            }
+            Self::Divided { mesh, parts } => write!(f, "mesh {mesh} divided into {}", count(*parts, "part")),
+            Self::NoLevels { meshes } => {
+                write!(f, "levels of detail of {} left out: moved, or more than one part", count(*meshes, "mesh"))
+            }
             Self::Small { size, factor } => {
                 // In digits that can be read, also of models of 10⁻³⁰ units.
                 let factor = if *factor < 1e9 { factor.to_string() } else { format!("{factor:e}") };
@@ -186,7 +247,9 @@ impl fmt::Display for WriteNote {
                 let size = if is_tiny { format!("{size:.1e}") } else { format!("{size:.4}") };
                 write!(f, "the model is only {size} units large; a scale {factor} times as large makes it more exact")
             }
-            Self::NoClusters { parts } => write!(f, "{parts} parts that joints or morph targets move have no clusters"),
+            Self::NoClusters { parts } => {
+                write!(f, "{} without clusters: moved by joints or morph targets", count(*parts, "part"))
+            }
         }
     }
 }
@@ -203,14 +266,26 @@ impl WriteReport {
 impl fmt::Display for WriteReport {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { bytes, vertices, triangles, parts, .. } = self;
-        writeln!(f, "container: {bytes} bytes, {vertices} vertices, {triangles} triangles, {parts} parts")?;
+        let (vertices, triangles, parts) =
+            (count(*vertices, "vertex"), count(*triangles, "triangle"), count(*parts, "part"));
+        writeln!(f, "container: {bytes} bytes, {vertices}, {triangles}, {parts}")?;
+        for (k, LevelReport { parts, vertices, triangles, error }) in self.levels.iter().enumerate() {
+            let (vertices, triangles, parts) =
+                (count(*vertices, "vertex"), count(*triangles, "triangle"), count(*parts, "part"));
+            writeln!(
+                f,
+                "level of detail {}: {vertices}, {triangles}, {parts}, off by {error:.6} units at most",
+                k + 1
+            )?;
+        }
         for (name, items, bytes) in &self.sections {
             writeln!(f, "  {name:<16} {items:>8} items {bytes:>9} bytes")?;
         }
         writeln!(f, "textures: {} bytes", self.texture_bytes)?;
-        writeln!(f, "RAM: {} places, {} words of a pose", self.draws, self.pose_words)?;
+        let (places, words) = (count(self.draws, "place"), count(self.pose_words, "word"));
+        writeln!(f, "RAM: {places}, {words} of a pose")?;
         for (name, duration, before, after) in &self.clips {
-            writeln!(f, "clip {name:?}: {duration} ms, {after} of {before} keys")?;
+            writeln!(f, "clip {name:?}: {duration} ms, {after} of {}", count(*before, "key"))?;
         }
         let Errors { position, position_steps, normal, uv, uv_texels, color, texel, .. } = self.errors;
         writeln!(f, "worst errors, read back:")?;
@@ -220,7 +295,8 @@ impl fmt::Display for WriteReport {
         let Errors { rest, pose, pose_normal, posed_vertices, .. } = self.errors;
         writeln!(f, "  at rest {rest:.6} units")?;
         if posed_vertices > 0 {
-            writeln!(f, "  in clips {pose:.6} units, normals {pose_normal:.3}°, of {posed_vertices} posed vertices")?;
+            let posed = count(posed_vertices, "vertex");
+            writeln!(f, "  in clips {pose:.6} units, normals {pose_normal:.3}°, of {posed} posed")?;
         }
         self.notes.iter().try_for_each(|note| writeln!(f, "- {note}"))
     }
@@ -261,6 +337,24 @@ pub enum WriteError {
         /// The number of items.
         count: usize,
     },
+    /// A number of another item, in the import, is not above that of the item that has it.
+    Order {
+        /// The place in the import.
+        place: String,
+        /// The number.
+        found: usize,
+        /// The least number.
+        least: usize,
+    },
+    /// The error of a level of detail is not a number, or below that of the level before.
+    LevelError {
+        /// The number of the mesh in the import.
+        mesh: usize,
+        /// The error.
+        found: f64,
+        /// The error of the level before.
+        least: f64,
+    },
     /// An attribute has another number of items than there are vertices or keys.
     Count {
         /// The place in the import.
@@ -295,6 +389,13 @@ impl fmt::Display for WriteError {
                 write!(f, "{found} {what}, and {most} are the most; divide or simplify the model")
             }
             Self::Index { place, found, count } => write!(f, "{place} is {found}, and there are {count}"),
+            Self::Order { place, found, least } => write!(f, "{place} is {found}, and must be {least} or above"),
+            Self::LevelError { mesh, found, least } => {
+                write!(
+                    f,
+                    "the error of meshes[{mesh}] is {found}, and must be {least} or above, as its level is coarser"
+                )
+            }
             Self::Count { place, found, needed } => write!(f, "{place} has {found} items, and needs {needed}"),
             Self::EmptyImage { place, size: [columns, rows] } => {
                 write!(f, "{place} has {columns}×{rows} texels, and needs one column and one row at least")

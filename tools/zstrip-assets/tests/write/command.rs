@@ -203,7 +203,7 @@ fn a_screen_lower_than_a_strip_is_one_strip() {
 fn firmware_refuses_models_that_it_has_no_memory_for_and_says_why() {
     let folder = square().with("large.png", png(2048, 2048));
     let (code, _, err) = run_in(&folder, "bench square.obj --texture large.png --max-texture 2048 --no-mips");
-    assert!(code == Some(1) && err.contains("memory for 8388576") && err.contains("container"), "{err}");
+    assert!(code == Some(1) && err.contains("memory for 8388480") && err.contains("container"), "{err}");
     let (code, _, err) = run_in(&folder, "bench square.obj --screen 4000x320 --rows 320");
     assert!(code == Some(1) && err.contains("pixels of a strip: 1280000"), "{err}");
     let (code, _, err) = run_in(&folder, "bench square.obj --zstrip no.where");
@@ -240,4 +240,21 @@ fn pictures_that_move_begin_where_they_are_told_to() {
     let picture = image::open(folder.path("b.png")).expect("a PNG").to_rgba8();
     let differ = picture.as_raw().iter().zip(&b[0].1).filter(|(a, b)| a.abs_diff(**b) > 8).count();
     assert_eq!(differ, 0);
+}
+
+#[test]
+fn a_time_without_clips_is_refused() {
+    let folder = square();
+    let (code, _, err) = run_in(&folder, "view square.obj --time 5 --png there.png");
+    assert!(code == Some(2) && err.contains("no clips") && !folder.path("there.png").exists(), "{err}");
+    let (code, _, err) = run_in(&folder, "view square.obj --time 0 --png there.png");
+    assert_eq!(code, Some(0), "{err}");
+}
+
+#[test]
+fn levels_of_detail_are_printed_and_one_thing_is_no_plural() {
+    let folder = square();
+    let (code, text, err) = run_in(&folder, "check square.obj --lods 2");
+    assert!(code == Some(0) && text.contains("1 mesh\n") && text.contains(", 1 part\n"), "{text}{err}");
+    assert!(!text.contains("levels of detail   triangles"), "a square has none: {text}");
 }

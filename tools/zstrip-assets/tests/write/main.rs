@@ -4,6 +4,7 @@
 mod command;
 mod failures;
 mod figures;
+mod levels;
 mod pictures;
 #[path = "../../../../tests/reference/mod.rs"]
 mod reference;

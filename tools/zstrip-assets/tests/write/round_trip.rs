@@ -268,12 +268,34 @@ fn large_textures_are_shrunk_to_a_palette() {
 }
 
 #[test]
-fn a_wrap_that_is_left_is_reported() {
+fn coordinates_of_textures_that_do_not_repeat_stay_inside_or_are_reported() {
     let mut import = textured(sphere(8, 8, 1.0), image(), AlphaMode::Opaque);
     import.materials[0].texture.as_mut().expect("a texture").wrap = [Wrap::Clamp, Wrap::Mirror];
+    import.materials[0].name = "label".to_owned();
+    let found = written(&import);
+    assert!(found.report.notes.is_empty());
+    // Half a texel, of 8 texels, away from the sides.
+    let part: Part = section(&found, SectionKind::Parts)[0];
+    let stored: Vec<[u16; 2]> = match part.uv_bits {
+        8 => section::<[u8; 2]>(&found, SectionKind::SmallUvs).iter().map(|uv| uv.map(u16::from)).collect(),
+        _ => section(&found, SectionKind::Uvs),
+    };
+    let value = |k: usize, c: u16| (part.uv_offset[k] + (i32::from(c) << part.uv_shift)) as f64 / 65_536.0;
+    for k in 0..2 {
+        let all: Vec<f64> = stored.iter().map(|uv| value(k, uv[k])).collect();
+        let (low, high) = (all.iter().copied().fold(9.0, f64::min), all.iter().copied().fold(-9.0, f64::max));
+        assert!((low - 0.0625).abs() < 1e-4 && (high - 0.9375).abs() < 1e-4, "{k}: {low} to {high}");
+    }
+    // In the tile above, v goes the other way.
+    import.meshes[0].vertices.uvs.iter_mut().for_each(|uv| uv[1] -= 1.0);
     assert!(written(&import).report.notes.is_empty());
     import.meshes[0].vertices.uvs[3][1] = 1.5;
-    assert!(written(&import).report.notes.contains(&WriteNote::Wrapped { mesh: 0 }));
+    let report = written(&import).report;
+    let wrap = [Wrap::Repeat, Wrap::Mirror];
+    let range = [[0.0, 1.0], [-1.0, 1.5]];
+    let note = WriteNote::Wrapped { material: 0, name: "label".to_owned(), wrap, range };
+    assert!(report.notes.contains(&note), "{report}");
+    assert!(report.to_string().contains("is mirrored along v in the file, where v goes from -1.000 to 1.500"));
 }
 
 #[test]
