@@ -1,7 +1,9 @@
-//! What several samples per pixel, and supersampling, cost: firmware that counts. `ci/samples` runs it and prints what it takes.
+//! What several samples per pixel, and supersampling, cost: firmware that counts. `ci/samples` runs it and prints what
+//! it takes.
 //!
-//! It prints, for each run, `workload samples/rows ticks drawn hash`, or `2x2` for supersampling: SysTick's ticks over a frame in strips of that
-//! height (instructions on RISC-V), triangles drawn, and a hash of the picture.
+//! It prints, for each run, `workload how/rows ticks drawn hash`. How is the number of samples, or `2x2` for
+//! supersampling; rows are those of a strip; ticks are SysTick's over a frame (instructions on RISC-V). Triangles drawn
+//! and a hash of the picture follow.
 #![cfg_attr(target_os = "none", no_std, no_main)]
 
 #[cfg(target_os = "none")]
