@@ -1,14 +1,14 @@
-//! Scenes in formats other than RGB565: dithered ones, and strips packed for panels.
+//! Scenes in formats other than RGB565, dithered ones and strips packed for panels; and scenes with smooth edges.
 
 use super::kept::kept;
 use super::{Draw, Room, Torus, in_place};
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8, Rgb888};
-use zstrip::frame::Renderer;
+use zstrip::frame::{Renderer, Supersampled};
 use zstrip::math::Angle16;
 use zstrip::target::{PackedFormat, Packer, Pages, Rows, Strip};
-use zstrip::target::{WithDepth, WithRecords};
+use zstrip::target::{WithDepth, WithRecords, WithSamples};
 
 /// The memory of a frame; `color` holds colours and packed strips in any format.
 pub struct Memory<'m> {
@@ -54,7 +54,55 @@ pub const FORMATS: &[FormatInfo] = &[
         name: "torus_gray4",
         draw: |memory, sink| packed::<Rows<Gray4>>(Size::new(317, 240), Dither::BAYER_8, memory, sink),
     },
+    FormatInfo {
+        name: "torus_samples",
+        draw: |memory, sink| sampled(memory, sink, &*kept(|| Torus::gouraud(Size::new(320, 240), Angle16(0)))),
+    },
+    FormatInfo {
+        name: "room_samples",
+        draw: |memory, sink| sampled(memory, sink, &*kept(|| Room::new(Size::new(320, 240), Angle16(0)))),
+    },
+    FormatInfo {
+        name: "torus_2x2",
+        draw: |memory, sink| supersampled(memory, sink, &*kept(|| Torus::flat(Size::new(320, 240), Angle16(0)))),
+    },
 ];
+
+/// Draws 320×240 pixels with four samples each.
+fn sampled<S>(Memory { color, depth, records }: Memory<'_>, sink: &mut Sink<'_>, drawing: &S)
+where
+    S: for<'p> Draw<Strip<'p, Rgb565Be, WithSamples<4>, WithRecords>>,
+{
+    // A quarter for the strip, the rest for the other samples.
+    let Some((color, samples)) = color.split_at_mut_checked(color.len() / 4) else { return };
+    let mut renderer = in_place(|| {
+        Renderer::<Rgb565Be>::new(Size::new(320, 240))
+            .and_then(|renderer| renderer.with_samples::<4>(depth, samples))
+            .map(|renderer| renderer.with_records(records))
+    });
+    let Ok(renderer) = &mut renderer else { return };
+    let mut frame = renderer.begin(Rgb888::new(24, 28, 24));
+    while let Ok(Some(strip)) = frame.next_strip(color, |scene| drawing.draw(scene)) {
+        sink(strip.bytes());
+    }
+}
+
+/// Draws 160×120 pixels, each of 2×2.
+fn supersampled<S>(Memory { color, depth, records }: Memory<'_>, sink: &mut Sink<'_>, drawing: &S)
+where
+    S: for<'p> Draw<Strip<'p, Rgb565Be, WithDepth, WithRecords>>,
+{
+    let mut renderer = in_place(|| {
+        Renderer::<Rgb565Be>::new(Size::new(320, 240))
+            .and_then(|renderer| renderer.with_depth(depth))
+            .and_then(|renderer| Supersampled::<_, _, _, 2>::new(renderer.with_records(records)))
+    });
+    let Ok(renderer) = &mut renderer else { return };
+    let mut frame = renderer.begin(Rgb888::new(24, 28, 24));
+    while let Ok(Some(strip)) = frame.next_strip(color, |scene| drawing.draw(scene)) {
+        sink(strip.bytes());
+    }
+}
 
 /// Draws 320×240 pixels of a format.
 fn direct<P, S>(memory: Memory<'_>, sink: &mut Sink<'_>, drawing: &S)

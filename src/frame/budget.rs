@@ -32,7 +32,7 @@ impl RamBudget {
         Self { color: bytes(pixels, size_of::<P::Raw>()), depth: bytes(pixels, 2), records: 0, rows }
     }
 
-    /// Counts `samples` per pixel: 2, 4 or 8. The colours of all samples, those of the strip among them, are in `color`.
+    /// Counts `samples` per pixel: 2, 4 or 8. The colours of all samples, and so those of the strip, are in `color`.
     ///
     /// ```
     /// use embedded_graphics_core::pixelcolor::Rgb565;

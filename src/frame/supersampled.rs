@@ -13,8 +13,8 @@ use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::Rgb888;
 use embedded_graphics_core::primitives::Rectangle;
 
-/// Draws on a screen that is `N` times as wide and as high, and makes one pixel of `N` × `N`: 2, 3 or 4. All that can be
-/// drawn becomes smooth: triangles, lines, texels, text.
+/// Draws on a screen that is `N` times as wide and as high, and makes one pixel of `N` × `N`: 2, 3 or 4. All that can
+/// be drawn becomes smooth: triangles, lines, texels, text.
 ///
 /// Whatever is drawn has coordinates on the finer screen: text and shapes in pixels are `N` times as large there.
 /// Buffers hold strips of the finer screen: strips of as many rows of the display take `N`² times as much memory, see
