@@ -42,6 +42,7 @@
 //! | draw into a framebuffer, without strips | [`frame::FramebufferRenderer`] |
 //! | know how much RAM that takes, at compile time | [`frame::RamBudget`] |
 //! | draw in strips of a few rows | [`Renderer::with_carried_state`] |
+//! | make edges smooth | [`Renderer::with_samples`], [`frame::Supersampled`] |
 //! | bring in a mesh, lines, points | [`mesh`] |
 //! | draw a model with its materials, textures and animation from one file | [`model`] |
 //! | place a camera, move things | [`math`] |
