@@ -10,7 +10,7 @@
 mod firmware;
 mod scenes;
 
-use scenes::formats::{self, FORMATS, FormatInfo, Memory};
+use scenes::formats::{self, FORMATS, FormatInfo, Memory, SMOOTH};
 #[cfg(target_os = "none")]
 use semihosting::println;
 
@@ -39,7 +39,8 @@ const SIZES: (usize, usize) = if cfg!(small_ram = "bare") {
 };
 
 /// Those that there is room for.
-const OTHER_FORMATS: &[FormatInfo] = if cfg!(any(small_ram = "bare", small_ram = "records")) { &[] } else { FORMATS };
+const OTHERS: [&[FormatInfo]; 2] =
+    if cfg!(any(small_ram = "bare", small_ram = "records")) { [&[]; 2] } else { [FORMATS, SMOOTH] };
 
 struct Buffers {
     color: [u16; WIDTH * SIZES.0],
@@ -55,15 +56,14 @@ fn run() {
     let Buffers { color, depth, records } = unsafe { &mut *buffers };
     #[cfg(target_os = "none")]
     let mut peak = 0;
-    let scenes = scenes::SCENES.iter().map(|scene| scene.name).enumerate();
-    let formats = OTHER_FORMATS.iter().map(|format| format.name).enumerate();
-    for (is_format, (index, name)) in scenes.map(|scene| (false, scene)).chain(formats.map(|format| (true, format))) {
+    let scenes = scenes::SCENES.iter().enumerate().map(|(index, scene)| (scene.name, index, None));
+    let others = OTHERS.into_iter().flatten().map(|other| (other.name, 0, Some(other)));
+    for (name, index, other) in scenes.chain(others) {
         let mut hash = 0;
         let mut frame = || {
-            hash = if is_format {
-                formats::hash(&OTHER_FORMATS[index], Memory { color, depth, records })
-            } else {
-                scenes::render(index, color, depth, records).hash
+            hash = match other {
+                Some(other) => formats::hash(other, Memory { color, depth, records }),
+                None => scenes::render(index, color, depth, records).hash,
             }
         };
         #[cfg(target_os = "none")]

@@ -105,7 +105,7 @@ fn render<D: Demo<Z>, Z: Depth>(
     let (width, height) = settings.size;
     let screen = Size::new(width.into(), height.into());
     let renderer = Renderer::<D::Format>::new(screen)?;
-    let mut renderer = Z::lend(renderer, &mut depth)?.with_records(&mut records);
+    let mut renderer = <Z as Depth>::lend(renderer, &mut depth)?.with_records(&mut records);
     let to_picture = |strip: &StripPixels<'_, D::Format>| {
         picture.put(strip);
         Ok::<(), std::convert::Infallible>(())

@@ -54,6 +54,10 @@ pub const FORMATS: &[FormatInfo] = &[
         name: "torus_gray4",
         draw: |memory, sink| packed::<Rows<Gray4>>(Size::new(317, 240), Dither::BAYER_8, memory, sink),
     },
+];
+
+/// Scenes with smooth edges.
+pub const SMOOTH: &[FormatInfo] = &[
     FormatInfo {
         name: "torus_samples",
         draw: |memory, sink| sampled(memory, sink, &*kept(|| Torus::gouraud(Size::new(320, 240), Angle16(0)))),

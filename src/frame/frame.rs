@@ -4,7 +4,7 @@ use super::engine::{Engine, Progress};
 use super::error::FrameError;
 use crate::color::{PixelFormat, clear, resolve};
 use crate::scene::Scene;
-use crate::target::{DepthChoice, RecordsChoice, Stats, Strip, StripPixels, WithoutDepth, WithoutRecords};
+use crate::target::{DepthChoice, Further, RecordsChoice, Stats, Strip, StripPixels, WithoutDepth, WithoutRecords};
 use core::marker::PhantomData;
 use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
@@ -134,10 +134,10 @@ use embedded_graphics_core::primitives::Rectangle;
 /// it must outlast the frame: after the last strip, and after an error, a buffer that was handed over is gone.
 #[derive(Debug)]
 #[must_use = "a frame draws nothing until its strips are pulled"]
-pub struct Frame<'r, 'b, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
+pub struct Frame<'r, 'b, P: PixelFormat, D: DepthChoice = WithoutDepth, R = WithoutRecords> {
     engine: &'r mut Engine<'b>,
     /// Colours of samples 1 and up.
-    samples: &'r mut [P::Raw],
+    further: D::Further<'r, P::Raw>,
     background: P::Raw,
     progress: Progress,
     choices: PhantomData<(D, R)>,
@@ -148,10 +148,14 @@ type DrawScene<'d, P, D, R> = dyn FnMut(&mut Scene<'_, Strip<'_, P, D, R>>) + 'd
 
 impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, D, R> {
     /// Starts a frame.
-    pub(super) fn new(engine: &'r mut Engine<'b>, samples: &'r mut [P::Raw], background: impl Into<Rgb888>) -> Self {
+    pub(super) fn new(
+        engine: &'r mut Engine<'b>,
+        further: D::Further<'r, P::Raw>,
+        background: impl Into<Rgb888>,
+    ) -> Self {
         let color: Rgb888 = background.into();
         let background = P::pack([color.r(), color.g(), color.b()]);
-        Self { engine, samples, background, progress: Progress::new(), choices: PhantomData }
+        Self { engine, further, background, progress: Progress::new(), choices: PhantomData }
     }
 
     /// Draws the next strip into `buffer`. Returns `None` after the last strip.
@@ -181,7 +185,7 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
         buffer: &'c mut [P::Raw],
         draw: &mut DrawScene<'_, P, D, R>,
     ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
-        let Self { engine, samples, background, progress, .. } = self;
+        let Self { engine, further, background, progress, .. } = self;
         let (width, row, held) = (engine.width(), progress.row(), buffer.len());
         if row == 0 {
             let rows = engine.strip_rows(held);
@@ -197,12 +201,17 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
         let pixels = buffer.get_mut(..needed).ok_or(FrameError::BufferTooShort { pixels: held, needed })?;
         clear(pixels, *background);
         // The renderer has seen to it that the samples are long enough.
-        let samples = samples.get_mut(..needed * (D::SAMPLES - 1)).unwrap_or_default();
-        clear(samples, *background);
-        let mut strip = Strip::<P, D, R>::new(&mut *pixels, &mut *samples, width, u32::from(row));
-        engine.next_strip(progress, &mut strip, rows, draw).map_err(|draw| FrameError::SceneChanged { draw })?;
+        let mut samples = D::first(further, needed * (D::SAMPLES - 1));
         if D::SAMPLES > 1 {
-            resolve::<P>(pixels, samples);
+            clear(samples.samples().0, *background);
+        }
+        {
+            let further = D::first(&mut samples, usize::MAX);
+            let mut strip = Strip::<P, D, R>::new(&mut *pixels, further, width, u32::from(row));
+            engine.next_strip(progress, &mut strip, rows, draw).map_err(|draw| FrameError::SceneChanged { draw })?;
+        }
+        if D::SAMPLES > 1 {
+            resolve::<P>(pixels, samples.samples().0);
         }
         let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(width as u32, u32::from(rows)));
         Ok(Some(StripPixels::new(area, pixels)))

@@ -6,8 +6,8 @@ use super::frame::Frame;
 use crate::color::PixelFormat;
 use crate::scene::Scene;
 use crate::target::{
-    DepthChoice, OnDisplay, RecordsChoice, Stats, Strip, StripSink, WithCarriedState, WithDepth, WithRecords,
-    WithSamples, WithoutDepth, WithoutRecords,
+    DepthChoice, NoSamples, OnDisplay, RecordsChoice, Stats, Strip, StripSink, WithCarriedState, WithDepth,
+    WithRecords, WithSamples, WithoutDepth, WithoutRecords,
 };
 use core::marker::PhantomData;
 use embedded_graphics_core::draw_target::DrawTarget;
@@ -44,10 +44,10 @@ use embedded_graphics_core::pixelcolor::Rgb888;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Debug)]
-pub struct Renderer<'b, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
+pub struct Renderer<'b, P: PixelFormat, D: DepthChoice = WithoutDepth, R = WithoutRecords> {
     engine: Engine<'b>,
     /// Colours of samples 1 and up.
-    samples: &'b mut [P::Raw],
+    further: D::Further<'b, P::Raw>,
     choices: PhantomData<(D, R)>,
 }
 
@@ -58,7 +58,7 @@ impl<P: PixelFormat> Renderer<'_, P> {
     /// # Errors
     /// When the screen is empty or larger than [`Viewport::MAX_SIZE`](crate::vertex::Viewport::MAX_SIZE).
     pub fn new(screen: Size) -> Result<Self, RendererError> {
-        Ok(Self { engine: Engine::new(screen)?, samples: &mut [], choices: PhantomData })
+        Ok(Self { engine: Engine::new(screen)?, further: NoSamples, choices: PhantomData })
     }
 }
 
@@ -70,7 +70,7 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
     /// # Errors
     /// When the buffer does not hold one row.
     pub fn with_depth(self, depth: &'b mut [u16]) -> Result<Renderer<'b, P, WithDepth, R>, RendererError> {
-        Ok(Renderer { engine: self.engine.with_depth(depth, 1)?, samples: &mut [], choices: PhantomData })
+        Ok(Renderer { engine: self.engine.with_depth(depth, 1)?, further: NoSamples, choices: PhantomData })
     }
 
     /// Lends a depth buffer and colours for `N` samples per pixel, which make the edges of triangles smooth: 2, 4 or 8
@@ -108,11 +108,11 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
         WithSamples<N>: DepthChoice,
     {
         let engine = self.engine.with_depth(depth, N)?.with_samples(samples.len(), N - 1)?;
-        Ok(Renderer { engine, samples, choices: PhantomData })
+        Ok(Renderer { engine, further: WithSamples::<N>::lend(samples), choices: PhantomData })
     }
 }
 
-impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithoutRecords> {
+impl<'b, P: PixelFormat, D: DepthChoice> Renderer<'b, P, D, WithoutRecords> {
     /// Lends memory for records, which keep transformed vertices and visible triangles from strip to strip; see
     /// [`records_len`](crate::target::records_len). It may be of any length: with less, the scene is transformed more
     /// often.
@@ -121,11 +121,11 @@ impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithoutRecords> {
     /// empty records.
     #[must_use]
     pub fn with_records(self, records: &'b mut [u32]) -> Renderer<'b, P, D, WithRecords> {
-        Renderer { engine: self.engine.with_records(records), samples: self.samples, choices: PhantomData }
+        Renderer { engine: self.engine.with_records(records), further: self.further, choices: PhantomData }
     }
 }
 
-impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithRecords> {
+impl<'b, P: PixelFormat, D: DepthChoice> Renderer<'b, P, D, WithRecords> {
     /// Carries the state of small triangles on from strip to strip: their edges, their depth and the planes of their
     /// colours or texels. So a strip need not set up again what the strip above has set up. The picture is the same,
     /// bit by bit.
@@ -158,7 +158,7 @@ impl<'b, P: PixelFormat, D> Renderer<'b, P, D, WithRecords> {
     /// ```
     #[must_use]
     pub fn with_carried_state(self) -> Renderer<'b, P, D, WithCarriedState> {
-        Renderer { engine: self.engine, samples: self.samples, choices: PhantomData }
+        Renderer { engine: self.engine, further: self.further, choices: PhantomData }
     }
 }
 
@@ -232,6 +232,6 @@ impl<'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Renderer<'b, P, D, R>
 
     /// Starts a frame whose strips the caller pulls.
     pub fn begin(&mut self, background: impl Into<Rgb888>) -> Frame<'_, 'b, P, D, R> {
-        Frame::new(&mut self.engine, self.samples, background)
+        Frame::new(&mut self.engine, D::first(&mut self.further, usize::MAX), background)
     }
 }

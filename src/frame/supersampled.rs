@@ -42,7 +42,7 @@ use embedded_graphics_core::primitives::Rectangle;
 /// let fine = Renderer::<Rgb565Be>::new(Size::new(640, 480)).expect("a renderer");
 /// let _ = Supersampled::<_, _, _, 5>::new(fine);
 /// ```
-pub struct Supersampled<'b, P: PixelFormat, D, R, const N: usize, M = MeanOfCodes> {
+pub struct Supersampled<'b, P: PixelFormat, D: DepthChoice, R, const N: usize, M = MeanOfCodes> {
     fine: Renderer<'b, P, D, R>,
     how: PhantomData<M>,
 }
@@ -131,7 +131,7 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice, const N: usize, M> fmt::D
 
 /// A frame of [`Supersampled`], whose strips are pulled one by one.
 #[must_use = "a frame draws nothing until its strips are pulled"]
-pub struct SupersampledFrame<'r, 'b, P: PixelFormat, D, R, const N: usize, M> {
+pub struct SupersampledFrame<'r, 'b, P: PixelFormat, D: DepthChoice, R, const N: usize, M> {
     frame: Frame<'r, 'b, P, D, R>,
     /// Columns of the finer screen, and most pixels of a strip.
     width: usize,

@@ -39,7 +39,7 @@ use embedded_graphics_core::primitives::Rectangle;
 /// assert_eq!((stats.strips, stats.drawn), (4, 1));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub struct FrameView<'v, 'b, P: PixelFormat, F, D = WithoutDepth, R = WithoutRecords> {
+pub struct FrameView<'v, 'b, P: PixelFormat, F, D: DepthChoice = WithoutDepth, R = WithoutRecords> {
     /// Renderer and buffer, taken out while the view is drawn, as `draw` has only a shared reference.
     tools: Cell<Option<Tools<'v, 'b, P, D, R>>>,
     area: Rectangle,
@@ -67,7 +67,7 @@ where
     }
 }
 
-impl<P: PixelFormat, F, D, R> Dimensions for FrameView<'_, '_, P, F, D, R> {
+impl<P: PixelFormat, F, D: DepthChoice, R> Dimensions for FrameView<'_, '_, P, F, D, R> {
     fn bounding_box(&self) -> Rectangle {
         self.area
     }
@@ -98,7 +98,7 @@ where
     }
 }
 
-impl<P: PixelFormat, F, D, R> fmt::Debug for FrameView<'_, '_, P, F, D, R> {
+impl<P: PixelFormat, F, D: DepthChoice, R> fmt::Debug for FrameView<'_, '_, P, F, D, R> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("FrameView").field("area", &self.area).finish_non_exhaustive()
     }

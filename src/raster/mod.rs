@@ -22,6 +22,6 @@ pub use line::{Line, LinePixels};
 pub(crate) use perspective::least_and_most;
 pub use perspective::{homogenize, straighten, widen, widen_along};
 pub use point::{square, wide_square};
-pub(crate) use samples::{Moves, first_centre, moves, sampled};
+pub(crate) use samples::{first_centre, moves, sampled};
 pub(crate) use small::{HEIGHT, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, tall_edges};
 pub use triangle::{Outline, PixelRect, Spans, pixel_rect, spans};

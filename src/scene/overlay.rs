@@ -43,7 +43,7 @@ impl<F: Framebuffer> Scene<'_, F> {
         let drawn = !self.is_recording() && !clip.is_empty();
         let Target { framebuffer, depth, rows } = &mut self.target;
         let target =
-            drawn.then_some(OverlayTarget { framebuffer: &mut **framebuffer, depth, rows: rows.clone(), clip });
+            drawn.then_some(OverlayTarget { framebuffer: &mut **framebuffer, depth, first_row: rows.start, clip });
         Overlay::new(target, self.screen, z, test)
     }
 

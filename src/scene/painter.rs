@@ -265,8 +265,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let shader = self.shader;
         while spans.next_in(&self.clip.x) {
             // Stages 10 and 11: depth test and fragments.
-            let place = (spans.y, spans.x.clone());
-            shader.span(self.span_at::<D>(&set_up.depth, &set_up.primitive, place, &mut nothing), test);
+            shader.span(self.span_at::<D>(set_up, &spans, &mut nothing), test);
         }
     }
 
@@ -296,7 +295,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 [(&set_up.primitive, start..inner), (&centre.primitive, inner..outer), (&set_up.primitive, outer..end)];
             for (primitive, part) in parts {
                 if !part.is_empty() {
-                    shader.span(self.span_at::<D>(&set_up.depth, primitive, (y, part), &mut nothing), test);
+                    shader.span(self.part_at::<D>(&set_up.depth, primitive, (y, part), &mut nothing), test);
                 }
             }
         }
@@ -305,6 +304,17 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
     /// Finds the colours, the depths and the first depth of a span.
     #[inline(never)]
     fn span_at<'a, D: DepthTest>(
+        &'a mut self,
+        set_up: &'a SetUp<'_, S::Varyings, S::Setup>,
+        spans: &Spans<'_>,
+        nothing: &'a mut [()],
+    ) -> SpanOf<'a, F::Format, S, D> {
+        self.part_at::<D>(&set_up.depth, &set_up.primitive, (spans.y, spans.x.clone()), nothing)
+    }
+
+    /// Finds the colours, the depths and the first depth of columns in a row.
+    #[inline(always)]
+    fn part_at<'a, D: DepthTest>(
         &'a mut self,
         plane: &PlaneEquation,
         primitive: &'a Primitive<S::Varyings, S::Setup>,

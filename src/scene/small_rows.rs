@@ -3,7 +3,7 @@
 use super::scene::Target;
 use super::state::{State, Winding};
 use crate::color::PixelFormat;
-use crate::raster::{PixelRect, moves, sampled};
+use crate::raster::{PixelRect, sampled};
 use crate::span::{BiasSteps, DepthBias, LeftState, SmallTarget};
 use crate::target::Framebuffer;
 use crate::vertex::ScreenVertex;
@@ -65,7 +65,7 @@ impl<'p> SmallRows<'p> {
             (target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, y..y + 1)
         };
         let Self { screen, clip, clockwise_fronts, bias } = *self;
-        let (columns, moves) = (clip.x.clone(), moves(F::SAMPLES));
-        Some(SmallTarget { color, samples, moves, depth, first, columns, rows, screen, clockwise_fronts, bias, state })
+        let (columns, first, count) = (clip.x.clone(), first as u16, F::SAMPLES as u8);
+        Some(SmallTarget { color, samples, count, depth, first, columns, rows, screen, clockwise_fronts, bias, state })
     }
 }

@@ -4,7 +4,7 @@ use super::carried::LeftState;
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
 use crate::color::PixelFormat;
-use crate::raster::{Moves, ShortPlanes};
+use crate::raster::ShortPlanes;
 use core::ops::Range;
 
 /// Pixels that small triangles are drawn into: rows that lie one after the other in memory.
@@ -14,10 +14,10 @@ pub struct SmallTarget<'a, R> {
     pub(crate) depth: &'a mut [u16],
     /// Colours of samples 1 and up, one sample after the other. Depths of all samples are together.
     pub(crate) samples: &'a mut [R],
-    /// Moves that bring each sample to the centre of its pixel.
-    pub(crate) moves: Moves,
+    /// Number of samples.
+    pub(crate) count: u8,
     /// The first row.
-    pub(crate) first: i32,
+    pub(crate) first: u16,
     /// Columns that all of a triangle has to be in, and rows that may be drawn.
     pub(crate) columns: Range<i32>,
     pub(crate) rows: Range<i32>,

@@ -17,7 +17,7 @@
 use super::brush::{BrushRows, SmallResult, SmallTarget, subslice};
 use super::depth::DepthTest;
 use crate::color::PixelFormat;
-use crate::raster::{ShortEdge, first_centre};
+use crate::raster::{ShortEdge, first_centre, moves};
 use core::ops::Range;
 
 /// Most rows in which a triangle has samples: of 25 px, and one more at either end.
@@ -115,7 +115,7 @@ pub(super) fn draw_sampled_rows<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>
             }
         });
     }
-    for sample in 0..target.moves.len() {
+    for sample in 0..usize::from(target.count) {
         draw_sample(target, triangle, rows, &centres, sample, test);
     }
     SmallResult::Drawn
@@ -131,8 +131,8 @@ fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
     sample: usize,
     test: D,
 ) {
-    let SmallTarget { color, depth, samples, moves, first, screen, .. } = target;
-    let (Some(to_centre), length) = (moves.get(sample), color.len()) else { return };
+    let SmallTarget { color, depth, samples, count, first, screen, .. } = target;
+    let (Some(to_centre), length) = (moves(usize::from(*count)).get(sample), color.len()) else { return };
     let color = match sample.checked_sub(1) {
         None => &mut **color,
         Some(further) => subslice(samples, further.wrapping_mul(length), length).unwrap_or_default(),
@@ -144,7 +144,7 @@ fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
     let (Some(color), Some(depth)) = (color.get_mut(..length), depth.get_mut(..length)) else { return };
     let width = usize::from(screen.0);
     let (column, row) = triangle.place;
-    let mut at = width.wrapping_mul((row - *first) as usize).wrapping_add(column as usize);
+    let mut at = width.wrapping_mul((row - i32::from(*first)) as usize).wrapping_add(column as usize);
     let (mut z, (dz_dx, dz_dy)) = (triangle.depth_at(*to_centre), triangle.dz);
     let (mut rows, mut next) = (rows.beside((0, 0)), 0);
     triangle.each_row(*to_centre, |number, columns| {

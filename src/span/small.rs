@@ -25,7 +25,7 @@ use super::depth_bias::{BiasSteps, DepthBias};
 use super::sampled::{SampledTriangle, draw_sampled_rows};
 use crate::color::PixelFormat;
 use crate::raster::{
-    HEIGHT, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, sampled, tall_edges,
+    HEIGHT, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, moves, sampled, tall_edges,
 };
 use crate::vertex::PackedVertex;
 use core::ops::Range;
@@ -77,15 +77,15 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     brush: &B,
     test: D,
 ) -> SmallResult {
-    let SmallTarget { color, depth, samples, moves, first, columns, rows, screen, clockwise_fronts, bias, .. } = target;
+    let SmallTarget { color, depth, samples, count, first, columns, rows, screen, clockwise_fronts, bias, .. } = target;
     let [a, b, c] = v.map(|words| PackedVertex(*words).x());
-    let all = sampled(a.min(b).min(c), a.max(b).max(c), moves.len());
+    let all = sampled(a.min(b).min(c), a.max(b).max(c), usize::from(*count));
     if all.start < columns.start || all.end > columns.end {
         return SmallResult::Large;
     }
     let length = color.len();
     let mut result = SmallResult::Empty;
-    for (sample, (x, y)) in moves.iter().enumerate() {
+    for (sample, (x, y)) in moves(usize::from(*count)).iter().enumerate() {
         let color = match sample.checked_sub(1) {
             None => &mut **color,
             Some(further) => subslice(samples, further.wrapping_mul(length), length).unwrap_or_default(),
@@ -97,7 +97,7 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
             color,
             depth,
             samples: &mut [],
-            moves,
+            count: 1,
             first: *first,
             columns: columns.clone(),
             rows: rows.clone(),
@@ -234,7 +234,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
         }
     }
     let width = usize::from(target.screen.0);
-    let mut at = width.wrapping_mul((row - target.first) as usize).wrapping_add(column as usize);
+    let mut at = width.wrapping_mul((row - i32::from(target.first)) as usize).wrapping_add(column as usize);
     // Both get one length, so that the compiler knows a span inside of one to be inside of the other.
     let mut nothing = [(); usize::MAX];
     let (colors, depths) = (&mut *target.color, D::slots(target.depth, &mut nothing));
@@ -299,7 +299,8 @@ fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     let (column, dz_dx, dz_dy) = column_and_slopes(words);
     let mut rows = brush.resume(state, (column, target.rows.start));
     let width = usize::from(target.screen.0);
-    let mut at = width.wrapping_mul((target.rows.start - target.first) as usize).wrapping_add(column as usize);
+    let mut at =
+        width.wrapping_mul((target.rows.start - i32::from(target.first)) as usize).wrapping_add(column as usize);
     // Both get one length, so that the compiler knows a span inside of one to be inside of the other.
     let mut nothing = [(); usize::MAX];
     let (colors, depths) = (&mut *target.color, D::slots(target.depth, &mut nothing));

@@ -7,6 +7,57 @@ pub trait DepthChoice: sealed::Sealed {
 
     /// Number of samples per pixel.
     const SAMPLES: usize = 1;
+
+    /// The colours of samples 1 and up, one sample after the other; nothing with one sample per pixel.
+    type Further<'a, R: 'a>: Further<R>;
+
+    /// Lends memory for them.
+    #[doc(hidden)]
+    fn lend<R>(pixels: &mut [R]) -> Self::Further<'_, R>;
+
+    /// Returns the first `length` of these colours, or all.
+    #[doc(hidden)]
+    fn first<'r, R>(further: &'r mut Self::Further<'_, R>, length: usize) -> Self::Further<'r, R>;
+}
+
+/// Memory for the colours of samples 1 and up: [`Samples`], or nothing.
+pub trait Further<R>: sealed::Sealed {
+    /// Returns the colours of all samples, and the number of the one that is drawn into.
+    #[doc(hidden)]
+    fn samples(&mut self) -> (&mut [R], usize);
+
+    /// Sets the number of the sample that is drawn into.
+    #[doc(hidden)]
+    fn select(&mut self, sample: usize);
+}
+
+/// Colours of samples 1 and up, one sample after the other.
+#[derive(Debug)]
+pub struct Samples<'a, R> {
+    pixels: &'a mut [R],
+    sample: usize,
+}
+
+/// No colours: there is one sample per pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct NoSamples;
+
+impl<R> Further<R> for NoSamples {
+    fn samples(&mut self) -> (&mut [R], usize) {
+        (&mut [], 0)
+    }
+
+    fn select(&mut self, _: usize) {}
+}
+
+impl<R> Further<R> for Samples<'_, R> {
+    fn samples(&mut self) -> (&mut [R], usize) {
+        (self.pixels, self.sample)
+    }
+
+    fn select(&mut self, sample: usize) {
+        self.sample = sample;
+    }
 }
 
 /// Choice of records, said by a type: [`WithRecords`], [`WithCarriedState`] or [`WithoutRecords`].
@@ -46,29 +97,49 @@ pub struct WithoutRecords;
 
 impl DepthChoice for WithDepth {
     const DEPTH: bool = true;
+    type Further<'a, R: 'a> = NoSamples;
+
+    fn lend<R>(_: &mut [R]) -> NoSamples {
+        NoSamples
+    }
+
+    fn first<'r, R>(_: &'r mut NoSamples, _: usize) -> NoSamples {
+        NoSamples
+    }
 }
 
-impl DepthChoice for WithSamples<1> {
-    const DEPTH: bool = true;
+macro_rules! with_samples {
+    ($($count:literal)*) => {$(
+        impl DepthChoice for WithSamples<$count> {
+            const DEPTH: bool = true;
+            const SAMPLES: usize = $count;
+            type Further<'a, R: 'a> = Samples<'a, R>;
+
+            fn lend<R>(pixels: &mut [R]) -> Samples<'_, R> {
+                Samples { pixels, sample: 0 }
+            }
+
+            fn first<'r, R>(further: &'r mut Samples<'_, R>, length: usize) -> Samples<'r, R> {
+                let length = length.min(further.pixels.len());
+                Self::lend(further.pixels.get_mut(..length).unwrap_or_default())
+            }
+        }
+    )*};
 }
 
-impl DepthChoice for WithSamples<2> {
-    const DEPTH: bool = true;
-    const SAMPLES: usize = 2;
-}
-
-impl DepthChoice for WithSamples<4> {
-    const DEPTH: bool = true;
-    const SAMPLES: usize = 4;
-}
-
-impl DepthChoice for WithSamples<8> {
-    const DEPTH: bool = true;
-    const SAMPLES: usize = 8;
-}
+with_samples!(1 2 4 8);
 
 impl DepthChoice for WithoutDepth {
     const DEPTH: bool = false;
+    type Further<'a, R: 'a> = NoSamples;
+
+    fn lend<R>(_: &mut [R]) -> NoSamples {
+        NoSamples
+    }
+
+    fn first<'r, R>(_: &'r mut NoSamples, _: usize) -> NoSamples {
+        NoSamples
+    }
 }
 
 impl RecordsChoice for WithRecords {
@@ -91,6 +162,8 @@ mod sealed {
     impl Sealed for super::WithDepth {}
     impl<const N: usize> Sealed for super::WithSamples<N> {}
     impl Sealed for super::WithoutDepth {}
+    impl Sealed for super::NoSamples {}
+    impl<R> Sealed for super::Samples<'_, R> {}
     impl Sealed for super::WithRecords {}
     impl Sealed for super::WithCarriedState {}
     impl Sealed for super::WithoutRecords {}

@@ -34,8 +34,7 @@ pub struct Overlay<'o, F, D> {
     framebuffer: Option<&'o mut F>,
     /// Depths of the strip's rows, one row after the other; empty without a depth buffer, so that every test passes.
     depth: &'o mut [u16],
-    /// Rows of the strip.
-    rows: Range<i32>,
+    first_row: i32,
     screen: (u16, u16),
     /// Area that may be drawn: never outside of the strip or of the viewport.
     clip: PixelRect,
@@ -47,7 +46,7 @@ pub struct Overlay<'o, F, D> {
 pub(crate) struct OverlayTarget<'o, F> {
     pub(crate) framebuffer: &'o mut F,
     pub(crate) depth: &'o mut [u16],
-    pub(crate) rows: Range<i32>,
+    pub(crate) first_row: i32,
     /// Pixels that may be drawn: in the strip and in the viewport, and at least one. The columns of an empty rectangle
     /// could be in the wrong order, and would have no length.
     pub(crate) clip: PixelRect,
@@ -57,12 +56,12 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     /// Makes an overlay over a strip of a screen, or one that draws nothing.
     pub(crate) fn new(target: Option<OverlayTarget<'o, F>>, screen: (u16, u16), z: u16, test: D) -> Self {
         match target {
-            Some(OverlayTarget { framebuffer, depth, rows, clip }) => {
-                Self { framebuffer: Some(framebuffer), depth, rows, screen, clip, z, test }
+            Some(OverlayTarget { framebuffer, depth, first_row, clip }) => {
+                Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test }
             }
             None => {
                 let clip = PixelRect { x: 0..0, y: 0..0 };
-                Self { framebuffer: None, depth: Default::default(), rows: 0..0, screen, clip, z, test }
+                Self { framebuffer: None, depth: Default::default(), first_row: 0, screen, clip, z, test }
             }
         }
     }
@@ -90,7 +89,7 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
                 framebuffer: self.framebuffer.as_deref_mut(),
                 depth: self.depth,
                 clip,
-                rows: self.rows.clone(),
+                first_row: self.first_row,
                 screen: self.screen,
                 z: self.z,
                 test: self.test,
@@ -123,18 +122,19 @@ impl<'o, F: Framebuffer, D: DepthTest> Overlay<'o, F, D> {
     #[inline(never)]
     fn fill(&mut self, rect: &PixelRect, color: Color<F>) {
         let part = self.clip.intersection(rect);
-        let Self { framebuffer: Some(framebuffer), depth, rows, screen, z, test, .. } = self else { return };
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else { return };
         if part.is_empty() {
             return;
         }
         let value = F::Format::from_color(color);
         let mut nothing = [(); usize::MAX];
+        let pixels = if F::SAMPLES > 1 { framebuffer.samples().map_or(0, |[pixels, _]| pixels.len()) } else { 0 };
         for sample in 0..F::SAMPLES {
             framebuffer.select_sample(sample);
-            let first = rows.start - sample as i32 * (rows.end - rows.start);
+            let depth = depth.get_mut(pixels.wrapping_mul(sample)..).unwrap_or_default();
             for y in part.y.clone() {
                 let row = colors(*framebuffer, y, &part.x);
-                let stored = depths::<D>(depth, &mut nothing, y - first, screen.0, &part.x);
+                let stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x);
                 if D::ENABLED && !stored.is_empty() {
                     for (pixel, stored) in row.iter_mut().zip(stored) {
                         if passes(*test, *z, stored) {
@@ -271,7 +271,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
             }
             return Ok(());
         }
-        let Self { framebuffer: Some(framebuffer), depth, rows, screen, clip, z, test } = self else {
+        let Self { framebuffer: Some(framebuffer), depth, first_row, screen, clip, z, test } = self else {
             return Ok(());
         };
         let (left, top, height) = (clip.x.start, clip.y.start, (clip.y.end - clip.y.start).max(0) as u32);
@@ -285,7 +285,7 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
                 }
                 y = point.y;
                 row = colors(*framebuffer, y, &clip.x);
-                stored = depths::<D>(depth, &mut nothing, y - rows.start, screen.0, &clip.x);
+                stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &clip.x);
             }
             // For columns to the left of the row, the difference wraps to a number beyond its end.
             let column = point.x.wrapping_sub(left) as usize;
@@ -332,14 +332,14 @@ impl<F: Framebuffer, D: DepthTest> DrawTarget for Overlay<'_, F, D> {
                 skip = width.wrapping_sub(part.x.len());
                 continue;
             }
-            let Self { framebuffer: Some(framebuffer), depth, rows, screen, z, test, .. } = self else {
+            let Self { framebuffer: Some(framebuffer), depth, first_row, screen, z, test, .. } = self else {
                 return Ok(());
             };
             let row = colors(*framebuffer, y, &part.x);
             // Number of colours to pass over before the next row: those of the area's width that this row does not
             // draw.
             skip = width.wrapping_sub(row.len());
-            let mut stored = depths::<D>(depth, &mut nothing, y - rows.start, screen.0, &part.x).iter_mut();
+            let mut stored = depths::<D>(depth, &mut nothing, y - *first_row, screen.0, &part.x).iter_mut();
             for (pixel, color) in row.iter_mut().zip(&mut new) {
                 if !D::ENABLED || stored.next().is_none_or(|stored| passes(*test, *z, stored)) {
                     *pixel = F::Format::from_color(color);

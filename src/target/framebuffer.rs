@@ -1,6 +1,6 @@
 //! Framebuffers: everything that has rows of pixels to draw into.
 
-use super::choice::{DepthChoice, RecordsChoice, WithoutDepth, WithoutRecords};
+use super::choice::{DepthChoice, Further, RecordsChoice, WithoutDepth, WithoutRecords};
 use crate::color::PixelFormat;
 use core::fmt;
 use core::marker::PhantomData;
@@ -73,11 +73,9 @@ fn first<R>(pixels: &mut [R], length: usize) -> &mut [R] {
 ///
 /// A function for the scenes of any renderer takes `&mut Scene<'_, impl Framebuffer>`, and need not name this type.
 #[derive(Debug)]
-pub struct Strip<'a, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
+pub struct Strip<'a, P: PixelFormat, D: DepthChoice = WithoutDepth, R = WithoutRecords> {
     pixels: &'a mut [P::Raw],
-    /// Pixels of samples 1 and up, one sample after the other.
-    samples: &'a mut [P::Raw],
-    sample: usize,
+    further: D::Further<'a, P::Raw>,
     width: usize,
     first_row: u32,
     choices: PhantomData<(D, R)>,
@@ -85,20 +83,27 @@ pub struct Strip<'a, P: PixelFormat, D = WithoutDepth, R = WithoutRecords> {
 
 impl<'a, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Strip<'a, P, D, R> {
     /// Makes a strip of rows of `width` px from `first_row` on, one after the other in `pixels`. Those of further
-    /// samples are in `samples`.
-    pub(crate) const fn new(pixels: &'a mut [P::Raw], samples: &'a mut [P::Raw], width: usize, first_row: u32) -> Self {
-        Self { pixels, samples, sample: 0, width, first_row, choices: PhantomData }
+    /// samples are in `further`.
+    pub(crate) const fn new(
+        pixels: &'a mut [P::Raw],
+        further: D::Further<'a, P::Raw>,
+        width: usize,
+        first_row: u32,
+    ) -> Self {
+        Self { pixels, further, width, first_row, choices: PhantomData }
     }
 
     /// Returns the pixels of the sample that is chosen.
     #[inline(always)]
     fn pixels(&mut self) -> &mut [P::Raw] {
-        match self.sample.checked_sub(1) {
-            Some(further) if D::SAMPLES > 1 => {
-                let length = self.pixels.len();
-                first(self.samples.get_mut(further.wrapping_mul(length)..).unwrap_or_default(), length)
-            }
-            _ => self.pixels,
+        if D::SAMPLES == 1 {
+            return self.pixels;
+        }
+        let length = self.pixels.len();
+        let (samples, sample) = self.further.samples();
+        match sample.checked_sub(1) {
+            Some(further) => first(samples.get_mut(further.wrapping_mul(length)..).unwrap_or_default(), length),
+            None => self.pixels,
         }
     }
 }
@@ -117,13 +122,13 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice> Framebuffer for Strip<'_,
     #[inline]
     fn select_sample(&mut self, sample: usize) {
         if D::SAMPLES > 1 {
-            self.sample = sample;
+            self.further.select(sample);
         }
     }
 
     #[inline]
     fn samples(&mut self) -> Option<[&mut [P::Raw]; 2]> {
-        Some([self.pixels, self.samples])
+        Some([self.pixels, self.further.samples().0])
     }
 
     // Out of line, since loops ask for rows one by one only where the strip is short or narrow.

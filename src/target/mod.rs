@@ -15,7 +15,8 @@ mod strip_rows;
 mod triangles;
 
 pub use choice::{
-    DepthChoice, RecordsChoice, WithCarriedState, WithDepth, WithRecords, WithSamples, WithoutDepth, WithoutRecords,
+    DepthChoice, Further, NoSamples, RecordsChoice, Samples, WithCarriedState, WithDepth, WithRecords, WithSamples,
+    WithoutDepth, WithoutRecords,
 };
 pub use draw_target::Overlay;
 pub(crate) use draw_target::OverlayTarget;
