@@ -50,6 +50,7 @@
 //! | put textures on them | [`texture`] |
 //! | write a shader of one's own | [`span::Shader`] |
 //! | draw text, images and shapes among meshes | [`Scene::overlay`], [`Scene::at_depth`], [`Scene::canvas`] |
+//! | draw shapes with smooth edges, gauges, sprites | [`shape`], [`Canvas::fill`] |
 //! | find a point of the world on the screen, and back | [`Scene::project`], [`Scene::unproject`] |
 //! | choose the format of pixels, or dither | [`color`], [`target::Packer`] |
 //! | know how exact positions, depths, colours and light are | `docs/accuracy.md`: bounds and worst errors seen |
@@ -95,6 +96,7 @@
 //! | [`shader`] | the ready-made shaders, ordinary users of that seam |
 //! | [`target`] | framebuffers, strips, sinks, packers, embedded-graphics targets, records |
 //! | [`scene`] | the one place that calls every stage, in order: [`Scene`] |
+//! | [`shape`] | shapes with smooth edges: paths, circles, thick lines, gradients, sprites |
 //! | [`model`] | models in containers: nodes, materials, animation; an ordinary user of all floors below |
 //! | [`frame`] | bands and strips, renderers, views, RAM budgets |
 //!
@@ -145,6 +147,7 @@ pub mod model;
 mod raster;
 pub mod scene;
 pub mod shader;
+pub mod shape;
 pub mod span;
 pub mod target;
 pub mod texture;

@@ -4,6 +4,9 @@
 //! Coverage is exact, as if computed with infinite precision, for vertices within ±32,767 px.
 
 mod along;
+mod area;
+mod area_edge;
+mod area_row;
 mod direction;
 mod edge;
 mod gradient;
@@ -15,6 +18,9 @@ mod small;
 mod triangle;
 
 pub use along::Along;
+pub(crate) use area::{AreaMemory, LEAST_EDGES, Run, area_words};
+pub(crate) use area_edge::AreaEdges;
+pub use area_row::FillRule;
 pub(crate) use direction::unit;
 pub use gradient::{Gradients, PlaneEquation};
 pub(crate) use gradient::{gradients, high};

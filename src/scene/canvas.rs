@@ -101,7 +101,7 @@ impl defmt::Format for ScreenPoint {
 
 impl ScreenPoint {
     /// Returns the point as a vertex, for points inside of the guard band.
-    const fn vertex(self, z: u16) -> ScreenVertex {
+    pub(super) const fn vertex(self, z: u16) -> ScreenVertex {
         ScreenVertex::new(self.x, self.y, z)
     }
 
@@ -115,7 +115,7 @@ impl ScreenPoint {
 
     /// Returns the sides of the guard band that the point is outside of.
     #[inline]
-    fn outcode(self) -> Outcode {
+    pub(super) fn outcode(self) -> Outcode {
         // Nearly all points are inside. The guard band ends at 2²³ - 2.
         if self.x.unsigned_abs().max(self.y.unsigned_abs()) < (1 << 23) - 2 {
             return Outcode(0);
@@ -155,13 +155,13 @@ fn cut_triangle(points: [ScreenPoint; 3], codes: Outcode, z: u16) -> Vec<CutCorn
 /// outside of the strip.
 #[derive(Debug)]
 pub struct Canvas<'c, 'a, F> {
-    scene: &'c mut Scene<'a, F>,
+    pub(super) scene: &'c mut Scene<'a, F>,
     /// Pixels of the strip that may be drawn; none while a band is recorded.
-    clip: PixelRect,
+    pub(super) clip: PixelRect,
     /// Pixels that may be drawn without a scissor.
     all: PixelRect,
-    state: State,
-    z: u16,
+    pub(super) state: State,
+    pub(super) z: u16,
 }
 
 /// State in which neither depth nor winding matters.
@@ -429,7 +429,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
 
 /// Gives varyings the 1 / w that all points of a canvas have.
 #[inline]
-fn level<V: Varyings>(mut varyings: V) -> V {
+pub(super) fn level<V: Varyings>(mut varyings: V) -> V {
     varyings.set_inverse_w(1 << 31);
     varyings
 }

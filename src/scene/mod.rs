@@ -8,6 +8,7 @@ mod canvas;
 mod clusters;
 mod cull;
 mod draw;
+mod fill;
 mod hooks;
 mod lines;
 mod overlay;
@@ -22,6 +23,7 @@ mod stroke;
 mod vertex_stage;
 
 pub use canvas::{Canvas, ScreenPoint};
+pub use fill::{Outline, Pen, ShapeBuffer, ShapeError};
 pub use scene::Scene;
 pub(crate) use scene::{Phase, Target};
 pub use state::{Cull, State, Winding};

@@ -2,6 +2,7 @@
 #![allow(dead_code)] // each test binary uses its part
 
 pub mod accuracy;
+pub mod area;
 
 use crate::reference::rng::Rng;
 use crate::reference::scenes::clip_soup;

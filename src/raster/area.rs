@@ -1,0 +1,384 @@
+//! Areas → runs of pixels: outlines come in, for as many rows at a time as there is memory for, and runs of pixels that
+//! are covered alike, or each to a part of its own, go out, row by row from the top.
+//!
+//! An outline is traced once per band of rows. Where its edges in the band do not fit the memory, the band is halved
+//! and the outline traced again, down to a single row. A row with too many edges is cut into parts of a half, a quarter
+//! ... of its height, whose covered parts add up. Where so many edges cross one height that even 1/256 of a row has too
+//! many, the places where they cross it are found, as many at a time as fit. So any memory will do for any outline.
+
+use super::area_edge::{AreaEdge, AreaEdges, EDGE_WORDS, Wanted};
+use super::area_row::{Cells, FillRule, Row};
+use super::triangle::PixelRect;
+
+/// Height of the smallest part of a row, 1/256 px: that of a unit of [`Pixels`](crate::math::Pixels).
+const LEAST_PART: i32 = 256;
+
+/// Fewest edges that areas take.
+pub(crate) const LEAST_EDGES: usize = 4;
+
+/// Memory in which areas are made: edges, their order, and the cells of a row.
+#[derive(Debug)]
+pub(crate) struct AreaMemory<'m> {
+    edges: &'m mut [AreaEdge],
+    order: &'m mut [u32],
+    cover: &'m mut [i32],
+    touched: &'m mut [u32],
+}
+
+/// Returns the words for rows of `width` pixels and a number of edges.
+pub(crate) const fn area_words(width: usize, edges: usize) -> usize {
+    let cells = width.saturating_add(2);
+    cells.saturating_add(cells.div_ceil(32)).saturating_add(edges.saturating_mul(EDGE_WORDS + 1))
+}
+
+impl<'m> AreaMemory<'m> {
+    /// Shares words out: cells for rows of `width` pixels, and edges with the rest. `None` if they are too few.
+    pub(crate) fn new(words: &'m mut [u32], width: usize) -> Option<Self> {
+        let cells = width.checked_add(2)?;
+        let (cover, words) = words.split_at_mut_checked(cells)?;
+        let (touched, words) = words.split_at_mut_checked(cells.div_ceil(32))?;
+        let edges = words.len() / (EDGE_WORDS + 1);
+        if edges < LEAST_EDGES {
+            return None;
+        }
+        let (order, words) = words.split_at_mut_checked(edges)?;
+        let edges = bytemuck::try_cast_slice_mut(words.get_mut(..edges * EDGE_WORDS)?).ok()?;
+        let cover = bytemuck::try_cast_slice_mut(cover).ok()?;
+        cover.fill(0);
+        touched.fill(0);
+        Some(Self { edges, order, cover, touched })
+    }
+
+    /// Begins an area that is drawn in a rectangle.
+    pub(crate) fn area(&mut self, rect: &PixelRect, rule: FillRule) -> Area<'_> {
+        let Self { edges, order, cover, touched } = self;
+        let width = (cover.len() as i32 - 2).min(rect.x.end.wrapping_sub(rect.x.start)).max(0);
+        Area {
+            edges: AreaEdges {
+                edges,
+                count: 0,
+                overflowed: false,
+                top: 0,
+                bottom: 0,
+                left: rect.x.start << 16,
+                right: (rect.x.start + width) << 16,
+                wanted: Wanted::Rows,
+            },
+            order,
+            cells: Cells { cover, touched, left: rect.x.start, width },
+            rule,
+            row: rect.y.start,
+            end: rect.y.end,
+            rows: rect.y.end - rect.y.start,
+            part: 0..0,
+            winding: 0,
+            active: 0,
+            waiting: 0,
+            band_end: rect.y.start,
+            scanning: false,
+            scanned: 0,
+            sum: 0,
+            varied: 0..0,
+        }
+    }
+}
+
+/// An area that is being drawn. Its owner calls [`begin_band`](Self::begin_band), traces the outline into
+/// [`edges`](Self::edges), calls [`end_band`](Self::end_band), and takes all runs, until there is no band any more.
+pub(crate) struct Area<'a> {
+    pub(crate) edges: AreaEdges<'a>,
+    /// Numbers of the edges in the current row, and from `waiting` on, of those below it, by their upper ends.
+    order: &'a mut [u32],
+    cells: Cells<'a>,
+    rule: FillRule,
+    /// The current row, the end of all rows, and the number of rows of a band.
+    row: i32,
+    end: i32,
+    rows: i32,
+    /// Heights in the row that the current part is between; empty if edges of whole rows are wanted.
+    part: core::ops::Range<i32>,
+    /// Winding number after the crossings so far.
+    winding: i32,
+    active: usize,
+    waiting: usize,
+    band_end: i32,
+    /// Set while the current row has runs left.
+    scanning: bool,
+    /// Column up to which the row is scanned, from the first one on, and the covered part there.
+    scanned: i32,
+    sum: i32,
+    /// Columns of the last run of varied parts, whose cells are not cleared yet.
+    varied: core::ops::Range<i32>,
+}
+
+/// Pixels side by side in a row.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Run {
+    pub(crate) y: i32,
+    pub(crate) x: core::ops::Range<i32>,
+    /// Covered part of each pixel, 256 for all of it; `None` if each has its own, see [`Area::parts`].
+    pub(crate) part: Option<u32>,
+}
+
+/// Rounds a covered part from 2⁻¹⁶ to 256ths.
+#[inline(always)]
+const fn part(sum: i32) -> u32 {
+    let part = sum.unsigned_abs();
+    let part = if part > 1 << 16 { 1 << 16 } else { part };
+    (part + 128) >> 8
+}
+
+impl<'a> Area<'a> {
+    /// Returns the first column after those that this area draws.
+    pub(crate) const fn right(&self) -> i32 {
+        self.cells.left + self.cells.width
+    }
+
+    /// Begins the next band, and returns whether there is one.
+    #[inline(never)]
+    pub(crate) fn begin_band(&mut self) -> bool {
+        if self.row >= self.end || self.cells.width <= 0 {
+            return false;
+        }
+        let edges = &mut self.edges;
+        (edges.count, edges.overflowed) = (0, false);
+        if edges.wanted == Wanted::Rows {
+            self.rows = self.rows.min(self.end - self.row).max(1);
+            (edges.top, edges.bottom) = (self.row << 16, (self.row + self.rows) << 16);
+        } else {
+            (edges.top, edges.bottom) = ((self.row << 16) + self.part.start, (self.row << 16) + self.part.end);
+        }
+        true
+    }
+
+    /// Ends the tracing of a band. Without enough memory for it, the next band is a smaller one, and has no runs.
+    #[inline(never)]
+    pub(crate) fn end_band(&mut self) {
+        self.scanning = false;
+        (self.active, self.waiting) = (0, 0);
+        match self.edges.wanted {
+            Wanted::Rows if self.edges.overflowed && self.rows > 1 => self.rows >>= 1,
+            Wanted::Rows if self.edges.overflowed => {
+                self.edges.wanted = Wanted::Part;
+                self.part = 0..1 << 15;
+            }
+            Wanted::Rows => {
+                self.band_end = self.row + self.rows;
+                self.rows = self.rows.saturating_mul(2);
+                self.sort();
+            }
+            Wanted::Part if self.edges.overflowed => {
+                let height = self.part.end - self.part.start;
+                if height > LEAST_PART {
+                    self.part.end = self.part.start + (height >> 1);
+                } else {
+                    self.edges.wanted = Wanted::Crossings { after: i32::MIN };
+                    self.winding = 0;
+                }
+            }
+            Wanted::Part => {
+                self.active = self.edges.count;
+                for (k, number) in self.order.iter_mut().enumerate() {
+                    *number = k as u32;
+                }
+                let (from, to) = (self.part.start, self.part.end);
+                self.in_row().slabs(from, to);
+                self.next_part();
+            }
+            Wanted::Crossings { .. } => {
+                let (height, mut winding) = (self.part.end - self.part.start, self.winding);
+                let last = self.edges.count.checked_sub(1).and_then(|last| self.edges.edges.get(last));
+                let after = last.map_or(i32::MAX, |edge| edge.x);
+                self.in_row().crossings(height, &mut winding);
+                self.winding = winding;
+                if self.edges.overflowed {
+                    self.edges.wanted = Wanted::Crossings { after };
+                } else {
+                    self.edges.wanted = Wanted::Part;
+                    self.next_part();
+                }
+            }
+        }
+    }
+
+    /// Moves on to the next part of the row; after the last one, the row is done.
+    fn next_part(&mut self) {
+        let height = self.part.end - self.part.start;
+        self.part = self.part.end..self.part.end + height;
+        if self.part.start >= 1 << 16 {
+            self.edges.wanted = Wanted::Rows;
+            self.begin_scan();
+            (self.active, self.edges.count) = (0, 0);
+            self.band_end = self.row + 1;
+            self.rows = 1;
+        }
+    }
+
+    /// Returns the edges of the current row.
+    fn in_row(&mut self) -> Row<'_, 'a> {
+        let Self { edges: AreaEdges { edges, count, .. }, order, cells, rule, row, active, .. } = self;
+        Row {
+            edges: edges.get_mut(..*count).unwrap_or_default(),
+            order: order.get_mut(..*active).unwrap_or_default(),
+            cells,
+            top: *row << 16,
+            rule: *rule,
+        }
+    }
+
+    /// Sorts edges by their upper ends, by Shell's method, with gaps of 2ⁿ - 1.
+    fn sort(&mut self) {
+        let (edges, count) = (&*self.edges.edges, self.edges.count);
+        let Some(order) = self.order.get_mut(..count) else { return };
+        for (k, number) in order.iter_mut().enumerate() {
+            *number = k as u32;
+        }
+        let top = |number: u32| edges.get(number as usize).map_or(0, |edge| edge.top);
+        let mut gap = 1;
+        while 2 * gap + 1 < count {
+            gap = 2 * gap + 1;
+        }
+        while gap > 0 {
+            for k in gap..count {
+                let Some(number) = order.get(k).copied() else { return };
+                let (own, mut at) = (top(number), k);
+                while let Some(previous) = at.checked_sub(gap).and_then(|at| order.get(at)).copied() {
+                    if top(previous) <= own {
+                        break;
+                    }
+                    if let Some(place) = order.get_mut(at) {
+                        *place = previous;
+                    }
+                    at -= gap;
+                }
+                if let Some(place) = order.get_mut(at) {
+                    *place = number;
+                }
+            }
+            gap >>= 1;
+        }
+    }
+
+    /// Returns the next run of pixels that are covered at all; `None` after the last one of the band.
+    #[inline(never)]
+    pub(crate) fn next_run(&mut self) -> Option<Run> {
+        loop {
+            if self.scanning {
+                if let Some(run) = self.scan() {
+                    return Some(run);
+                }
+                self.scanning = false;
+                self.row += 1;
+            }
+            if self.row >= self.band_end {
+                return None;
+            }
+            if self.fill_row() {
+                self.begin_scan();
+            } else {
+                self.row += 1;
+            }
+        }
+    }
+
+    fn begin_scan(&mut self) {
+        (self.scanning, self.scanned, self.sum, self.varied) = (true, 0, 0, 0..0);
+    }
+
+    /// Fills the cells of the current row, and moves its edges on. Returns whether there are any.
+    #[inline(never)]
+    fn fill_row(&mut self) -> bool {
+        let bottom = (self.row + 1) << 16;
+        while let Some(number) = self.order.get(self.waiting).copied().filter(|_| self.waiting < self.edges.count) {
+            if self.edges.edges.get(number as usize).is_none_or(|edge| edge.top >= bottom) {
+                break;
+            }
+            if let Some(place) = self.order.get_mut(self.active) {
+                *place = number;
+            }
+            self.active += 1;
+            self.waiting += 1;
+        }
+        if self.active == 0 {
+            return false;
+        }
+        self.in_row().fill();
+        let mut kept = 0;
+        for k in 0..self.active {
+            let Some(number) = self.order.get(k).copied() else { break };
+            let Some(edge) = self.edges.edges.get_mut(number as usize) else { break };
+            if edge.bottom > bottom {
+                edge.step();
+                if let Some(place) = self.order.get_mut(kept) {
+                    *place = number;
+                }
+                kept += 1;
+            }
+        }
+        self.active = kept;
+        true
+    }
+
+    /// Returns the next run of the current row; `None` after the last one. Cells are cleared on the way.
+    #[inline(always)]
+    fn scan(&mut self) -> Option<Run> {
+        let Cells { cover, touched, left, width } = &mut self.cells;
+        // The last cell that pieces touch is that after the last pixel.
+        let Some(touched) = touched.get_mut(..=*width as usize >> 5) else { return None };
+        if let Some(cells) = cover.get_mut(self.varied.start as usize..self.varied.end as usize) {
+            cells.fill(0);
+        }
+        self.varied = 0..0;
+        while self.scanned < *width {
+            let start = self.scanned;
+            let next = next_touched(touched, start).min(*width);
+            if next > start {
+                self.scanned = next;
+                let part = part(self.sum);
+                if part > 0 {
+                    return Some(Run { y: self.row, x: *left + start..*left + next, part: Some(part) });
+                }
+                continue;
+            }
+            let (mut end, mut sum) = (start, self.sum);
+            while end < *width && touched.get(end as usize >> 5).is_some_and(|word| word >> (end & 31) & 1 != 0) {
+                if let Some(cell) = cover.get_mut(end as usize) {
+                    sum = sum.wrapping_add(*cell);
+                    *cell = part(sum) as i32;
+                }
+                end += 1;
+            }
+            (self.scanned, self.sum, self.varied) = (end, sum, start..end);
+            return Some(Run { y: self.row, x: *left + start..*left + end, part: None });
+        }
+        for word in touched {
+            *word = 0;
+        }
+        if let Some(cell) = cover.get_mut(*width as usize) {
+            *cell = 0;
+        }
+        None
+    }
+
+    /// Returns the covered parts of the pixels of a run in which they vary, 0 to 256 each.
+    #[inline]
+    pub(crate) fn parts(&self, run: &Run) -> &[i32] {
+        let at = |x: i32| (x - self.cells.left) as usize;
+        self.cells.cover.get(at(run.x.start)..at(run.x.end)).unwrap_or_default()
+    }
+}
+
+/// Returns the first touched cell from `start` on, or a large number.
+#[inline(always)]
+fn next_touched(touched: &[u32], start: i32) -> i32 {
+    let mut at = start as usize >> 5;
+    let mut word = touched.get(at).copied().unwrap_or(0) & u32::MAX << (start & 31);
+    while word == 0 {
+        at += 1;
+        match touched.get(at) {
+            Some(next) => word = *next,
+            None => return i32::MAX,
+        }
+    }
+    (at << 5) as i32 + word.trailing_zeros() as i32
+}

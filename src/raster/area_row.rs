@@ -1,0 +1,373 @@
+//! Areas in a row: the edges of a row come in, and the covered part of each of its pixels goes out, exact but for
+//! roundings of 2⁻¹⁰.
+//!
+//! The covered part of a pixel is a sum over edges: an edge with the area on its right adds the part of the pixel that
+//! is right of it, and one with the area on its left takes that part away. This holds where no two of the edges cross
+//! and the winding number is 0 or 1 (or 0 or -1), which is so in most rows of most outlines: the row is *plain*. Any
+//! other row is cut, at the ends of edges and where they cross, into slabs in which their order does not change. There,
+//! only the edges between inside and outside count, whatever the fill rule is.
+//!
+//! ```text
+//!    \      /  slab 1: a, b         a pixel's cell keeps the difference to its left neighbour, so that what is right of
+//! ----\----/-----------------       an edge, to the end of the row, takes no time
+//!      \  /    slab 2: a, b
+//! ------\/-------------------       where a and b cross
+//!      / \     slab 3: b, a
+//! ```
+
+use super::area_edge::{AreaEdge, Piece, fraction};
+use crate::math::mul_high;
+
+/// Rule by which winding numbers are inside of an area.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
+pub enum FillRule {
+    /// All but 0 are inside: contours that go round the same way are united.
+    #[default]
+    NonZero,
+    /// Odd ones are inside: a contour in another one is a hole, whichever way it goes round.
+    EvenOdd,
+}
+
+impl FillRule {
+    #[inline(always)]
+    const fn contains(self, winding: i32) -> bool {
+        match self {
+            Self::NonZero => winding != 0,
+            Self::EvenOdd => winding & 1 != 0,
+        }
+    }
+}
+
+/// Slabs that are cut in a row where edges cross. After that, slabs are of one height, and edges may cross in them.
+const EXACT_SLABS: u32 = 256;
+
+/// Height of those slabs: 1/128 px.
+const ROUGH: i32 = 512;
+
+/// Cells of a row: the covered part of each pixel, in 2⁻¹⁶, less that of its left neighbour; and which cells are not 0.
+#[derive(Debug)]
+pub(super) struct Cells<'c> {
+    /// One per pixel, and two more.
+    pub(super) cover: &'c mut [i32],
+    /// One bit per cell.
+    pub(super) touched: &'c mut [u32],
+    /// The first column, and the number of columns.
+    pub(super) left: i32,
+    pub(super) width: i32,
+}
+
+impl Cells<'_> {
+    #[inline(always)]
+    fn put(&mut self, column: i32, cover: i32) {
+        if let Some(cell) = self.cover.get_mut(column as usize) {
+            *cell = cell.wrapping_add(cover);
+        }
+        if let Some(word) = self.touched.get_mut(column as usize >> 5) {
+            *word |= 1 << (column & 31);
+        }
+    }
+
+    /// Adds what is right of a piece of an edge, of a height of 1 to 65,536; or takes it away.
+    ///
+    /// # Format
+    /// Let H(x) be the height of the part of the piece that is left of x. The covered part of a column is the integral
+    /// of H over it. H is linear along the piece, so that is H in the middle of each column but the first and the last
+    /// ones. All of it is in 2⁻¹⁶; the cells of a piece add up to its height exactly.
+    #[inline(always)]
+    fn add(&mut self, piece: &Piece, edge: &AreaEdge, inside: bool) {
+        let height = piece.end - piece.start;
+        let (left, right) = (piece.left() - (self.left << 16), piece.right() - (self.left << 16));
+        let (first, last) = (left >> 16, right >> 16);
+        if first != last {
+            return self.add_long(left, right, height, (edge.rise, edge.is_flat()), inside);
+        }
+        if first >= self.width {
+            return;
+        }
+        if first < 0 {
+            return self.put(0, if inside { height } else { -height });
+        }
+        // Twice the mean distance from the column's right border, up to 2¹⁷.
+        let distance = (2 << 16) - (left & 0xFFFF) - (right & 0xFFFF);
+        let part = if height == 1 << 16 {
+            distance >> 1
+        } else {
+            // 2¹⁵ times 2¹⁶.
+            (((height >> 1) as u32).wrapping_mul((distance >> 1) as u32) >> 15) as i32
+        };
+        if inside {
+            self.put(first, part);
+            self.put(first + 1, height - part);
+        } else {
+            self.put(first, -part);
+            self.put(first + 1, part - height);
+        }
+    }
+
+    /// Adds what is right of a piece that crosses columns.
+    #[inline(never)]
+    fn add_long(&mut self, left: i32, right: i32, height: i32, (rise, flat): (u32, bool), inside: bool) {
+        let (first, last) = (left >> 16, right >> 16);
+        if first >= self.width {
+            return;
+        }
+        let sign = if inside { 1 } else { -1 };
+        if last < 0 {
+            return self.put(0, sign * height);
+        }
+        // H, from the distance to the piece's left end. The distance is at most 1 px at a rise of 1 and more.
+        let reach = |distance: i32| {
+            let h = if flat {
+                mul_high(distance as u32, rise)
+            } else {
+                mul_high((distance.min(1 << 16) as u32) << 15, rise) << 1
+            };
+            (h as i32).min(height)
+        };
+        let mut before = 0;
+        let start = ((first + 1) << 16) - left;
+        if first >= 0 {
+            let h = reach(start);
+            before = (((h >> 1) as u32).wrapping_mul(start as u32) >> 16) as i32;
+            self.put(first, sign * before);
+        }
+        let (from, to) = ((first + 1).max(0), last.min(self.width));
+        if from < to && flat {
+            // In the middle of the column `from`, 0.32: below 1, as it is below the height.
+            let distance = (from << 16) + (1 << 15) - left;
+            let low = (distance as u32).wrapping_mul(rise) >> 16;
+            let mut h = mul_high(distance as u32, rise) << 16 | low;
+            for column in from..to {
+                let cover = ((h >> 16) as i32).min(height);
+                self.put(column, sign * (cover - before));
+                before = cover;
+                h = h.wrapping_add(rise);
+            }
+        } else if from < to {
+            // At a rise of 1, roundings may let a piece end just behind the column.
+            let cover = reach(((from << 16) + (1 << 15) - left).min(1 << 16));
+            self.put(from, sign * (cover - before));
+            before = cover;
+        }
+        if last < self.width {
+            let rest = height - reach((last << 16) - left);
+            // The piece rises by the rest over this part of the column.
+            let part = (right & 0xFFFF) as u32;
+            let cover = height - (((rest >> 1) as u32).wrapping_mul(part) >> 16) as i32;
+            self.put(last, sign * (cover - before));
+            self.put(last + 1, sign * (height - cover));
+        }
+    }
+}
+
+/// The edges of a row, by their numbers, and the cells that they fill.
+pub(super) struct Row<'r, 'c> {
+    pub(super) edges: &'r mut [AreaEdge],
+    /// Numbers of the edges in the row.
+    pub(super) order: &'r mut [u32],
+    pub(super) cells: &'r mut Cells<'c>,
+    /// Height of the row's upper border, 16.16 px.
+    pub(super) top: i32,
+    pub(super) rule: FillRule,
+}
+
+impl Row<'_, '_> {
+    #[inline(always)]
+    fn edge(&self, at: usize) -> AreaEdge {
+        // The numbers are those of edges.
+        self.order.get(at).and_then(|number| self.edges.get(*number as usize)).copied().unwrap_or_default()
+    }
+
+    #[inline(always)]
+    fn edge_mut(&mut self, at: usize) -> Option<&mut AreaEdge> {
+        self.order.get(at).and_then(|number| self.edges.get_mut(*number as usize))
+    }
+
+    /// Sorts the first `count` edges by a key. They are nearly sorted, as they were in the row before.
+    #[inline(always)]
+    fn sort(&mut self, count: usize, key: impl Fn(&AreaEdge) -> (i32, i32)) {
+        for k in 1..count {
+            let (Some(number), own) = (self.order.get(k).copied(), key(&self.edge(k))) else { return };
+            let mut at = k;
+            while at > 0 && key(&self.edge(at - 1)) > own {
+                let previous = self.order.get(at - 1).copied().unwrap_or(0);
+                if let Some(place) = self.order.get_mut(at) {
+                    *place = previous;
+                }
+                at -= 1;
+            }
+            if let Some(place) = self.order.get_mut(at) {
+                *place = number;
+            }
+        }
+    }
+
+    /// Fills the cells of the whole row.
+    #[inline(never)]
+    pub(super) fn fill(&mut self) {
+        let top = self.top;
+        self.sort(self.order.len(), |edge| (edge.piece(top).left(), 0));
+        if !self.is_plain() {
+            return self.slabs(0, 1 << 16);
+        }
+        for k in 0..self.order.len() {
+            let edge = self.edge(k);
+            self.cells.add(&edge.piece(top), &edge, edge.low != 0);
+        }
+    }
+
+    /// Returns whether edges are sorted from left to right at each height, and the winding number is 0 or 1, or 0 or
+    /// -1, at each height of the row. May be false for a row where it is so. Notes in `low` which edges have the inside
+    /// on their right.
+    ///
+    /// Heights that are inside, right of the edges so far, are one range. An edge of the winding that has made it adds
+    /// to it at either end, and one of the other winding takes away from it at either end.
+    fn is_plain(&mut self) -> bool {
+        let (mut start, mut end, mut winding) = (0, 0, 0);
+        let mut right = i32::MIN;
+        for k in 0..self.order.len() {
+            let edge = self.edge(k);
+            let piece = edge.piece(self.top);
+            if piece.left() < right && !self.is_sorted(k, &piece) {
+                return false;
+            }
+            right = right.max(piece.right());
+            let inside = start == end || edge.winding() == winding;
+            if let Some(edge) = self.edge_mut(k) {
+                edge.low = i32::from(inside);
+            }
+            if start == end {
+                (start, end, winding) = (piece.start, piece.end, edge.winding());
+            } else if edge.winding() == winding {
+                if piece.end == start {
+                    start = piece.start;
+                } else if piece.start == end {
+                    end = piece.end;
+                } else {
+                    return false;
+                }
+            } else if piece.start == start && piece.end <= end {
+                start = piece.end;
+            } else if piece.end == end && piece.start >= start {
+                end = piece.start;
+            } else {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Returns whether an edge is right of all edges before it, at each height that they share.
+    fn is_sorted(&self, at: usize, piece: &Piece) -> bool {
+        for k in 0..at {
+            let other = self.edge(k).piece(self.top);
+            let (start, end) = (piece.start.max(other.start), piece.end.min(other.end));
+            let in_order = other.right() <= piece.left()
+                || start >= end
+                || other.at(start) <= piece.at(start) && other.at(end) <= piece.at(end);
+            // A long list is not worth it.
+            if !in_order || at > 16 {
+                return false;
+            }
+        }
+        true
+    }
+
+    /// Fills the cells slab by slab, between two heights in the row.
+    #[inline(never)]
+    pub(super) fn slabs(&mut self, from: i32, to: i32) {
+        let (mut height, mut left) = (from, EXACT_SLABS);
+        while height < to {
+            let mut next = to;
+            for k in 0..self.order.len() {
+                let piece = self.edge(k).piece(self.top);
+                if piece.start > height {
+                    next = next.min(piece.start);
+                } else if piece.end > height {
+                    next = next.min(piece.end);
+                }
+            }
+            if left == 0 {
+                next = next.min(height + ROUGH);
+            }
+            let count = self.place(height, next);
+            if left > 0 {
+                left -= 1;
+                self.sort(count, |edge| (edge.low, edge.high));
+                let crossing = self.first_crossing(count, height, next);
+                if crossing < next {
+                    next = crossing;
+                    self.place(height, next);
+                }
+            } else {
+                self.sort(count, |edge| ((edge.low >> 1) + (edge.high >> 1), 0));
+            }
+            let mut winding = 0;
+            for k in 0..count {
+                let edge = self.edge(k);
+                let was_inside = self.rule.contains(winding);
+                winding += edge.winding();
+                let inside = self.rule.contains(winding);
+                if inside != was_inside {
+                    let piece = Piece { start: height, end: next, from: edge.low, to: edge.high };
+                    self.cells.add(&piece, &edge, inside);
+                }
+            }
+            height = next;
+        }
+    }
+
+    /// Computes the places of edges at both ends of a slab, and puts these edges first. Their order stays as it is.
+    fn place(&mut self, height: i32, next: i32) -> usize {
+        let (mut count, top) = (0, self.top);
+        for k in 0..self.order.len() {
+            let Some(edge) = self.edge_mut(k) else { break };
+            let piece = edge.piece(top);
+            if piece.start <= height && piece.end > height {
+                (edge.low, edge.high) = (piece.at(height), piece.at(next));
+                let (Some(first), Some(number)) = (self.order.get(count).copied(), self.order.get(k).copied()) else {
+                    break;
+                };
+                if let Some(place) = self.order.get_mut(k) {
+                    *place = first;
+                }
+                if let Some(place) = self.order.get_mut(count) {
+                    *place = number;
+                }
+                count += 1;
+            }
+        }
+        count
+    }
+
+    /// Returns the height of the first crossing in a slab, or its end. The edges that cross first are neighbours.
+    fn first_crossing(&self, count: usize, height: i32, next: i32) -> i32 {
+        let mut first = next;
+        for k in 1..count {
+            let (a, b) = (self.edge(k - 1), self.edge(k));
+            if a.high > b.high {
+                // Both are at most 2³¹.
+                let (before, after) = (b.low.wrapping_sub(a.low) as u32, a.high.wrapping_sub(b.high) as u32);
+                let part = fraction(before >> 1, (before >> 1) + (after >> 1) + 1);
+                let part = if before < 1 << 30 && after < 1 << 30 { fraction(before, before + after) } else { part };
+                let way = mul_high((next - height) as u32, part) as i32;
+                first = first.min(height + way.max(1));
+            }
+        }
+        first
+    }
+
+    /// Fills the cells from crossings: vertical edges of one height.
+    pub(super) fn crossings(&mut self, height: i32, winding: &mut i32) {
+        for edge in &*self.edges {
+            let was_inside = self.rule.contains(*winding);
+            *winding = winding.wrapping_add(edge.winding());
+            let inside = self.rule.contains(*winding);
+            if inside != was_inside {
+                let piece = Piece { start: 0, end: height, from: edge.x, to: edge.x };
+                self.cells.add(&piece, edge, inside);
+            }
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Shapes with smooth edges on the screen's plane: paths, circles and their parts, rectangles, thick lines, gradients to
+//! fill them with, and sprites. A program meets a [`ShapeBuffer`](crate::scene::ShapeBuffer) first, the memory that all
+//! of them share, and [`Canvas::fill`](crate::scene::Canvas::fill).
+//!
+//! Curves are flattened so finely that a pixel's covered part is within 1/128 of that of the true shape.
+
+mod path;
+
+pub use crate::raster::FillRule;
+pub use path::Path;
