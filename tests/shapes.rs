@@ -10,12 +10,13 @@ use support::{difference, strips, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
+use zstrip::math::Angle16;
 use zstrip::math::Pixels;
 use zstrip::scene::{Outline, ShapeBuffer};
-use zstrip::shape::{FillRule, Path};
+use zstrip::shape::{Cap, Circle, Ellipse, FillRule, Join, Path, Polyline, Ring, RoundedRectangle};
 use zstrip::span::DepthState;
 use zstrip::target::Framebuffer;
-use zstrip::{Scene, ScreenPoint};
+use zstrip::{Canvas, Scene, ScreenPoint};
 
 const SCREEN: (u16, u16) = (64, 48);
 
@@ -108,20 +109,61 @@ fn covered_parts_are_exact_areas() {
     );
 }
 
-/// Some of all kinds of paths, with all kinds of memory.
+/// A length or a place of any size, most of them near the screen.
+fn any_bits(rng: &mut Rng) -> i32 {
+    match rng.below(12) {
+        0 => rng.next_u64() as i32,
+        1 => rng.pick(&[i32::MIN, i32::MAX, 0, -1, 1 << 23, -(1 << 23)]),
+        2 => rng.between(-9_000_000, 9_000_000),
+        _ => rng.between(-1000, 17_000),
+    }
+}
+
+fn any_point(rng: &mut Rng) -> ScreenPoint {
+    ScreenPoint::new(px(any_bits(rng)), px(any_bits(rng)))
+}
+
+/// Fills a shape of any kind: small, huge, degenerate.
+fn fill_any<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, rng: &mut Rng, buffer: &mut ShapeBuffer<'_>) {
+    let [r, g, b] = [(); 3].map(|()| rng.below(256) as u8);
+    let color = Rgb888::new(r, g, b);
+    let at = any_point(rng);
+    let [a, b] = [(); 2].map(|()| px(any_bits(rng)));
+    let round = rng.pick(&[false, true]);
+    match rng.below(7) {
+        0 => canvas.fill(&Circle::new(at, a), color, buffer),
+        1 => canvas.fill(&Ellipse::new(at, a, b), color, buffer),
+        2 | 3 => {
+            let ring = Ring::new(at, a, b).part(Angle16(rng.next_u64() as u16), any_bits(rng));
+            canvas.fill(&if round { ring.with_round_ends() } else { ring }, color, buffer);
+        }
+        4 => canvas.fill(&RoundedRectangle::new(at, any_point(rng)).with_radii(a, b), color, buffer),
+        5 => {
+            let points: Vec<_> = (0..rng.below(6)).map(|_| any_point(rng)).collect();
+            let pattern: Vec<_> = (0..rng.below(4)).map(|_| px(any_bits(rng))).collect();
+            let line = Polyline::new(&points, px(any_bits(rng) / 8))
+                .with_join(rng.pick(&[Join::Miter, Join::Round, Join::Bevel]))
+                .with_cap(rng.pick(&[Cap::Butt, Cap::Round, Cap::Square]))
+                .with_miter_limit(rng.next_u64() as u8)
+                .with_dashes(&pattern, b);
+            canvas.fill(&if round { line.closed() } else { line }, color, buffer);
+        }
+        _ => {
+            let points = points(&contours(rng));
+            let slices: Vec<_> = points.iter().map(Vec::as_slice).collect();
+            let rule = rng.pick(&[FillRule::NonZero, FillRule::EvenOdd]);
+            canvas.fill(&Path::new(&slices).with_rule(rule), color, buffer);
+        }
+    }
+}
+
+/// Some of all kinds of shapes.
 fn draw_any<F: Framebuffer>(scene: &mut Scene<'_, F>, seed: u64, words: &mut [u32]) {
     let rng = &mut Rng::new(seed);
     let mut buffer = ShapeBuffer::new(words, 64).expect("enough words");
     let mut canvas = scene.canvas();
-    for _ in 0..20 {
-        let points = points(&contours(rng));
-        let slices: Vec<_> = points.iter().map(Vec::as_slice).collect();
-        let [r, g, b] = [(); 3].map(|()| rng.below(256) as u8);
-        canvas.fill(
-            &Path::new(&slices).with_rule(rng.pick(&[FillRule::NonZero, FillRule::EvenOdd])),
-            Rgb888::new(r, g, b),
-            &mut buffer,
-        );
+    for _ in 0..30 {
+        fill_any(&mut canvas, rng, &mut buffer);
         if rng.one_in(4) {
             let corner = Point::new(rng.between(-20, 60), rng.between(-20, 60));
             let area = Rectangle::new(corner, Size::new(rng.below(40) as u32, rng.below(40) as u32));
@@ -133,7 +175,7 @@ fn draw_any<F: Framebuffer>(scene: &mut Scene<'_, F>, seed: u64, words: &mut [u3
 
 #[test]
 fn strips_do_not_matter() {
-    for seed in 0..16 {
+    for seed in 0..10 {
         for edges in [5, 100] {
             let mut words = vec![0; ShapeBuffer::words(64, edges)];
             let (expected, ..) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| draw_any(scene, seed, &mut words));
@@ -145,4 +187,287 @@ fn strips_do_not_matter() {
             }
         }
     }
+}
+
+fn px(bits: i32) -> Pixels {
+    Pixels::from_bits(bits)
+}
+
+fn turned(center: [f64; 2], radii: [f64; 2], turn: f64) -> [f64; 2] {
+    let (sine, cosine) = (turn * core::f64::consts::TAU).sin_cos();
+    [center[0] + radii[0] * cosine, center[1] + radii[1] * sine]
+}
+
+/// An arc in so many chords that they do not matter, from one turn to another.
+fn arc(center: [f64; 2], radii: [f64; 2], from: f64, to: f64) -> Contour {
+    let chords = ((to - from).abs() * 4000.0).ceil().max(8.0) as usize;
+    (0..=chords).map(|k| turned(center, radii, from + (to - from) * k as f64 / chords as f64)).collect()
+}
+
+/// Worst and mean errors of one kind of shape.
+struct Errors {
+    name: &'static str,
+    worst: f64,
+    sum: f64,
+    count: u32,
+}
+
+impl Errors {
+    fn new(name: &'static str) -> Self {
+        Self { name, worst: 0.0, sum: 0.0, count: 0 }
+    }
+
+    fn add(&mut self, shape: &(impl Outline + core::fmt::Debug), exact: &[Contour]) {
+        let found = drawn(shape, 64, 64);
+        let exact = areas(exact, false, (64, 48));
+        let (error, mean, at) = compare(&found, &exact);
+        let (x, y) = (at % 64, at / 64);
+        let (is, exact) = (f64::from(found[at]) / 255.0, exact[at]);
+        assert!(error <= BOUND, "{}: pixel ({x}, {y}) is {is}, exactly {exact}: {shape:?}", self.name);
+        self.worst = self.worst.max(error);
+        (self.sum, self.count) = (self.sum + mean, self.count + 1);
+    }
+
+    fn print(&self) {
+        let mean = f64::from(self.count) / self.sum;
+        println!("{}: worst error 1/{:.0}, mean 1/{mean:.0}", self.name, 1.0 / self.worst);
+    }
+}
+
+fn center(rng: &mut Rng) -> (ScreenPoint, [f64; 2]) {
+    let [x, y] = [rng.between(0, 64 * 256), rng.between(0, 48 * 256)];
+    (ScreenPoint::new(px(x), px(y)), [f64::from(x) / 256.0, f64::from(y) / 256.0])
+}
+
+#[test]
+fn round_shapes_are_round() {
+    let mut rng = Rng::new(5);
+    let mut errors = Errors::new("circles and ellipses");
+    for case in 0..60 {
+        let (at, place) = center(&mut rng);
+        let radius = rng.between(0, [300, 2000, 8000][case % 3]);
+        let r = f64::from(radius) / 256.0;
+        errors.add(&Circle::new(at, px(radius)), &[arc(place, [r; 2], 0.0, 1.0)]);
+        let other = rng.between(0, 8000);
+        errors.add(&Ellipse::new(at, px(radius), px(other)), &[arc(place, [r, f64::from(other) / 256.0], 0.0, 1.0)]);
+    }
+    // So large that only a part is on the screen.
+    for _ in 0..20 {
+        let radius = rng.between(10_000, 4096 * 256);
+        let r = f64::from(radius) / 256.0;
+        let turn = rng.unit();
+        let [x, y] = turned([32.0, 24.0], [r; 2], turn).map(|c| (c * 256.0) as i32);
+        let place = [x, y].map(|c| f64::from(c) / 256.0);
+        let part = 50.0 / r;
+        let mut contour = arc(place, [r; 2], turn + 0.5 - part, turn + 0.5 + part);
+        contour.extend([
+            turned(place, [r; 2], turn + 0.25),
+            turned(place, [r; 2], turn),
+            turned(place, [r; 2], turn - 0.25),
+        ]);
+        errors.add(&Circle::new(ScreenPoint::new(px(x), px(y)), px(radius)), &[contour]);
+    }
+    errors.print();
+    let mut errors = Errors::new("rings and pies");
+    for case in 0..80 {
+        let (at, place) = center(&mut rng);
+        let [a, b] = [(); 2].map(|()| rng.between(0, 8000));
+        let (outer, inner) = (a.max(b), if case % 4 == 0 { 0 } else { a.min(b) });
+        let (ro, ri) = (f64::from(outer) / 256.0, f64::from(inner) / 256.0);
+        let ring = Ring::new(at, px(outer), px(inner));
+        let mut back = arc(place, [ri; 2], 0.0, 1.0);
+        back.reverse();
+        errors.add(&ring, &[arc(place, [ro; 2], 0.0, 1.0), back]);
+        let from = Angle16(rng.next_u64() as u16);
+        let sweep = rng.between(-66_000, 66_000);
+        if sweep.abs() >= 65_536 {
+            continue;
+        }
+        let start = f64::from(from.0) / 65_536.0;
+        let (start, end) =
+            (start.min(start + f64::from(sweep) / 65_536.0), start.max(start + f64::from(sweep) / 65_536.0));
+        let mut back = arc(place, [ri; 2], start, end);
+        back.reverse();
+        let forth = arc(place, [ro; 2], start, end);
+        errors.add(&ring.part(from, sweep), &[[forth, back].concat()]);
+        let mut contours = vec![arc(place, [ro; 2], start, end)];
+        let mut back = arc(place, [ri; 2], start, end);
+        back.reverse();
+        contours[0].extend(back);
+        if sweep != 0 {
+            for turn in [start, end] {
+                let middle = turned(place, [(ro + ri) / 2.0; 2], turn);
+                contours.push(arc(middle, [(ro - ri) / 2.0; 2], 0.0, 1.0));
+            }
+        }
+        if sweep.abs() < 40_000 {
+            errors.add(&ring.part(from, sweep).with_round_ends(), &contours);
+        }
+    }
+    errors.print();
+    let mut errors = Errors::new("rectangles");
+    for _ in 0..60 {
+        let ((a, p), (b, q)) = (center(&mut rng), center(&mut rng));
+        let radius = rng.between(0, 3000);
+        let (from, to) = ([p[0].min(q[0]), p[1].min(q[1])], [p[0].max(q[0]), p[1].max(q[1])]);
+        let r = f64::from(radius) / 256.0;
+        let radii = [r.min((to[0] - from[0]) / 2.0), r.min((to[1] - from[1]) / 2.0)];
+        let corner = |x: f64, y: f64, turn: f64| arc([x, y], radii, turn, turn + 0.25);
+        let contour = [
+            corner(to[0] - radii[0], from[1] + radii[1], 0.75),
+            corner(to[0] - radii[0], to[1] - radii[1], 0.0),
+            corner(from[0] + radii[0], to[1] - radii[1], 0.25),
+            corner(from[0] + radii[0], from[1] + radii[1], 0.5),
+        ];
+        errors.add(&RoundedRectangle::new(a, b).with_radius(px(radius)), &[contour.concat()]);
+        let sharp = vec![from, [to[0], from[1]], to, [from[0], to[1]]];
+        errors.add(&RoundedRectangle::new(a, b), &[sharp]);
+    }
+    errors.print();
+}
+
+/// The contours of a thick line, in f64: segments, joins and caps, all clockwise.
+fn thick(
+    points: &[[f64; 2]],
+    closed: bool,
+    half: f64,
+    join: Join,
+    cap: Cap,
+    limit: f64,
+    dashes: &[f64],
+    offset: f64,
+) -> Vec<Contour> {
+    let mut points = points.to_vec();
+    points.dedup();
+    if closed {
+        points.push(points[0]);
+        points.dedup();
+    }
+    let mut contours = Vec::new();
+    // The parts of the line that are drawn, as distances along it.
+    let lengths: Vec<f64> = points.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).collect();
+    let total: f64 = lengths.iter().sum();
+    let mut drawn = vec![];
+    if dashes.is_empty() {
+        drawn.push((0.0, total));
+    } else {
+        let (mut at, mut k) = (-offset, 0);
+        while at < total {
+            let end = at + dashes[k % dashes.len()];
+            if k % 2 == 0 && end > 0.0 {
+                drawn.push((at, end));
+            }
+            (at, k) = (end, k + 1);
+        }
+    }
+    let meets = closed && dashes.is_empty();
+    for (start, end) in drawn {
+        let mut from = 0.0;
+        let mut previous: Option<[f64; 2]> = None;
+        for (segment, length) in points.windows(2).zip(&lengths) {
+            let to = from + length;
+            let u = [(segment[1][0] - segment[0][0]) / length, (segment[1][1] - segment[0][1]) / length];
+            let (a, b) = (start.max(from), end.min(to));
+            if a < b || (start == end && a == b) {
+                let n = [-u[1] * half, u[0] * half];
+                let at = |d: f64| [segment[0][0] + u[0] * (d - from), segment[0][1] + u[1] * (d - from)];
+                let (mut p, mut q) = (at(a), at(b));
+                let capped = [
+                    !meets && a == start.max(0.0) && from <= a && (start > from || from == 0.0 || start == from),
+                    !meets && b == end.min(total),
+                ];
+                let turn = u[1].atan2(u[0]) / core::f64::consts::TAU;
+                if cap == Cap::Round {
+                    if capped[0] {
+                        contours.push(arc(p, [half; 2], turn + 0.25, turn + 0.75));
+                    }
+                    if capped[1] {
+                        contours.push(arc(q, [half; 2], turn - 0.25, turn + 0.25));
+                    }
+                }
+                if cap == Cap::Square {
+                    if capped[0] {
+                        p = [p[0] - u[0] * half, p[1] - u[1] * half];
+                    }
+                    if capped[1] {
+                        q = [q[0] + u[0] * half, q[1] + u[1] * half];
+                    }
+                }
+                contours.push(vec![
+                    [p[0] + n[0], p[1] + n[1]],
+                    [p[0] - n[0], p[1] - n[1]],
+                    [q[0] - n[0], q[1] - n[1]],
+                    [q[0] + n[0], q[1] + n[1]],
+                ]);
+                if let Some(v) = previous.filter(|_| a == from) {
+                    contours.extend(joined(segment[0], v, u, half, join, limit));
+                }
+            }
+            previous = Some(u);
+            from = to;
+        }
+    }
+    if meets {
+        let direction = |k: usize| {
+            let s = &points[k..k + 2];
+            [(s[1][0] - s[0][0]) / lengths[k], (s[1][1] - s[0][1]) / lengths[k]]
+        };
+        contours.extend(joined(points[0], direction(lengths.len() - 1), direction(0), half, join, limit));
+    }
+    contours
+}
+
+fn joined(at: [f64; 2], before: [f64; 2], after: [f64; 2], half: f64, join: Join, limit: f64) -> Option<Contour> {
+    let turn = before[0] * after[1] - before[1] * after[0];
+    let cosine = before[0] * after[0] + before[1] * after[1];
+    let side = if turn >= 0.0 { -1.0 } else { 1.0 };
+    let place = |u: [f64; 2]| [at[0] - side * u[1] * half, at[1] + side * u[0] * half];
+    let (mut first, mut second) = (place(before), place(after));
+    if turn < 0.0 {
+        core::mem::swap(&mut first, &mut second);
+    }
+    let mut contour = vec![at];
+    match join {
+        Join::Round => {
+            let angle = |p: [f64; 2]| (p[1] - at[1]).atan2(p[0] - at[0]) / core::f64::consts::TAU;
+            let (from, mut to) = (angle(first), angle(second));
+            if to < from {
+                to += 1.0;
+            }
+            contour.extend(arc(at, [half; 2], from, to));
+        }
+        Join::Miter if 2.0 / (1.0 + cosine) <= limit * limit => {
+            let sum = [first[0] + second[0] - 2.0 * at[0], first[1] + second[1] - 2.0 * at[1]];
+            contour.extend([first, [at[0] + sum[0] / (1.0 + cosine), at[1] + sum[1] / (1.0 + cosine)], second]);
+        }
+        _ => contour.extend([first, second]),
+    }
+    (half > 0.0).then_some(contour)
+}
+
+#[test]
+fn thick_lines_are_their_segments_joins_and_caps() {
+    let mut rng = Rng::new(8);
+    let mut errors = Errors::new("thick lines");
+    for case in 0..150 {
+        let count = rng.between(2, 6);
+        let points: Vec<_> = (0..count).map(|_| center(&mut rng)).collect();
+        let (line, exact): (Vec<_>, Vec<_>) = points.into_iter().unzip();
+        let width = rng.between(20, [600, 3000][case % 2]);
+        let join = rng.pick(&[Join::Miter, Join::Round, Join::Bevel]);
+        let cap = rng.pick(&[Cap::Butt, Cap::Round, Cap::Square]);
+        let closed = rng.one_in(3) && count > 2;
+        let pattern: Vec<_> = (0..2 * rng.below(3)).map(|_| rng.between(100, 4000)).collect();
+        let offset = rng.between(-3000, 3000);
+        let fixed: Vec<_> = pattern.iter().map(|bits| px(*bits)).collect();
+        let dashes: Vec<_> = pattern.iter().map(|bits| f64::from(*bits) / 256.0).collect();
+        let total: f64 = dashes.iter().sum();
+        let start = if dashes.is_empty() { 0.0 } else { (f64::from(offset) / 256.0).rem_euclid(total) };
+        let shape = Polyline::new(&line, px(width)).with_join(join).with_cap(cap).with_dashes(&fixed, px(offset));
+        let shape = if closed { shape.closed() } else { shape };
+        let half = f64::from(width) / 512.0;
+        let exact = thick(&exact, closed, half, join, cap, 4.0, &dashes, start);
+        errors.add(&shape, &exact);
+    }
+    errors.print();
 }

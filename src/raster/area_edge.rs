@@ -7,6 +7,7 @@
 
 use crate::math::{leading_zeros, mul_high, mul_high_signed, reciprocal};
 use bytemuck::{Pod, Zeroable};
+use core::ops::Range;
 
 /// Rows that an edge is stepped over. A higher one is cut at rows that are multiples of this, from its own ends. So the
 /// error of its step, 2⁻¹⁷ px, stays below 2⁻¹⁰ px, and an edge is the same in every strip.
@@ -167,6 +168,17 @@ impl AreaEdges<'_> {
         } else {
             self.far_line(from, to);
         }
+    }
+
+    /// Returns whether no edge between two heights is wanted.
+    #[inline]
+    pub(crate) fn misses(&self, top: i64, bottom: i64) -> bool {
+        bottom <= i64::from(self.top) || top >= i64::from(self.bottom)
+    }
+
+    /// Returns the columns and rows in which edges are wanted, 16.16 px.
+    pub(crate) fn area(&self) -> [Range<i64>; 2] {
+        [self.left.into()..self.right.into(), self.top.into()..self.bottom.into()]
     }
 
     /// Adds a line that leaves the guard.

@@ -13,6 +13,7 @@ use crate::span::{
 use crate::target::Framebuffer;
 use crate::vertex::{Side, Varyings, signed_area};
 use core::fmt;
+use core::ops::Range;
 use embedded_graphics_core::pixelcolor::Rgb888;
 use embedded_graphics_core::primitives::Rectangle;
 
@@ -112,9 +113,15 @@ impl Pen<'_, '_> {
         self.at = place;
     }
 
-    /// Returns the place of the pen.
-    pub(crate) const fn place(&self) -> Place {
-        self.at
+    /// Returns whether nothing of a shape between two heights, in 16.16 px, can be in the rows that are drawn now.
+    #[inline]
+    pub(crate) fn misses(&self, top: i64, bottom: i64) -> bool {
+        self.edges.misses(top, bottom)
+    }
+
+    /// Returns the columns and rows that are drawn now, in 16.16 px.
+    pub(crate) fn area(&self) -> [Range<i64>; 2] {
+        self.edges.area()
     }
 }
 

@@ -23,6 +23,7 @@ mod stroke;
 mod vertex_stage;
 
 pub use canvas::{Canvas, ScreenPoint};
+pub(crate) use fill::Place;
 pub use fill::{Outline, Pen, ShapeBuffer, ShapeError};
 pub use scene::Scene;
 pub(crate) use scene::{Phase, Target};

@@ -4,7 +4,12 @@
 //!
 //! Curves are flattened so finely that a pixel's covered part is within 1/128 of that of the true shape.
 
+mod arc;
+mod line;
 mod path;
+mod round;
 
 pub use crate::raster::FillRule;
+pub use line::{Cap, Join, Polyline};
 pub use path::Path;
+pub use round::{Circle, Ellipse, Ring, RoundedRectangle};
