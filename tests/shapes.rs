@@ -327,6 +327,7 @@ fn round_shapes_are_round() {
 }
 
 /// The contours of a thick line, in f64: segments, joins and caps, all clockwise.
+#[allow(clippy::too_many_arguments)] // the parts of a stroke
 fn thick(
     points: &[[f64; 2]],
     closed: bool,

@@ -324,7 +324,7 @@ impl<'a> Area<'a> {
     fn scan(&mut self) -> Option<Run> {
         let Cells { cover, touched, left, width } = &mut self.cells;
         // The last cell that pieces touch is that after the last pixel.
-        let Some(touched) = touched.get_mut(..=*width as usize >> 5) else { return None };
+        let touched = touched.get_mut(..=*width as usize >> 5)?;
         if let Some(cells) = cover.get_mut(self.varied.start as usize..self.varied.end as usize) {
             cells.fill(0);
         }

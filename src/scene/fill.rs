@@ -1,5 +1,5 @@
-//! Filled shapes with smooth edges, on the screen's plane: an outline and a shader come in; pixels that are covered as a
-//! whole go through the shader's span loop, and those at the edges are mixed with what is there.
+//! Filled shapes with smooth edges, on the screen's plane: an outline and a shader come in; pixels that are covered as
+//! a whole go through the shader's span loop, and those at the edges are mixed with what is there.
 
 use super::canvas::{Canvas, ScreenPoint, level};
 use super::scene::{Target, check};
@@ -250,9 +250,12 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         buffer: &mut ShapeBuffer<'_>,
     ) {
         let Some(rect) = self.rect_of(shape) else { return };
+        if points.iter().any(|point| point.0.outcode().0 != 0) {
+            return;
+        }
         let vertices = points.each_ref().map(|point| point.0.vertex(self.z));
         let area = signed_area(&vertices[0], &vertices[1], &vertices[2]);
-        if area == 0 || points.iter().any(|point| point.0.outcode().0 != 0) {
+        if area == 0 {
             return;
         }
         let varyings = points.each_ref().map(|point| level(point.1));

@@ -1,8 +1,8 @@
 //! Arcs as chains of chords: a centre, radii and directions come in, and points for a pen go out.
 //!
-//! A turn has 64 sectors, whose borders are in a table. Each sector is cut into as many chords as the radius takes. Chords
-//! lie inside of the circle, so the radius is made larger by half of their greatest distance from it, at most 1/256 px:
-//! then half of that is missing in the middle of a chord, and as much is too much at its ends.
+//! A turn has 64 sectors, whose borders are in a table. Each sector is cut into as many chords as the radius takes.
+//! Chords lie inside of the circle, so the radius is made larger by half of their greatest distance from it, at most
+//! 1/256 px: then half of that is missing in the middle of a chord, and as much is too much at its ends.
 //!
 //! A sector that is above or below the rows that are drawn is one chord.
 
@@ -92,11 +92,11 @@ impl Curve {
         let radii = radii.map(|radius| radius.max(0));
         // A chord of an angle t is up to r t² / 8 away. That is 1/128 px where a sector has r · 0.154 chords, squared.
         let greatest = (radii[0].max(radii[1])).min(GREATEST) as u32;
-        let chords = NonZeroU32::MIN.saturating_add(isqrt((greatest >> 8) * 40 >> 16));
+        let chords = NonZeroU32::MIN.saturating_add(isqrt(((greatest >> 8) * 40) >> 16));
         let (step, _) = divided(1 << 16, chords);
         // r t² / 16, where t is the step times a sector, 1/64 turn: r / 1659 for a whole one.
-        let square = i64::from(step) * i64::from(step) >> 16;
-        let radii = radii.map(|radius| radius + ((radius.min(GREATEST) * 158 >> 18) * square >> 16));
+        let square = (i64::from(step) * i64::from(step)) >> 16;
+        let radii = radii.map(|radius| radius + ((((radius.min(GREATEST) * 158) >> 18) * square) >> 16));
         Self { center, radii, step }
     }
 
@@ -116,8 +116,8 @@ impl Curve {
             // Roundings of the step leave out no chord, and add none.
             while part + (self.step >> 1) < 1 << 16 {
                 // A point of the chord is (1 - s)^(1/2) away from the centre.
-                let s = square * i64::from(part * ((1 << 16) - part) >> 16) >> 16;
-                let longer = (1 << 30) + ((s >> 3) + (3 * (s * s >> 32) >> 5)) as i32;
+                let s = (square * i64::from((part * ((1 << 16) - part)) >> 16)) >> 16;
+                let longer = (1 << 30) + ((s >> 3) + ((3 * ((s * s) >> 32)) >> 5)) as i32;
                 let on = [0, 1].map(|k: usize| {
                     let (from, change) = if k == 0 { (from[0], change[0]) } else { (from[1], change[1]) };
                     let on_chord = from + (mul_wide(change, part as i32) >> 16) as i32;

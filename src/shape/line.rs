@@ -257,7 +257,7 @@ impl<'a> Dashes<'a> {
         if sum < 1 << 10 {
             return Self { pattern: &[], all: i64::MAX, at: 0, drawn: true, left: i64::MAX };
         }
-        let all = if pattern.len() % 2 == 0 { sum } else { 2 * sum };
+        let all = if pattern.len().is_multiple_of(2) { sum } else { 2 * sum };
         let mut dashes = Self { pattern, all, at: 0, drawn: true, left: 0 };
         dashes.left = dashes.length();
         dashes.skip((i64::from(offset.to_bits()) << 8).checked_rem_euclid(all).unwrap_or(0));

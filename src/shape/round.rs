@@ -27,8 +27,8 @@ fn around(center: Place, radii: [i64; 2]) -> Rectangle {
     pixels([center[0] - radii[0], center[1] - radii[1]], [center[0] + radii[0], center[1] + radii[1]])
 }
 
-/// A disc of any radius. All round shapes are exact for radii up to 4,096 px, within 1/32 px up to 32,767 px, and angular
-/// beyond. Negative radii are 0.
+/// A disc of any radius. All round shapes are exact for radii up to 4,096 px, within 1/32 px up to 32,767 px, and
+/// angular beyond. Negative radii are 0.
 ///
 /// ```
 /// use zstrip::ScreenPoint;
