@@ -10,6 +10,7 @@
 
 pub mod dashboard;
 pub mod formats;
+pub mod gauges;
 pub mod horizon;
 pub mod kept;
 pub mod labels;
@@ -113,6 +114,8 @@ const MANY: &[SceneInfo] = &[
     // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
     #[cfg(not(proof = "all"))]
     SceneInfo { name: "dashboard", make: |_, turn| kept_drawing(|| dashboard::Dashboard::new(turn)) },
+    #[cfg(not(proof = "all"))]
+    SceneInfo { name: "gauges", make: |_, turn| kept_drawing(|| gauges::Gauges::new(turn)) },
     #[cfg(not(proof = "all"))]
     SceneInfo { name: "labels", make: |screen, turn| kept_drawing(|| labels::Labels::new(screen, turn)) },
     SceneInfo {

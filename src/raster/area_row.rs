@@ -8,7 +8,7 @@
 //! only the edges between inside and outside count, whatever the fill rule is.
 //!
 //! ```text
-//!    \      /  slab 1: a, b         a pixel's cell keeps the difference to its left neighbour, so that what is right of
+//!    \      /  slab 1: a, b         a cell keeps the difference to its left neighbour, so that what is right of
 //! ----\----/-----------------       an edge, to the end of the row, takes no time
 //!      \  /    slab 2: a, b
 //! ------\/-------------------       where a and b cross
