@@ -164,7 +164,10 @@ impl<'a> Area<'a> {
             }
             Wanted::Rows => {
                 self.band_end = self.row + self.rows;
-                self.rows = self.rows.saturating_mul(2);
+                // Twice as many rows may well have twice as many edges.
+                if self.edges.count < self.edges.edges.len() / 2 {
+                    self.rows = self.rows.saturating_mul(2);
+                }
                 self.sort();
             }
             Wanted::Part if self.edges.overflowed => {
@@ -182,7 +185,7 @@ impl<'a> Area<'a> {
                     *number = k as u32;
                 }
                 let (from, to) = (self.part.start, self.part.end);
-                self.in_row().slabs(from, to);
+                self.in_row().fill(from, to);
                 self.next_part();
             }
             Wanted::Crossings { .. } => {
@@ -302,7 +305,7 @@ impl<'a> Area<'a> {
         if self.active == 0 {
             return false;
         }
-        self.in_row().fill();
+        self.in_row().fill(0, 1 << 16);
         let mut kept = 0;
         for k in 0..self.active {
             let Some(number) = self.order.get(k).copied() else { break };

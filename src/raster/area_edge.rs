@@ -2,8 +2,7 @@
 //! places at the upper and the lower border of its row.
 //!
 //! Positions are 16.16 px here, so that the flattened curves of shapes lose nothing. Lines are cut at ±16,383 px, where
-//! no screen reaches. What lies to the left of the columns that are drawn becomes vertical there, and what lies to the
-//! right is left out.
+//! no screen reaches. What lies to the right of the columns that are drawn is left out.
 
 use crate::math::{leading_zeros, mul_high, mul_high_signed, reciprocal};
 use bytemuck::{Pod, Zeroable};
@@ -162,6 +161,9 @@ impl AreaEdges<'_> {
     /// Adds a line of an outline, in 16.16 px. Its direction is that of the outline.
     #[inline]
     pub(crate) fn line(&mut self, from: Place, to: Place) {
+        if self.misses(from[1].min(to[1]), from[1].max(to[1])) {
+            return;
+        }
         let near = |c: i64| c + i64::from(GUARD) >= 0 && c <= i64::from(GUARD);
         if near(from[0]) & near(from[1]) & near(to[0]) & near(to[1]) {
             self.near_line(from.map(|c| c as i32), to.map(|c| c as i32));
@@ -173,7 +175,8 @@ impl AreaEdges<'_> {
     /// Returns whether no edge between two heights is wanted.
     #[inline]
     pub(crate) fn misses(&self, top: i64, bottom: i64) -> bool {
-        bottom <= i64::from(self.top) || top >= i64::from(self.bottom)
+        // Whatever comes after too many edges is traced in vain.
+        self.overflowed && self.wanted == Wanted::Rows || bottom <= i64::from(self.top) || top >= i64::from(self.bottom)
     }
 
     /// Returns the columns and rows in which edges are wanted, 16.16 px.
@@ -219,12 +222,12 @@ impl AreaEdges<'_> {
 
     /// Adds a line that is inside of the guard.
     fn near_line(&mut self, from: [i32; 2], to: [i32; 2]) {
-        let (mut a, mut b, turn) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
-        if a[1] == b[1] || b[1] <= self.top || a[1] >= self.bottom || a[0].min(b[0]) >= self.right {
+        let (a, b, turn) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
+        if b[1] <= self.top || a[1] >= self.bottom || a[0].min(b[0]) >= self.right {
             return;
         }
-        if a[0].max(b[0]) <= self.left {
-            (a[0], b[0]) = (self.left, self.left);
+        if a[1] == b[1] {
+            return self.level(a, b);
         }
         if self.wanted != Wanted::Rows {
             return self.cut_line(a, b, turn);
@@ -246,6 +249,20 @@ impl AreaEdges<'_> {
             }
             start = next;
         }
+    }
+
+    /// Adds a horizontal line. It bounds no area by itself, but in its row, it crosses gaps between other edges.
+    fn level(&mut self, a: [i32; 2], b: [i32; 2]) {
+        let is_between_rows = self.wanted == Wanted::Rows && a[1] & 0xFFFF == 0;
+        if is_between_rows || matches!(self.wanted, Wanted::Crossings { .. }) {
+            return;
+        }
+        let Some(edge) = self.edges.get_mut(self.count) else {
+            self.overflowed = true;
+            return;
+        };
+        self.count += 1;
+        *edge = AreaEdge { top: a[1], bottom: a[1], x: a[0], next: b[0], last: b[0], ..AreaEdge::default() };
     }
 
     /// Adds an edge. `width` and `height` are those of the line that it is a part of.

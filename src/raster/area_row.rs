@@ -17,6 +17,7 @@
 
 use super::area_edge::{AreaEdge, Piece, fraction};
 use crate::math::mul_high;
+use core::ops::Range;
 
 /// Rule by which winding numbers are inside of an area.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -184,13 +185,13 @@ impl Row<'_, '_> {
         self.order.get(at).and_then(|number| self.edges.get_mut(*number as usize))
     }
 
-    /// Sorts the first `count` edges by a key. They are nearly sorted, as they were in the row before.
+    /// Sorts some edges by a key. They are nearly sorted, as they were in the row before.
     #[inline(always)]
-    fn sort(&mut self, count: usize, key: impl Fn(&AreaEdge) -> (i32, i32)) {
-        for k in 1..count {
+    fn sort(&mut self, start: usize, end: usize, key: impl Fn(&AreaEdge) -> (i32, i32)) {
+        for k in start + 1..end {
             let (Some(number), own) = (self.order.get(k).copied(), key(&self.edge(k))) else { return };
             let mut at = k;
-            while at > 0 && key(&self.edge(at - 1)) > own {
+            while at > start && key(&self.edge(at - 1)) > own {
                 let previous = self.order.get(at - 1).copied().unwrap_or(0);
                 if let Some(place) = self.order.get_mut(at) {
                     *place = previous;
@@ -203,17 +204,41 @@ impl Row<'_, '_> {
         }
     }
 
-    /// Fills the cells of the whole row.
+    /// Fills the cells of a row between two heights, group by group.
+    ///
+    /// Edges of a group overlap each other in x, and no others. No edge crosses the gap between two groups, so the
+    /// winding number in the gap is the same at all heights: it is that at the upper border.
     #[inline(never)]
-    pub(super) fn fill(&mut self) {
-        let top = self.top;
-        self.sort(self.order.len(), |edge| (edge.piece(top).left(), 0));
-        if !self.is_plain() {
-            return self.slabs(0, 1 << 16);
-        }
-        for k in 0..self.order.len() {
-            let edge = self.edge(k);
-            self.cells.add(&edge.piece(top), &edge, edge.low != 0);
+    pub(super) fn fill(&mut self, from: i32, to: i32) {
+        let (top, count) = (self.top, self.order.len());
+        self.sort(0, count, |edge| (edge.piece(top).left(), 0));
+        let (mut first, mut winding) = (0, 0);
+        while first < count {
+            let (mut end, mut right, mut after) = (first, i32::MIN, winding);
+            while end < count {
+                let edge = self.edge(end);
+                let piece = edge.piece(top);
+                if end > first && piece.left() > right {
+                    break;
+                }
+                right = right.max(piece.right());
+                if piece.start <= from {
+                    after += edge.winding();
+                }
+                end += 1;
+            }
+            if self.is_plain(first..end, winding, from..to) {
+                for k in first..end {
+                    let edge = self.edge(k);
+                    let piece = edge.piece(top);
+                    if piece.start < piece.end {
+                        self.cells.add(&piece, &edge, edge.low != 0);
+                    }
+                }
+            } else {
+                self.slabs(first..end, winding, from..to);
+            }
+            (first, winding) = (end, after);
         }
     }
 
@@ -223,13 +248,20 @@ impl Row<'_, '_> {
     ///
     /// Heights that are inside, right of the edges so far, are one range. An edge of the winding that has made it adds
     /// to it at either end, and one of the other winding takes away from it at either end.
-    fn is_plain(&mut self) -> bool {
-        let (mut start, mut end, mut winding) = (0, 0, 0);
+    fn is_plain(&mut self, group: Range<usize>, before: i32, heights: Range<i32>) -> bool {
+        let (mut start, mut end, mut winding) = match before {
+            0 => (0, 0, 0),
+            1 | -1 => (heights.start, heights.end, before),
+            _ => return false,
+        };
         let mut right = i32::MIN;
-        for k in 0..self.order.len() {
+        for k in group.clone() {
             let edge = self.edge(k);
             let piece = edge.piece(self.top);
-            if piece.left() < right && !self.is_sorted(k, &piece) {
+            if piece.start == piece.end {
+                continue;
+            }
+            if piece.left() < right && !self.is_sorted(group.start..k, &piece) {
                 return false;
             }
             right = right.max(piece.right());
@@ -239,7 +271,7 @@ impl Row<'_, '_> {
             }
             if start == end {
                 (start, end, winding) = (piece.start, piece.end, edge.winding());
-            } else if edge.winding() == winding {
+            } else if inside {
                 if piece.end == start {
                     start = piece.start;
                 } else if piece.start == end {
@@ -259,28 +291,32 @@ impl Row<'_, '_> {
     }
 
     /// Returns whether an edge is right of all edges before it, at each height that they share.
-    fn is_sorted(&self, at: usize, piece: &Piece) -> bool {
-        for k in 0..at {
+    fn is_sorted(&self, others: Range<usize>, piece: &Piece) -> bool {
+        // A long list is not worth it.
+        if others.len() > 16 {
+            return false;
+        }
+        for k in others {
             let other = self.edge(k).piece(self.top);
             let (start, end) = (piece.start.max(other.start), piece.end.min(other.end));
             let in_order = other.right() <= piece.left()
                 || start >= end
                 || other.at(start) <= piece.at(start) && other.at(end) <= piece.at(end);
-            // A long list is not worth it.
-            if !in_order || at > 16 {
+            if !in_order {
                 return false;
             }
         }
         true
     }
 
-    /// Fills the cells slab by slab, between two heights in the row.
+    /// Fills the cells slab by slab, between two heights in the row, from the edges of a group. `before` is the winding
+    /// number on its left.
     #[inline(never)]
-    pub(super) fn slabs(&mut self, from: i32, to: i32) {
-        let (mut height, mut left) = (from, EXACT_SLABS);
-        while height < to {
-            let mut next = to;
-            for k in 0..self.order.len() {
+    fn slabs(&mut self, group: Range<usize>, before: i32, heights: Range<i32>) {
+        let (mut height, mut left) = (heights.start, EXACT_SLABS);
+        while height < heights.end {
+            let mut next = heights.end;
+            for k in group.clone() {
                 let piece = self.edge(k).piece(self.top);
                 if piece.start > height {
                     next = next.min(piece.start);
@@ -291,20 +327,20 @@ impl Row<'_, '_> {
             if left == 0 {
                 next = next.min(height + ROUGH);
             }
-            let count = self.place(height, next);
+            let end = self.place(group.clone(), height, next);
             if left > 0 {
                 left -= 1;
-                self.sort(count, |edge| (edge.low, edge.high));
-                let crossing = self.first_crossing(count, height, next);
+                self.sort(group.start, end, |edge| (edge.low, edge.high));
+                let crossing = self.first_crossing(group.start..end, height, next);
                 if crossing < next {
                     next = crossing;
-                    self.place(height, next);
+                    self.place(group.start..end, height, next);
                 }
             } else {
-                self.sort(count, |edge| ((edge.low >> 1) + (edge.high >> 1), 0));
+                self.sort(group.start, end, |edge| ((edge.low >> 1) + (edge.high >> 1), 0));
             }
-            let mut winding = 0;
-            for k in 0..count {
+            let mut winding = before;
+            for k in group.start..end {
                 let edge = self.edge(k);
                 let was_inside = self.rule.contains(winding);
                 winding += edge.winding();
@@ -318,33 +354,34 @@ impl Row<'_, '_> {
         }
     }
 
-    /// Computes the places of edges at both ends of a slab, and puts these edges first. Their order stays as it is.
-    fn place(&mut self, height: i32, next: i32) -> usize {
-        let (mut count, top) = (0, self.top);
-        for k in 0..self.order.len() {
+    /// Computes the places of the edges of a group at both ends of a slab, and puts these edges first. Their order stays
+    /// as it is. Returns their end.
+    fn place(&mut self, group: Range<usize>, height: i32, next: i32) -> usize {
+        let (mut end, top) = (group.start, self.top);
+        for k in group {
             let Some(edge) = self.edge_mut(k) else { break };
             let piece = edge.piece(top);
             if piece.start <= height && piece.end > height {
                 (edge.low, edge.high) = (piece.at(height), piece.at(next));
-                let (Some(first), Some(number)) = (self.order.get(count).copied(), self.order.get(k).copied()) else {
+                let (Some(first), Some(number)) = (self.order.get(end).copied(), self.order.get(k).copied()) else {
                     break;
                 };
                 if let Some(place) = self.order.get_mut(k) {
                     *place = first;
                 }
-                if let Some(place) = self.order.get_mut(count) {
+                if let Some(place) = self.order.get_mut(end) {
                     *place = number;
                 }
-                count += 1;
+                end += 1;
             }
         }
-        count
+        end
     }
 
     /// Returns the height of the first crossing in a slab, or its end. The edges that cross first are neighbours.
-    fn first_crossing(&self, count: usize, height: i32, next: i32) -> i32 {
+    fn first_crossing(&self, group: Range<usize>, height: i32, next: i32) -> i32 {
         let mut first = next;
-        for k in 1..count {
+        for k in group.start + 1..group.end {
             let (a, b) = (self.edge(k - 1), self.edge(k));
             if a.high > b.high {
                 // Both are at most 2³¹.

@@ -1,0 +1,224 @@
+//! Measures shapes with smooth edges and sprites: frames of some equal ones, in one strip and in several. `ci/bench-2d`
+//! runs it on a Cortex-M0+ and a Cortex-M4 and prints the table.
+//!
+//! It prints `name|shapes|pixels of each|ticks` for each way to draw, and names the ways whose pictures differ.
+#![cfg_attr(target_os = "none", no_std, no_main)]
+
+#[cfg(target_os = "none")]
+mod firmware;
+#[cfg(target_os = "none")]
+#[path = "firmware/ticks.rs"]
+mod ticks;
+
+#[cfg(target_os = "none")]
+mod counting {
+    use super::ticks;
+    use core::convert::Infallible;
+    use core::hint::black_box;
+    use cortex_m::peripheral::Peripherals;
+    use semihosting::println;
+    use zstrip::embedded_graphics_core::geometry::Size;
+    use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, WebColors};
+    use zstrip::frame::{Renderer, RendererError};
+    use zstrip::math::{Angle16, Pixels, Scalar};
+    use zstrip::scene::ShapeBuffer;
+    use zstrip::shader::{Blend, Flat, Opacity};
+    use zstrip::shape::{
+        Circle, Join, LinearGradient, Path, Polyline, RadialGradient, Ramp, Ring, RoundedRectangle, Sprite,
+    };
+    use zstrip::target::{DepthChoice, RecordsChoice, Strip, StripPixels};
+    use zstrip::texture::{Bilinear, Image, Rgb565Texel, Texture};
+    use zstrip::{Canvas, Framebuffer, Scene, ScreenPoint};
+
+    const WIDTH: usize = 320;
+    const HEIGHT: usize = 240;
+    const SCREEN: Size = Size::new(WIDTH as u32, HEIGHT as u32);
+    const WORDS: usize = ShapeBuffer::words(320, 64);
+    /// Equal shapes in a frame.
+    const SHAPES: i16 = 12;
+
+    static IMAGE: [u8; 64 * 64 * 2] = [0x5A; 64 * 64 * 2];
+    static mut COLOR: [u16; WIDTH * HEIGHT] = [0; _];
+    static mut DEPTH: [u16; WIDTH * HEIGHT] = [0; _];
+    static mut BUFFER: [u32; WORDS] = [0; _];
+
+    /// Kinds of shapes, and about how many pixels each covers.
+    const KINDS: [(&str, u32); 13] = [
+        ("nothing", 0),
+        ("circle, radius 40", 5027),
+        ("circle, blended", 5027),
+        ("circle, radial gradient", 5027),
+        ("ring, 40 to 34", 1395),
+        ("pie, radius 40, 120 degrees", 1676),
+        ("rounded rectangle, 70 × 50, radius 8", 3445),
+        ("rectangle, linear gradient", 3500),
+        ("needle of 4 corners, 70 px", 175),
+        ("star of 5 corners, crossing", 1500),
+        ("line of 33 points, 3 px, round joins", 250),
+        ("sprite, 64 × 64, turned", 4096),
+        ("sprite, bilinear", 4096),
+    ];
+
+    fn px(bits: i32) -> Pixels {
+        Pixels::from_bits(bits)
+    }
+
+    /// What is made before the frame.
+    struct Things<'i> {
+        image: Image<'i, Rgb565Texel>,
+        ramp: Ramp<64>,
+    }
+
+    /// Draws a shape of one kind, the k-th of its frame.
+    fn draw<F: Framebuffer>(
+        canvas: &mut Canvas<'_, '_, F>,
+        kind: usize,
+        k: i16,
+        things: &Things<'_>,
+        words: &mut [u32],
+    ) {
+        let Ok(mut buffer) = ShapeBuffer::new(words, 320) else { return };
+        let buffer = &mut buffer;
+        let (x, y) = (40 + k % 4 * 78, 45 + k / 4 * 72);
+        // Not on whole pixels.
+        let center = ScreenPoint::new(px(i32::from(x) * 256 + 77), px(i32::from(y) * 256 + 191));
+        let color = Rgb888::CSS_CORAL;
+        let radius = px(40 * 256);
+        let angle = Angle16(1234 + 5461 * k as u16);
+        let corner = |dx: i32, dy: i32| ScreenPoint::new(center.x() + px(256 * dx), center.y() + px(256 * dy));
+        let around = |angle: Angle16, radius: i32| {
+            let at = |v: Scalar| px((v.to_bits() * radius) >> 8);
+            ScreenPoint::new(center.x() + at(angle.cos()), center.y() + at(angle.sin()))
+        };
+        let rectangle = RoundedRectangle::new(corner(-35, -25), corner(35, 25));
+        match kind {
+            1 => canvas.fill(&Circle::new(center, radius), color, buffer),
+            2 => {
+                canvas.fill_with(&Circle::new(center, radius), &Blend::new(Flat::unlit(color), Opacity(99)), 0, buffer)
+            }
+            3 => {
+                let shader = RadialGradient::new(&things.ramp, center, radius);
+                canvas.fill_with(&Circle::new(center, radius), &shader, 0, buffer);
+            }
+            4 => canvas.fill(&Ring::new(center, radius, px(34 * 256)), color, buffer),
+            5 => canvas.fill(&Ring::pie(center, radius, angle, Ring::degrees(120)), color, buffer),
+            6 => canvas.fill(&rectangle.with_radius(px(8 * 256)), color, buffer),
+            7 => {
+                let shader = LinearGradient::new(&things.ramp, corner(-35, -25), corner(20, 25));
+                canvas.fill_with(&rectangle, &shader, 0, buffer);
+            }
+            8 => {
+                let side = Angle16::from_degrees(90);
+                let tip = around(angle, 58);
+                let back = around(angle + Angle16(0x8000), 12);
+                let beside = |p: ScreenPoint, angle: Angle16, by: i32| {
+                    let at = |v: Scalar| px((v.to_bits() * by) >> 16);
+                    ScreenPoint::new(p.x() + at(angle.cos()), p.y() + at(angle.sin()))
+                };
+                let needle = [
+                    beside(tip, angle + side, 100),
+                    beside(tip, angle - side, 100),
+                    beside(back, angle - side, 540),
+                    beside(back, angle + side, 540),
+                ];
+                canvas.fill(&Path::new(&[&needle]), color, buffer);
+            }
+            9 => {
+                let star: [_; 5] = core::array::from_fn(|n| around(angle + Angle16((n * 26_214) as u16), 40));
+                canvas.fill(&Path::new(&[&star]), color, buffer);
+            }
+            10 => {
+                let points: [_; 33] = core::array::from_fn(|n| {
+                    let x = n as i32 * 500 - 8000;
+                    let y = (Angle16((n * 5000) as u16 + angle.0).sin().to_bits() * 16) >> 8;
+                    ScreenPoint::new(center.x() + px(x), center.y() + px(y))
+                });
+                canvas.fill(&Polyline::new(&points, px(3 * 256)).with_join(Join::Round), color, buffer);
+            }
+            11 => canvas.sprite(&Sprite::new(&things.image).at(center).turned(angle), buffer),
+            12 => sprite(canvas, &things.image, center, angle, buffer),
+            _ => {}
+        }
+    }
+
+    #[inline(never)]
+    fn sprite<F: Framebuffer>(
+        canvas: &mut Canvas<'_, '_, F>,
+        image: &impl Texture,
+        center: ScreenPoint,
+        angle: Angle16,
+        buffer: &mut ShapeBuffer<'_>,
+    ) {
+        let sprite = Sprite::new(image).at(center).turned(angle).filter(Bilinear);
+        canvas.sprite(&sprite, buffer);
+    }
+
+    /// Returns the ticks of a frame in strips, and a hash of its picture.
+    fn frame<D: DepthChoice, R: RecordsChoice>(
+        renderer: Result<Renderer<'_, Rgb565, D, R>, RendererError>,
+        color: &mut [u16],
+        mut draw: impl FnMut(&mut Scene<'_, Strip<'_, Rgb565, D, R>>),
+    ) -> (u32, u32) {
+        let mut renderer = renderer.expect("a renderer");
+        let (mut ticks, mut hash) = (0, 0_u32);
+        for check in [false, true] {
+            let sink = |strip: &StripPixels<'_, Rgb565>| {
+                if check {
+                    hash = strip
+                        .pixels()
+                        .iter()
+                        .fold(hash, |hash, pixel| (hash ^ u32::from(*pixel)).wrapping_mul(0x0100_0193));
+                }
+                black_box(strip);
+                Ok::<(), Infallible>(())
+            };
+            let start = ticks::now();
+            black_box(renderer.frame_to(sink, color, Rgb565::CSS_NAVY, &mut draw).is_ok());
+            if !check {
+                ticks = ticks::now().wrapping_sub(start);
+            }
+        }
+        (ticks, hash)
+    }
+
+    pub fn run() {
+        let (color, depth, words) = (&raw mut COLOR, &raw mut DEPTH, &raw mut BUFFER);
+        // SAFETY: `run` is called once; these are the only references.
+        let (color, depth, words) = unsafe { (&mut *color, &mut *depth, &mut *words) };
+        let Some(mut peripherals) = Peripherals::take() else { return };
+        ticks::start(&mut peripherals.SYST);
+        let image = Image::new(&IMAGE, Size::new(64, 64), Rgb565Texel).expect("an image");
+        let ramp = Ramp::new(&[(0, Rgb888::CSS_GOLD), (255, Rgb888::CSS_DARK_BLUE)]);
+        let things = Things { image, ramp };
+        for (kind, (name, pixels)) in KINDS.into_iter().enumerate() {
+            let mut hashes = [0; 2];
+            // A strip of all rows, and strips of 16 rows.
+            let mut ticks = [0; 3];
+            for (n, rows) in [HEIGHT, 16].into_iter().enumerate() {
+                (ticks[n], hashes[n]) = frame(Renderer::new(SCREEN), &mut color[..rows * WIDTH], |scene| {
+                    for k in 0..SHAPES {
+                        draw(&mut scene.canvas(), kind, k, &things, words);
+                    }
+                });
+            }
+            let renderer = Renderer::new(SCREEN).and_then(|it| it.with_depth(&mut depth[..16 * WIDTH]));
+            (ticks[2], _) = frame(renderer, &mut color[..16 * WIDTH], |scene| {
+                for k in 0..SHAPES {
+                    draw(&mut scene.canvas_at(1000), kind, k, &things, words);
+                }
+            });
+            if hashes[0] != hashes[1] {
+                println!("# {name} differs in strips of 16 rows");
+            }
+            println!("{name}|{SHAPES}|{pixels}|{}|{}|{}", ticks[0], ticks[1], ticks[2]);
+        }
+    }
+}
+
+#[cfg(target_os = "none")]
+use counting::run;
+
+#[cfg(not(target_os = "none"))]
+fn main() {
+    eprintln!("this example is firmware: ci/bench-2d builds and runs it");
+}
