@@ -34,7 +34,7 @@ pub(crate) struct AreaEdge {
     pub(super) rise: u32,
     /// Change of the winding number from the left of the edge to its right, times 2; and 1 if the rise is below 1.
     turn: i32,
-    /// Places at both ends of a slab, see `area_row`.
+    /// Places at both ends of a slab, or the leftmost and the rightmost one in the row, see `area_row`.
     pub(super) low: i32,
     pub(super) high: i32,
 }
@@ -52,6 +52,10 @@ pub(super) struct Piece {
 }
 
 impl AreaEdge {
+    /// An edge without a height.
+    pub(super) const NONE: Self =
+        Self { top: 0, bottom: 0, x: 0, next: 0, last: 0, slope: 0, rise: 0, turn: 0, low: 0, high: 0 };
+
     /// Returns the change of the winding number.
     #[inline(always)]
     pub(super) const fn winding(&self) -> i32 {

@@ -162,6 +162,13 @@ impl Cells<'_> {
     }
 }
 
+/// Returns an edge by its place in an order.
+#[inline(always)]
+fn edge_of<'e>(edges: &'e [AreaEdge], order: &[u32], at: usize) -> &'e AreaEdge {
+    // The numbers are those of edges, so there always is one.
+    order.get(at).and_then(|number| edges.get(*number as usize)).unwrap_or(const { &AreaEdge::NONE })
+}
+
 /// The edges of a row, by their numbers, and the cells that they fill.
 pub(super) struct Row<'r, 'c> {
     pub(super) edges: &'r mut [AreaEdge],
@@ -175,9 +182,8 @@ pub(super) struct Row<'r, 'c> {
 
 impl Row<'_, '_> {
     #[inline(always)]
-    fn edge(&self, at: usize) -> AreaEdge {
-        // The numbers are those of edges.
-        self.order.get(at).and_then(|number| self.edges.get(*number as usize)).copied().unwrap_or_default()
+    fn edge(&self, at: usize) -> &AreaEdge {
+        edge_of(self.edges, self.order, at)
     }
 
     #[inline(always)]
@@ -187,11 +193,11 @@ impl Row<'_, '_> {
 
     /// Sorts some edges by a key. They are nearly sorted, as they were in the row before.
     #[inline(always)]
-    fn sort(&mut self, start: usize, end: usize, key: impl Fn(&AreaEdge) -> (i32, i32)) {
+    fn sort(&mut self, start: usize, end: usize, key: impl Fn(&AreaEdge) -> i32) {
         for k in start + 1..end {
-            let (Some(number), own) = (self.order.get(k).copied(), key(&self.edge(k))) else { return };
+            let (Some(number), own) = (self.order.get(k).copied(), key(self.edge(k))) else { return };
             let mut at = k;
-            while at > start && key(&self.edge(at - 1)) > own {
+            while at > start && key(self.edge(at - 1)) > own {
                 let previous = self.order.get(at - 1).copied().unwrap_or(0);
                 if let Some(place) = self.order.get_mut(at) {
                     *place = previous;
@@ -211,28 +217,37 @@ impl Row<'_, '_> {
     #[inline(never)]
     pub(super) fn fill(&mut self, from: i32, to: i32) {
         let (top, count) = (self.top, self.order.len());
-        self.sort(0, count, |edge| (edge.piece(top).left(), 0));
+        for k in 0..count {
+            if let Some(edge) = self.edge_mut(k) {
+                let piece = edge.piece(top);
+                (edge.low, edge.high) = (piece.left(), piece.right());
+            }
+        }
+        if count == 2 && self.fill_between(from, to) {
+            return;
+        }
+        self.sort(0, count, |edge| edge.low);
         let (mut first, mut winding) = (0, 0);
         while first < count {
             let (mut end, mut right, mut after) = (first, i32::MIN, winding);
             while end < count {
                 let edge = self.edge(end);
-                let piece = edge.piece(top);
-                if end > first && piece.left() > right {
+                if end > first && edge.low > right {
                     break;
                 }
-                right = right.max(piece.right());
-                if piece.start <= from {
+                right = right.max(edge.high);
+                if edge.top <= top + from {
                     after += edge.winding();
                 }
                 end += 1;
             }
             if self.is_plain(first..end, winding, from..to) {
+                let Self { edges, order, cells, .. } = self;
                 for k in first..end {
-                    let edge = self.edge(k);
+                    let edge = edge_of(edges, order, k);
                     let piece = edge.piece(top);
                     if piece.start < piece.end {
-                        self.cells.add(&piece, &edge, edge.low != 0);
+                        cells.add(&piece, edge, edge.low != 0);
                     }
                 }
             } else {
@@ -240,6 +255,29 @@ impl Row<'_, '_> {
             }
             (first, winding) = (end, after);
         }
+    }
+
+    /// Fills the cells between two edges, if that is all there is: both are as high as the row, and do not cross.
+    #[inline(always)]
+    fn fill_between(&mut self, from: i32, to: i32) -> bool {
+        let Self { edges, order, cells, top, .. } = self;
+        let (a, b) = (edge_of(edges, order, 0), edge_of(edges, order, 1));
+        let (start, end) = (*top + from, *top + to);
+        let is_high = a.top.max(b.top) <= start && a.bottom.min(b.bottom) >= end;
+        if !is_high || a.winding() + b.winding() != 0 {
+            return false;
+        }
+        let ((mut a, mut left), (mut b, mut right)) = ((a, a.piece(*top)), (b, b.piece(*top)));
+        if left.from > right.from {
+            core::mem::swap(&mut a, &mut b);
+            core::mem::swap(&mut left, &mut right);
+        }
+        if left.to > right.to {
+            return false;
+        }
+        cells.add(&left, a, true);
+        cells.add(&right, b, false);
+        true
     }
 
     /// Returns whether edges are sorted from left to right at each height, and the winding number is 0 or 1, or 0 or
@@ -257,20 +295,20 @@ impl Row<'_, '_> {
         let mut right = i32::MIN;
         for k in group.clone() {
             let edge = self.edge(k);
-            let piece = edge.piece(self.top);
+            let (piece, own) = (edge.piece(self.top), edge.winding());
             if piece.start == piece.end {
                 continue;
             }
-            if piece.left() < right && !self.is_sorted(group.start..k, &piece) {
+            if edge.low < right && !self.is_sorted(group.start..k, &piece) {
                 return false;
             }
-            right = right.max(piece.right());
-            let inside = start == end || edge.winding() == winding;
+            right = right.max(edge.high);
+            let inside = start == end || own == winding;
             if let Some(edge) = self.edge_mut(k) {
                 edge.low = i32::from(inside);
             }
             if start == end {
-                (start, end, winding) = (piece.start, piece.end, edge.winding());
+                (start, end, winding) = (piece.start, piece.end, own);
             } else if inside {
                 if piece.end == start {
                     start = piece.start;
@@ -330,24 +368,26 @@ impl Row<'_, '_> {
             let end = self.place(group.clone(), height, next);
             if left > 0 {
                 left -= 1;
-                self.sort(group.start, end, |edge| (edge.low, edge.high));
+                self.sort(group.start, end, |edge| edge.high);
+                self.sort(group.start, end, |edge| edge.low);
                 let crossing = self.first_crossing(group.start..end, height, next);
                 if crossing < next {
                     next = crossing;
                     self.place(group.start..end, height, next);
                 }
             } else {
-                self.sort(group.start, end, |edge| ((edge.low >> 1) + (edge.high >> 1), 0));
+                self.sort(group.start, end, |edge| (edge.low >> 1) + (edge.high >> 1));
             }
             let mut winding = before;
+            let Self { edges, order, cells, rule, .. } = self;
             for k in group.start..end {
-                let edge = self.edge(k);
-                let was_inside = self.rule.contains(winding);
+                let edge = edge_of(edges, order, k);
+                let was_inside = rule.contains(winding);
                 winding += edge.winding();
-                let inside = self.rule.contains(winding);
+                let inside = rule.contains(winding);
                 if inside != was_inside {
                     let piece = Piece { start: height, end: next, from: edge.low, to: edge.high };
-                    self.cells.add(&piece, &edge, inside);
+                    cells.add(&piece, edge, inside);
                 }
             }
             height = next;

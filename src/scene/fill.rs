@@ -113,6 +113,18 @@ impl Pen<'_, '_> {
         self.at = place;
     }
 
+    /// Draws an edge that is a part of no contour of the pen. Edges have to make contours all together.
+    #[inline(never)]
+    pub(crate) fn edge(&mut self, from: Place, to: Place) {
+        self.edges.line(from, to);
+    }
+
+    /// Goes to a place without a line, and leaves the contour as it is: the lines to come are edges as those of
+    /// [`edge`](Self::edge).
+    pub(crate) const fn jump(&mut self, place: Place) {
+        (self.start, self.at) = (place, place);
+    }
+
     /// Returns whether nothing of a shape between two heights, in 16.16 px, can be in the rows that are drawn now.
     #[inline]
     pub(crate) fn misses(&self, top: i64, bottom: i64) -> bool {

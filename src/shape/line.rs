@@ -1,14 +1,15 @@
 //! Thick lines through given points, with joins, caps and dashes.
 //!
-//! Each segment is a contour of its own, with its caps, and so is the outer side of each join. All of them go round
-//! clockwise, and overlap; the fill rule unites them.
+//! Both sides of a segment, its caps, and the joins between segments are edges that make one contour, though they come in
+//! another order. On the inner side of a join, sides end where they meet, so that the line covers nothing twice there. If
+//! segments are too short for that, sides overlap, and go through the point; the fill rule unites them.
 //!
 //! ```text
-//!       L ─────────────── L       a segment, and the join after it: a wedge around the point
-//!       │                 │ `-.
-//!    ───┼─────────────────P    L  on the side that the line turns away from
-//!       │                 │ \ /
-//!       R ─────────────── R
+//!       L ──────────────► L       the left side goes on, and the right side back: clockwise
+//!                           `-.
+//!    ─────────────────────P    L  a join, on the side that the line turns away from
+//!                       /   \ /
+//!       R ◄────────── R
 //! ```
 
 use super::arc::{Curve, Direction, times};
@@ -140,13 +141,23 @@ fn way(from: Place, to: Place) -> Option<(Direction, i64)> {
     if (u, v) == (0, 0) { None } else { Some(([u, v], times(x, u) + times(y, v))) }
 }
 
-/// Draws the parts of a thick line.
+/// Draws the sides of a thick line, from segment to segment.
 struct Stroker<'s, 'p, 'm> {
     pen: &'s mut Pen<'p, 'm>,
     half: i64,
     join: Join,
     cap: Cap,
     limit: u32,
+    /// Where the left and the right side of the current segment begin.
+    sides: [Place; 2],
+}
+
+fn plus(place: Place, change: Place) -> Place {
+    [place[0] + change[0], place[1] + change[1]]
+}
+
+fn minus(place: Place, change: Place) -> Place {
+    [place[0] - change[0], place[1] - change[1]]
 }
 
 impl Stroker<'_, '_, '_> {
@@ -155,87 +166,146 @@ impl Stroker<'_, '_, '_> {
         [times(self.half, v), -times(self.half, u)]
     }
 
-    /// Returns how far from its points the line may reach.
+    /// Returns how far from its points the line may reach: the corners of caps, or of miters, and 1 px.
     fn reach(&self) -> i64 {
-        // Twice the half width, for the corners of square caps, and 1 px.
-        2 * self.half + (1 << 16)
+        let times = if self.join == Join::Miter { 16 } else { 2 };
+        times * self.half + (1 << 16)
     }
 
-    /// Draws a part of a segment, with caps at its ends or without.
-    fn segment(&mut self, from: Place, to: Place, way: Direction, caps: [bool; 2]) {
-        let (low, high) = (from[1].min(to[1]), from[1].max(to[1]));
-        if self.pen.misses(low - self.reach(), high + self.reach()) {
-            return;
-        }
+    /// Returns whether nothing of a segment, or of its ends, is in the rows that are drawn now.
+    fn misses(&self, from: Place, to: Place) -> bool {
+        let reach = self.reach();
+        self.pen.misses(from[1].min(to[1]) - reach, from[1].max(to[1]) + reach)
+    }
+
+    /// Begins at a point, with a cap or where another part has ended.
+    fn begin(&mut self, at: Place, way: Direction) {
+        let back = way.map(|c| -c);
+        self.sides = self.cap(at, back);
+        self.sides.reverse();
+    }
+
+    /// Ends at a point.
+    fn end(&mut self, at: Place, way: Direction) {
+        let ends = self.cap(at, way);
+        self.draw_sides(ends);
+    }
+
+    /// Draws the cap of a line that ends in a direction, and returns where its left and its right side end.
+    fn cap(&mut self, at: Place, way: Direction) -> [Place; 2] {
         let left = self.left(way);
-        let side = |p: Place, sign: i64| [p[0] + sign * left[0], p[1] + sign * left[1]];
-        let square = |p: Place, sign: i64| {
-            let longer = [times(self.half, way[0]), times(self.half, way[1])];
-            [p[0] + sign * longer[0], p[1] + sign * longer[1]]
-        };
-        let [capped, end_capped] = caps.map(|capped| capped && self.cap != Cap::Butt);
-        let (from, start) = match self.cap {
-            Cap::Square if capped => (square(from, -1), from),
-            _ => (from, from),
-        };
-        let (to, end) = match self.cap {
-            Cap::Square if end_capped => (square(to, 1), to),
-            _ => (to, to),
-        };
-        let normal = [-way[1], way[0]];
-        self.pen.move_to_place(side(from, -1));
-        if capped && self.cap == Cap::Round {
-            Curve::new(start, [self.half; 2]).arc(self.pen, normal, normal.map(|c| -c));
+        let mut end = at;
+        if self.cap == Cap::Square {
+            end = plus(at, [times(self.half, way[0]), times(self.half, way[1])]);
         }
-        self.pen.line_to_place(side(from, 1));
-        self.pen.line_to_place(side(to, 1));
-        if end_capped && self.cap == Cap::Round {
-            Curve::new(end, [self.half; 2]).arc(self.pen, normal.map(|c| -c), normal);
+        let ends = [plus(end, left), minus(end, left)];
+        let normal = [way[1], -way[0]];
+        if self.cap == Cap::Round && !self.misses(at, at) {
+            self.pen.jump(ends[0]);
+            Curve::new(at, [self.half; 2]).arc(self.pen, normal, normal.map(|c| -c));
+            self.pen.line_to_place(ends[1]);
+        } else {
+            self.pen.edge(ends[0], ends[1]);
         }
-        self.pen.line_to_place(side(to, -1));
+        ends
     }
 
-    /// Draws the outer side of a join between two segments.
-    fn join(&mut self, at: Place, before: Direction, after: Direction) {
-        // A miter reaches 16 half widths at most.
-        let reach = 16 * self.half + (1 << 16);
-        if self.pen.misses(at[1] - reach, at[1] + reach) {
-            return;
-        }
+    /// Draws the sides of a segment, which end where the next ones begin.
+    fn draw_sides(&mut self, [left, right]: [Place; 2]) {
+        self.pen.edge(self.sides[0], left);
+        self.pen.edge(right, self.sides[1]);
+    }
+
+    /// Finds where the sides of two segments end and begin at their common point. On the inner side, that is where they
+    /// meet, if it is at most `room` from the point along both.
+    fn corner(&self, at: Place, before: Direction, after: Direction, room: i64) -> Corner {
+        let [mut ends, mut starts] = [before, after].map(|way| {
+            let left = self.left(way);
+            [plus(at, left), minus(at, left)]
+        });
         let [[a, b], [c, d]] = [before, after];
         let turn = mul_wide(a, d) - mul_wide(b, c);
         let ahead = (mul_wide(a, c) + mul_wide(b, d)) >> 30;
-        if turn == 0 && ahead >= 0 {
-            return;
-        }
-        let (before, after) = (self.left(before), self.left(after));
-        // Clockwise, so the wedge of a line that turns left begins at the segment after it.
-        let (first, second) = if turn >= 0 { (before, after) } else { (after.map(|c| -c), before.map(|c| -c)) };
-        let plus = |change: Place| [at[0] + change[0], at[1] + change[1]];
-        self.pen.move_to_place(at);
-        self.pen.line_to_place(plus(first));
-        match self.join {
-            Join::Round => {
-                let directions = if turn >= 0 { [[b, -a], [d, -c]] } else { [[-d, c], [-b, a]] };
-                Curve::new(at, [self.half; 2]).arc(self.pen, directions[0], directions[1]);
+        // The cosine and 1, in 2.30.
+        let sum = (ahead + (1 << 30)).max(0) as u32;
+        let turns_right = turn >= 0;
+        // Sides meet at the sum of both changes to them over 1 + cosine: on the outer side, away from the point.
+        let both = if turns_right {
+            minus(plus(ends[0], starts[0]), plus(at, at))
+        } else {
+            minus(plus(ends[1], starts[1]), plus(at, at))
+        };
+        let sine = (turn >> 30).unsigned_abs().min(1 << 30) as i32;
+        let divisor = NonZeroU32::new(sum >> 1);
+        let meets = divisor.filter(|divisor| {
+            // Along the segments, they meet at half the width times sine / (1 + cosine), below 2³⁰.
+            let along = (times(self.half, sine) as u64) << 29;
+            along >> 30 < u64::from(divisor.get()) && i64::from(divide(along, *divisor).0) <= room
+        });
+        if let Some(divisor) = meets {
+            let meeting = minus(at, over(both, divisor));
+            if turns_right {
+                (ends[1], starts[1]) = (meeting, meeting);
+            } else {
+                (ends[0], starts[0]) = (meeting, meeting);
             }
-            Join::Miter => {
-                // (Miter length / width)² = 2 / (1 + cosine); the sum below is the cosine and 1, in 2.30.
-                let sum = (ahead + (1 << 30)).max(0) as u32;
-                let limit = u64::from(sum) * u64::from(self.limit);
-                if let (true, Some(divisor)) = (limit >= 2 << 38, NonZeroU32::new(sum >> 1)) {
-                    // The sides meet at (first + second) / (1 + cosine); the quotient is at most 2³⁰.
-                    let ratio = |change: i64| {
-                        let (quotient, _) = divide(change.unsigned_abs() << 29, divisor);
-                        if change < 0 { -i64::from(quotient) } else { i64::from(quotient) }
-                    };
-                    self.pen.line_to_place(plus([ratio(first[0] + second[0]), ratio(first[1] + second[1])]));
-                }
-            }
-            Join::Bevel => {}
         }
-        self.pen.line_to_place(plus(second));
+        // (Miter length / width)² = 2 / (1 + cosine).
+        let is_short = u64::from(sum) * u64::from(self.limit) >= 2 << 38;
+        let miter = divisor.filter(|_| is_short).map(|divisor| plus(at, over(both, divisor)));
+        let is_straight = turn == 0 && ahead >= 0;
+        Corner { ends, starts, turns_right, meets: meets.is_some(), is_straight, miter }
     }
+
+    /// Draws a join between two segments, and the sides of the first one.
+    fn join(&mut self, at: Place, before: Direction, after: Direction, room: i64) {
+        let Corner { ends, starts, turns_right, meets, is_straight, miter } = self.corner(at, before, after, room);
+        if !meets && turns_right {
+            self.pen.edge(starts[1], at);
+            self.pen.edge(at, ends[1]);
+        } else if !meets {
+            self.pen.edge(ends[0], at);
+            self.pen.edge(at, starts[0]);
+        }
+        // Clockwise: on the left, from the first segment to the second one, and back on the right.
+        let (first, second) = if turns_right { (ends[0], starts[0]) } else { (starts[1], ends[1]) };
+        self.pen.jump(first);
+        if !is_straight && !self.misses(at, at) {
+            let [[a, b], [c, d]] = [before, after];
+            match (self.join, miter) {
+                (Join::Round, _) => {
+                    let [from, to] = if turns_right { [[b, -a], [d, -c]] } else { [[-d, c], [-b, a]] };
+                    Curve::new(at, [self.half; 2]).arc(self.pen, from, to);
+                }
+                (Join::Miter, Some(miter)) => self.pen.line_to_place(miter),
+                _ => {}
+            }
+        }
+        self.pen.line_to_place(second);
+        self.draw_sides(ends);
+        self.sides = starts;
+    }
+}
+
+/// A point of a line where two segments meet: where their left and right sides end and begin there.
+struct Corner {
+    ends: [Place; 2],
+    starts: [Place; 2],
+    /// Set if the left side is the outer one.
+    turns_right: bool,
+    /// Set if the inner sides end where they meet.
+    meets: bool,
+    is_straight: bool,
+    /// Where the outer sides meet, if that is within the miter limit.
+    miter: Option<Place>,
+}
+
+/// Divides a change of place by twice a divisor, 2.30: by 1 + cosine. The quotient is below 2³².
+fn over(change: Place, divisor: NonZeroU32) -> Place {
+    change.map(|c| {
+        let (quotient, _) = divide(c.unsigned_abs() << 29, divisor);
+        if c < 0 { -i64::from(quotient) } else { i64::from(quotient) }
+    })
 }
 
 /// Place in a pattern of dashes.
@@ -335,13 +405,10 @@ impl Segment {
 }
 
 impl Stroker<'_, '_, '_> {
-    /// Draws a segment dash by dash. The first dash goes on from the segment before, if `goes_on` says so; the last one
-    /// is capped if the line `ends`.
+    /// Draws a segment dash by dash. The first dash goes on from the segment before, if `goes_on` says so; and the last one
+    /// goes on, unless the line `ends`.
     fn dash(&mut self, dashes: &mut Dashes<'_>, segment: &Segment, mut goes_on: bool, ends: bool) {
         let all = segment.length;
-        if !dashes.are_dashes() {
-            return self.segment(segment.from, segment.at(all), segment.way, [!goes_on, ends]);
-        }
         let near = segment.near(self.pen.area(), self.reach());
         let mut done = 0;
         if near.start > 0 && near.start < all {
@@ -359,13 +426,19 @@ impl Stroker<'_, '_, '_> {
         while done < all {
             if done > near.end {
                 dashes.skip(all - done);
+                // A dash that goes on behind the corner begins out of sight.
+                self.begin(segment.at(all), segment.way);
                 return;
             }
             let ended = dashes.left <= all - done;
             let end = if ended { done + dashes.left } else { all };
             if dashes.drawn {
-                let caps = [!goes_on, ended || ends];
-                self.segment(segment.at(done), segment.at(end), segment.way, caps);
+                if !goes_on {
+                    self.begin(segment.at(done), segment.way);
+                }
+                if ended || ends {
+                    self.end(segment.at(end), segment.way);
+                }
             }
             goes_on = false;
             if ended {
@@ -378,40 +451,105 @@ impl Stroker<'_, '_, '_> {
     }
 }
 
-impl Outline for Polyline<'_> {
-    fn trace(&self, pen: &mut Pen<'_, '_>) {
-        let mut dashes = Dashes::new(self.pattern, self.offset);
-        let mut stroker = Stroker { pen, half: self.half(), join: self.join, cap: self.cap, limit: self.limit };
-        let Some(first) = self.points.first().copied().map(place) else { return };
-        let meets = self.closed && !dashes.are_dashes();
-        let mut goes_on = meets;
-        // A segment waits until it is known whether it is the last one.
-        let (mut waiting, mut first_way, mut at) = (None::<Segment>, None, first);
-        let last = self.closed.then_some(first);
-        let rest = self.points.get(1..).unwrap_or_default().iter().copied().map(place);
-        for to in rest.chain(last) {
-            let Some((way, length)) = way(at, to) else { continue };
+impl Polyline<'_> {
+    /// Draws a line with dashes.
+    fn trace_dashes(&self, stroker: &mut Stroker<'_, '_, '_>, mut dashes: Dashes<'_>) {
+        let mut waiting = None::<Segment>;
+        let mut goes_on = false;
+        self.each_segment(|from, to| {
+            let Some((way, length)) = way(from, to) else { return };
             if let Some(segment) = waiting {
                 stroker.dash(&mut dashes, &segment, goes_on, false);
                 goes_on = dashes.goes_on();
                 if goes_on {
-                    stroker.join(at, segment.way, way);
+                    let room = segment.length.min(length).min(dashes.left).min(dashes.length() - dashes.left) >> 1;
+                    stroker.join(from, segment.way, way, room);
                 }
             }
-            first_way = first_way.or(Some(way));
-            waiting = Some(Segment { from: at, way, length });
-            at = to;
+            waiting = Some(Segment { from, way, length });
+        });
+        if let Some(segment) = waiting {
+            stroker.dash(&mut dashes, &segment, goes_on, true);
         }
-        match (waiting, first_way) {
-            (Some(segment), Some(way)) => {
-                stroker.dash(&mut dashes, &segment, goes_on, !meets);
-                if meets {
-                    stroker.join(at, segment.way, way);
+    }
+
+    /// Draws a line without dashes. Directions are computed for the segments in the rows that are drawn now, and for
+    /// their neighbours.
+    fn trace_sides(&self, stroker: &mut Stroker<'_, '_, '_>) {
+        // The previous segment, its direction and length if they are known, and whether it is out of the rows.
+        let mut previous: Option<(Place, Place, Option<(Direction, i64)>, bool)> = None;
+        let mut first = None;
+        if self.closed {
+            // The last segment comes before the first one.
+            self.each_segment(|from, to| previous = Some((from, to, None, true)));
+            if let Some((from, to, known, _)) = &mut previous {
+                *known = way(*from, *to);
+            }
+        }
+        self.each_segment(|from, to| {
+            let missed = stroker.misses(from, to);
+            let mut known = None;
+            match previous {
+                None => {
+                    known = way(from, to);
+                    if let Some((way, _)) = known {
+                        stroker.begin(from, way);
+                    }
+                }
+                Some((_, _, _, true)) if missed && first.is_some() => {}
+                Some((a, b, before, _)) => {
+                    known = way(from, to);
+                    if let (Some((way, length)), Some((before, other))) = (known, before.or_else(|| self::way(a, b))) {
+                        let room = length.min(other) >> 1;
+                        if first.is_some() {
+                            stroker.join(from, before, way, room);
+                        } else {
+                            // The join of a closed line's ends is drawn with its last segment.
+                            stroker.sides = stroker.corner(from, before, way, room).starts;
+                        }
+                    }
                 }
             }
-            // All points are one.
-            _ if self.cap != Cap::Butt => stroker.segment(at, at, [1 << 30, 0], [true; 2]),
-            _ => {}
+            first = first.or(known);
+            previous = Some((from, to, known, missed));
+        });
+        let Some((from, to, known, _)) = previous else { return };
+        let Some((last, length)) = known.or_else(|| way(from, to)) else { return };
+        match first {
+            Some((first, other)) if self.closed => stroker.join(to, last, first, length.min(other) >> 1),
+            _ => stroker.end(to, last),
         }
+    }
+
+    /// Hands over each segment that has a length.
+    fn each_segment(&self, mut segment: impl FnMut(Place, Place)) {
+        let Some(first) = self.points.first().copied().map(place) else { return };
+        let mut at = first;
+        let rest = self.points.get(1..).unwrap_or_default().iter().copied().map(place);
+        for to in rest.chain(self.closed.then_some(first)) {
+            if to != at {
+                segment(at, to);
+                at = to;
+            }
+        }
+    }
+}
+
+impl Outline for Polyline<'_> {
+    fn trace(&self, pen: &mut Pen<'_, '_>) {
+        let Some(first) = self.points.first().copied().map(place) else { return };
+        let (half, join, cap, limit) = (self.half(), self.join, self.cap, self.limit);
+        let mut stroker = Stroker { pen, half, join, cap, limit, sides: [first; 2] };
+        let dashes = Dashes::new(self.pattern, self.offset);
+        if dashes.are_dashes() {
+            self.trace_dashes(&mut stroker, dashes);
+        } else if self.points.iter().any(|point| place(*point) != first) {
+            self.trace_sides(&mut stroker);
+        } else if cap != Cap::Butt {
+            stroker.begin(first, [1 << 30, 0]);
+            stroker.end(first, [1 << 30, 0]);
+        }
+        // The sides are edges by themselves, and no contour is open.
+        stroker.pen.jump(first);
     }
 }
