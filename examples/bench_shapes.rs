@@ -78,10 +78,8 @@ mod counting {
         kind: usize,
         k: i16,
         things: &Things<'_>,
-        words: &mut [u32],
+        buffer: &mut ShapeBuffer<'_>,
     ) {
-        let Ok(mut buffer) = ShapeBuffer::new(words, 320) else { return };
-        let buffer = &mut buffer;
         let (x, y) = (40 + k % 4 * 78, 45 + k / 4 * 72);
         // Not on whole pixels.
         let center = ScreenPoint::new(px(i32::from(x) * 256 + 77), px(i32::from(y) * 256 + 191));
@@ -175,7 +173,7 @@ mod counting {
                 black_box(strip);
                 Ok::<(), Infallible>(())
             };
-            let mut draw_frame = || renderer.frame_to(sink, color, Rgb565::CSS_NAVY, &mut draw).is_ok();
+            let draw_frame = || renderer.frame_to(sink, color, Rgb565::CSS_NAVY, &mut draw).is_ok();
             if check {
                 black_box(draw_frame());
             } else {
@@ -201,15 +199,17 @@ mod counting {
             let mut ticks = [0; 3];
             for (n, rows) in [HEIGHT, 16].into_iter().enumerate() {
                 (ticks[n], hashes[n]) = frame(Renderer::new(SCREEN), &mut color[..rows * WIDTH], |scene| {
+                    let Ok(mut buffer) = ShapeBuffer::new(words, 320) else { return };
                     for k in 0..SHAPES {
-                        draw(&mut scene.canvas(), kind, k, &things, words);
+                        draw(&mut scene.canvas(), kind, k, &things, &mut buffer);
                     }
                 });
             }
             let renderer = Renderer::new(SCREEN).and_then(|it| it.with_depth(&mut depth[..16 * WIDTH]));
             (ticks[2], _) = frame(renderer, &mut color[..16 * WIDTH], |scene| {
+                let Ok(mut buffer) = ShapeBuffer::new(words, 320) else { return };
                 for k in 0..SHAPES {
-                    draw(&mut scene.canvas_at(1000), kind, k, &things, words);
+                    draw(&mut scene.canvas_at(1000), kind, k, &things, &mut buffer);
                 }
             });
             if hashes[0] != hashes[1] {

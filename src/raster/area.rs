@@ -7,11 +7,14 @@
 //! many, the places where they cross it are found, as many at a time as fit. So any memory will do for any outline.
 
 use super::area_edge::{AreaEdge, AreaEdges, EDGE_WORDS, Wanted};
-use super::area_row::{Cells, FillRule, Row};
+use super::area_row::{Cells, FillRule, Row, start_and_end};
 use super::triangle::PixelRect;
 
 /// Height of the smallest part of a row, 1/256 px: that of a unit of [`Pixels`](crate::math::Pixels).
 const LEAST_PART: i32 = 256;
+
+/// Number of edges up to which insertion is the faster way to sort them.
+const FEW_EDGES: usize = 8;
 
 /// Fewest edges that areas take.
 pub(crate) const LEAST_EDGES: usize = 4;
@@ -22,21 +25,21 @@ pub(crate) struct AreaMemory<'m> {
     edges: &'m mut [AreaEdge],
     order: &'m mut [u32],
     cover: &'m mut [i32],
-    touched: &'m mut [u32],
+    ranges: &'m mut [u32],
 }
 
 /// Returns the words for rows of `width` pixels and a number of edges.
 pub(crate) const fn area_words(width: usize, edges: usize) -> usize {
-    let cells = width.saturating_add(2);
-    cells.saturating_add(cells.div_ceil(32)).saturating_add(edges.saturating_mul(EDGE_WORDS + 1))
+    let cells = width.saturating_add(1);
+    cells.saturating_add(cells.div_ceil(16)).saturating_add(edges.saturating_mul(EDGE_WORDS + 1))
 }
 
 impl<'m> AreaMemory<'m> {
     /// Shares words out: cells for rows of `width` pixels, and edges with the rest. `None` if they are too few.
     pub(crate) fn new(words: &'m mut [u32], width: usize) -> Option<Self> {
-        let cells = width.checked_add(2)?;
+        let cells = width.checked_add(1)?;
         let (cover, words) = words.split_at_mut_checked(cells)?;
-        let (touched, words) = words.split_at_mut_checked(cells.div_ceil(32))?;
+        let (ranges, words) = words.split_at_mut_checked(cells.div_ceil(16))?;
         let edges = words.len() / (EDGE_WORDS + 1);
         if edges < LEAST_EDGES {
             return None;
@@ -45,14 +48,14 @@ impl<'m> AreaMemory<'m> {
         let edges = bytemuck::try_cast_slice_mut(words.get_mut(..edges * EDGE_WORDS)?).ok()?;
         let cover = bytemuck::try_cast_slice_mut(cover).ok()?;
         cover.fill(0);
-        touched.fill(0);
-        Some(Self { edges, order, cover, touched })
+        Some(Self { edges, order, cover, ranges })
     }
 
     /// Begins an area that is drawn in a rectangle.
     pub(crate) fn area(&mut self, rect: &PixelRect, rule: FillRule) -> Area<'_> {
-        let Self { edges, order, cover, touched } = self;
-        let width = (cover.len() as i32 - 2).min(rect.x.end.wrapping_sub(rect.x.start)).max(0);
+        let Self { edges, order, cover, ranges } = self;
+        let order_len = order.len().min(1 << 14) as i32;
+        let width = (cover.len() as i32 - 1).min(rect.x.end.wrapping_sub(rect.x.start)).max(0);
         Area {
             edges: AreaEdges {
                 edges,
@@ -65,11 +68,12 @@ impl<'m> AreaMemory<'m> {
                 wanted: Wanted::Rows,
             },
             order,
-            cells: Cells { cover, touched, left: rect.x.start, width },
+            cells: Cells { cover, ranges, count: 0, left: rect.x.start, width },
             rule,
             row: rect.y.start,
             end: rect.y.end,
-            rows: rect.y.end - rect.y.start,
+            // Most outlines have fewer than 4 edges per row.
+            rows: (order_len >> 2).max(1).min(rect.y.end - rect.y.start),
             part: 0..0,
             winding: 0,
             active: 0,
@@ -77,6 +81,7 @@ impl<'m> AreaMemory<'m> {
             band_end: rect.y.start,
             scanning: false,
             scanned: 0,
+            range: 0,
             sum: 0,
             varied: 0..0,
         }
@@ -104,8 +109,9 @@ pub(crate) struct Area<'a> {
     band_end: i32,
     /// Set while the current row has runs left.
     scanning: bool,
-    /// Column up to which the row is scanned, from the first one on, and the covered part there.
+    /// Column up to which the row is scanned, from the first one on, the next range of cells, and the covered part there.
     scanned: i32,
+    range: usize,
     sum: i32,
     /// Columns of the last run of varied parts, whose cells are not cleared yet.
     varied: core::ops::Range<i32>,
@@ -186,6 +192,7 @@ impl<'a> Area<'a> {
                 }
                 let (from, to) = (self.part.start, self.part.end);
                 self.in_row().fill(from, to);
+                self.cells.add_all();
                 self.next_part();
             }
             Wanted::Crossings { .. } => {
@@ -193,6 +200,7 @@ impl<'a> Area<'a> {
                 let last = self.edges.count.checked_sub(1).and_then(|last| self.edges.edges.get(last));
                 let after = last.map_or(i32::MAX, |edge| edge.x);
                 self.in_row().crossings(height, &mut winding);
+                self.cells.add_all();
                 self.winding = winding;
                 if self.edges.overflowed {
                     self.edges.wanted = Wanted::Crossings { after };
@@ -229,7 +237,8 @@ impl<'a> Area<'a> {
         }
     }
 
-    /// Sorts edges by their upper ends, by Shell's method, with gaps of 2ⁿ - 1.
+    /// Sorts edges by their upper ends: a few by insertion, many by Shell's method, with gaps of 2ⁿ - 1. Outlines go up
+    /// and down, so that half of their edges are in order.
     fn sort(&mut self) {
         let (edges, count) = (&*self.edges.edges, self.edges.count);
         let Some(order) = self.order.get_mut(..count) else { return };
@@ -238,7 +247,7 @@ impl<'a> Area<'a> {
         }
         let top = |number: u32| edges.get(number as usize).map_or(0, |edge| edge.top);
         let mut gap = 1;
-        while 2 * gap + 1 < count {
+        while count > FEW_EDGES && 2 * gap + 1 < count {
             gap = 2 * gap + 1;
         }
         while gap > 0 {
@@ -286,6 +295,7 @@ impl<'a> Area<'a> {
 
     fn begin_scan(&mut self) {
         (self.scanning, self.scanned, self.sum, self.varied) = (true, 0, 0, 0..0);
+        self.range = 0;
     }
 
     /// Fills the cells of the current row, and moves its edges on. Returns whether there are any.
@@ -325,38 +335,33 @@ impl<'a> Area<'a> {
     /// Returns the next run of the current row; `None` after the last one. Cells are cleared on the way.
     #[inline(always)]
     fn scan(&mut self) -> Option<Run> {
-        let Cells { cover, touched, left, width } = &mut self.cells;
-        // The last cell that pieces touch is that after the last pixel.
-        let touched = touched.get_mut(..=*width as usize >> 5)?;
+        let Cells { cover, ranges, count, left, width } = &mut self.cells;
         if let Some(cells) = cover.get_mut(self.varied.start as usize..self.varied.end as usize) {
-            cells.fill(0);
-        }
-        self.varied = 0..0;
-        while self.scanned < *width {
-            let start = self.scanned;
-            let next = next_touched(touched, start).min(*width);
-            if next > start {
-                self.scanned = next;
-                let part = part(self.sum);
-                if part > 0 {
-                    return Some(Run { y: self.row, x: *left + start..*left + next, part: Some(part) });
-                }
-                continue;
+            for cell in cells {
+                *cell = 0;
             }
-            let (mut end, mut sum) = (start, self.sum);
-            while end < *width && touched.get(end as usize >> 5).is_some_and(|word| word >> (end & 31) & 1 != 0) {
-                if let Some(cell) = cover.get_mut(end as usize) {
-                    sum = sum.wrapping_add(*cell);
-                    *cell = part(sum) as i32;
-                }
-                end += 1;
+        }
+        let range = ranges.get(self.range).copied().filter(|_| self.range < *count);
+        let (start, end) = range.map_or((*width, *width), start_and_end);
+        let first = self.scanned;
+        if first < start {
+            (self.scanned, self.varied) = (start, 0..0);
+            let part = part(self.sum);
+            if part > 0 {
+                return Some(Run { y: self.row, x: *left + first..*left + start, part: Some(part) });
+            }
+        }
+        if start < end {
+            let mut sum = self.sum;
+            for cell in cover.get_mut(start as usize..end as usize).unwrap_or_default() {
+                sum = sum.wrapping_add(*cell);
+                *cell = part(sum) as i32;
             }
             (self.scanned, self.sum, self.varied) = (end, sum, start..end);
+            self.range += 1;
             return Some(Run { y: self.row, x: *left + start..*left + end, part: None });
         }
-        for word in touched {
-            *word = 0;
-        }
+        *count = 0;
         if let Some(cell) = cover.get_mut(*width as usize) {
             *cell = 0;
         }
@@ -369,19 +374,4 @@ impl<'a> Area<'a> {
         let at = |x: i32| (x - self.cells.left) as usize;
         self.cells.cover.get(at(run.x.start)..at(run.x.end)).unwrap_or_default()
     }
-}
-
-/// Returns the first touched cell from `start` on, or a large number.
-#[inline(always)]
-fn next_touched(touched: &[u32], start: i32) -> i32 {
-    let mut at = start as usize >> 5;
-    let mut word = touched.get(at).copied().unwrap_or(0) & u32::MAX << (start & 31);
-    while word == 0 {
-        at += 1;
-        match touched.get(at) {
-            Some(next) => word = *next,
-            None => return i32::MAX,
-        }
-    }
-    (at << 5) as i32 + word.trailing_zeros() as i32
 }

@@ -46,16 +46,25 @@ const EXACT_SLABS: u32 = 256;
 /// Height of those slabs: 1/128 px.
 const ROUGH: i32 = 512;
 
-/// Cells of a row: the covered part of each pixel, in 2⁻¹⁶, less that of its left neighbour; and which cells are not 0.
+/// Cells of a row: the covered part of each pixel, in 2⁻¹⁶, less that of its left neighbour; and ranges of cells that may
+/// not be 0.
 #[derive(Debug)]
 pub(super) struct Cells<'c> {
-    /// One per pixel, and two more.
+    /// One per pixel, and one more.
     pub(super) cover: &'c mut [i32],
-    /// One bit per cell.
-    pub(super) touched: &'c mut [u32],
+    /// Ranges from left to right, none of which touches the next one: the start in the upper half of a word, the end in
+    /// the lower half.
+    pub(super) ranges: &'c mut [u32],
+    pub(super) count: usize,
     /// The first column, and the number of columns.
     pub(super) left: i32,
     pub(super) width: i32,
+}
+
+/// Returns the start and the end of a range.
+#[inline(always)]
+pub(super) const fn start_and_end(range: u32) -> (i32, i32) {
+    ((range >> 16) as i32, (range & 0xFFFF) as i32)
 }
 
 impl Cells<'_> {
@@ -64,9 +73,36 @@ impl Cells<'_> {
         if let Some(cell) = self.cover.get_mut(column as usize) {
             *cell = cell.wrapping_add(cover);
         }
-        if let Some(word) = self.touched.get_mut(column as usize >> 5) {
-            *word |= 1 << (column & 31);
+    }
+
+    /// Adds the range of cells that edges between two places may fill. It begins right of the start of the range before
+    /// it. Without room for another range, the last one is made longer.
+    #[inline(always)]
+    fn add_range(&mut self, left: i32, right: i32) {
+        // What is right of a place in a column is added up in this column and in the next one.
+        let start = ((left >> 16) - self.left).max(0);
+        let end = ((right >> 16) - self.left + 2).max(1).min(self.width);
+        if start >= end {
+            return;
         }
+        let is_full = self.count >= self.ranges.len();
+        if let Some(last) = self.count.checked_sub(1).and_then(|last| self.ranges.get_mut(last)) {
+            let (first, last_end) = start_and_end(*last);
+            if start <= last_end || is_full {
+                *last = (first << 16 | end.max(last_end)) as u32;
+                return;
+            }
+        }
+        if let Some(range) = self.ranges.get_mut(self.count) {
+            *range = (start << 16 | end) as u32;
+            self.count += 1;
+        }
+    }
+
+    /// Makes one range of all cells, for a row that is filled part by part.
+    pub(super) fn add_all(&mut self) {
+        self.count = 0;
+        self.add_range(self.left << 16, (self.left + self.width) << 16);
     }
 
     /// Adds what is right of a piece of an edge, of a height of 1 to 65,536; or takes it away.
@@ -230,6 +266,7 @@ impl Row<'_, '_> {
         let (mut first, mut winding) = (0, 0);
         while first < count {
             let (mut end, mut right, mut after) = (first, i32::MIN, winding);
+            let left = self.edge(first).low;
             while end < count {
                 let edge = self.edge(end);
                 if end > first && edge.low > right {
@@ -241,6 +278,7 @@ impl Row<'_, '_> {
                 }
                 end += 1;
             }
+            self.cells.add_range(left, right);
             if self.is_plain(first..end, winding, from..to) {
                 let Self { edges, order, cells, .. } = self;
                 for k in first..end {
@@ -277,6 +315,12 @@ impl Row<'_, '_> {
         }
         cells.add(&left, a, true);
         cells.add(&right, b, false);
+        if a.high < b.low {
+            cells.add_range(a.low, a.high);
+            cells.add_range(b.low, b.high);
+        } else {
+            cells.add_range(a.low, b.high);
+        }
         true
     }
 
@@ -394,8 +438,8 @@ impl Row<'_, '_> {
         }
     }
 
-    /// Computes the places of the edges of a group at both ends of a slab, and puts these edges first. Their order stays
-    /// as it is. Returns their end.
+    /// Computes the places of the edges of a group at both ends of a slab, and puts these edges first. Their order
+    /// stays as it is. Returns their end.
     fn place(&mut self, group: Range<usize>, height: i32, next: i32) -> usize {
         let (mut end, top) = (group.start, self.top);
         for k in group {

@@ -113,6 +113,19 @@ impl Pen<'_, '_> {
         self.at = place;
     }
 
+    /// Draws chords of a sector of a curve but the last one, from a place. Each takes a `step` of the sector, in 0.16.
+    /// Changes from place to place are 16.22, and so are theirs.
+    pub(crate) fn chords(&mut self, from: Place, step: u32, mut change: [i32; 2], second: [i32; 2]) {
+        let (mut part, mut way) = (step, [0_i32; 2]);
+        // Roundings of the step leave out no chord, and add none.
+        while part + (step >> 1) < 1 << 16 {
+            way = [way[0].wrapping_add(change[0]), way[1].wrapping_add(change[1])];
+            change = [change[0].wrapping_add(second[0]), change[1].wrapping_add(second[1])];
+            self.line_to_place([from[0] + i64::from(way[0] >> 6), from[1] + i64::from(way[1] >> 6)]);
+            part += step;
+        }
+    }
+
     /// Draws an edge that is a part of no contour of the pen. Edges have to make contours all together.
     #[inline(never)]
     pub(crate) fn edge(&mut self, from: Place, to: Place) {
@@ -175,7 +188,7 @@ impl core::error::Error for ShapeError {}
 /// let buffer = ShapeBuffer::new(&mut words, 320)?;
 /// # let _ = buffer;
 /// let error = ShapeBuffer::new(&mut [0; 300], 320).unwrap_err();
-/// assert_eq!(error, ShapeError::TooShort { words: 300, needed: 377 });
+/// assert_eq!(error, ShapeError::TooShort { words: 300, needed: 386 });
 /// # Ok::<(), ShapeError>(())
 /// ```
 #[derive(Debug)]

@@ -96,8 +96,9 @@ pub(super) struct Curve {
     center: Place,
     /// Both radii, 16.16 px, with what makes up for chords.
     radii: [i64; 2],
-    /// Part of a sector that a chord takes, 0.16.
+    /// Part of a sector that a chord takes, 0.16; and the number of sectors that a chord of a small radius takes.
     step: u32,
+    stride: u32,
 }
 
 /// A greater radius is drawn with chords for this one, 16.16 px.
@@ -108,13 +109,19 @@ impl Curve {
     pub(super) fn new(center: Place, radii: [i64; 2]) -> Self {
         let radii = radii.map(|radius| radius.max(0));
         // A chord of an angle t is up to r t² / 8 away. That is 1/128 px where a sector has r · 0.154 chords, squared.
-        let greatest = (radii[0].max(radii[1])).min(GREATEST) as u32;
+        let greatest = radii[0].max(radii[1]).min(GREATEST) as u32;
+        let stride = match greatest {
+            // 16 and 32 chords per turn, up to 0.4 px and 1.6 px.
+            0..26_500 => 4,
+            26_500..106_000 => 2,
+            _ => 1,
+        };
         let chords = NonZeroU32::MIN.saturating_add(isqrt(((greatest >> 8) * 40) >> 16));
-        let (step, _) = divided(1 << 16, chords);
+        let step = if chords.get() == 1 { 1 << 16 } else { divided(1 << 16, chords).0 };
         // r t² / 16, where t is the step times a sector, 1/64 turn: r / 1659 for a whole one.
-        let square = (i64::from(step) * i64::from(step)) >> 16;
+        let square = (i64::from(step) * i64::from(step) * i64::from(stride * stride)) >> 16;
         let radii = radii.map(|radius| radius + ((((radius.min(GREATEST) * 158) >> 18) * square) >> 16));
-        Self { center, radii, step }
+        Self { center, radii, step, stride }
     }
 
     /// Returns the point in a direction.
@@ -128,33 +135,28 @@ impl Curve {
     /// A sector is nearly a parabola: with t from 0 to 1, the point at t of the chord from a to b, moved by 4 t (1 - t)
     /// times the distance of the chord's middle from the curve. It is off by r / 4,000,000. Its points are found by two
     /// differences, in additions alone.
+    ///
+    /// # Format
+    /// Points are relative to the first one, in 16.22 px: a sector is at most 402 px wide in a direction. So roundings
+    /// of both differences add up to less than 1/2,000 px.
     fn chords(&self, pen: &mut Pen<'_, '_>, from: Place, to: Place, bulge: i32) {
         if self.step < 1 << 16 && !pen.misses(from[1].min(to[1]), from[1].max(to[1])) {
-            // With 8 more bits, roundings add up to less than 2⁻¹⁶ px.
-            let mut at = from.map(|c| c << 8);
-            let ([x, ddx], [y, ddy]) = (self.differences(0, from, to, bulge), self.differences(1, from, to, bulge));
-            let (mut dx, mut dy) = (x, y);
-            let mut part = self.step;
-            // Roundings of the step leave out no chord, and add none.
-            while part + (self.step >> 1) < 1 << 16 {
-                at = [at[0] + dx, at[1] + dy];
-                (dx, dy) = (dx + ddx, dy + ddy);
-                pen.line_to_place(at.map(|c| c >> 8));
-                part += self.step;
-            }
+            let ([dx, ddx], [dy, ddy]) = (self.differences(0, from, to, bulge), self.differences(1, from, to, bulge));
+            pen.chords(from, self.step, [dx, dy], [ddx, ddy]);
         }
         pen.line_to_place(to);
     }
 
-    /// Returns the first and the second difference of a coordinate from chord to chord.
+    /// Returns the first and the second difference of a coordinate from chord to chord, in 16.22.
     #[inline(always)]
-    fn differences(&self, axis: usize, from: Place, to: Place, bulge: i32) -> [i64; 2] {
+    fn differences(&self, axis: usize, from: Place, to: Place, bulge: i32) -> [i32; 2] {
         let of = |place: Place| if axis == 0 { place[0] } else { place[1] };
         let (a, b) = (of(from), of(to));
         let bulge = times(((a + b) >> 1) - of(self.center), bulge);
-        let by = |length: i64| times(length, (self.step << 14) as i32);
-        let second = by(by(bulge << 8));
-        [by((b - a + bulge) << 8) - second, -2 * second]
+        // For a radius beyond the greatest one, some differences.
+        let by = |length: i64| (mul_wide(length as i32, (self.step << 14) as i32) >> 30) as i32;
+        let second = by(i64::from(by(bulge << 6)));
+        [by((b - a + bulge) << 6).wrapping_sub(second), second.wrapping_mul(-2)]
     }
 
     /// Draws clockwise to the point in a direction, from that in another one, where the pen is. Equal directions are no
@@ -167,31 +169,18 @@ impl Curve {
 
     /// Draws through `count` borders, from number `first` + 1 on, to the point in a direction.
     fn sectors(&self, pen: &mut Pen<'_, '_>, from: Direction, first: u32, count: u32, to: Direction) {
-        let (mut number, end) = (first + 1, first + count);
-        let mut at = self.point(from);
-        if number <= end {
+        let (stride, end) = (self.stride, (first + count) & !(self.stride - 1));
+        // The first border that chords end at.
+        let mut number = (first + stride) & !(stride - 1);
+        let (mut at, mut last) = (self.point(from), from);
+        if number <= first + count {
             let direction = border(number);
             let next = self.point(direction);
             self.chords(pen, at, next, bulge(from, direction));
             at = next;
             while number < end {
-                // A quarter of a turn, or a quarter of that, is left out as a whole.
-                let step = match number & 15 {
-                    0 if number + 16 <= end => 16,
-                    0 | 4 | 8 | 12 if number + 4 <= end => 4,
-                    _ => 1,
-                };
-                let mut next = self.point(border(number + step));
-                let mut size = step;
-                if step > 1 && !pen.misses(at[1].min(next[1]), at[1].max(next[1])) {
-                    (size, next) = (1, self.point(border(number + 1)));
-                    if step == 16 {
-                        let quarter = self.point(border(number + 4));
-                        if pen.misses(at[1].min(quarter[1]), at[1].max(quarter[1])) {
-                            (size, next) = (4, quarter);
-                        }
-                    }
-                }
+                let size = self.size(pen, at, number, end);
+                let next = self.point(border(number + size));
                 if size == 1 {
                     self.chords(pen, at, next, BULGE);
                 } else {
@@ -200,9 +189,26 @@ impl Curve {
                 number += size;
                 at = next;
             }
+            last = border(end);
         }
-        let last = if count == 0 { from } else { border(end) };
         self.chords(pen, at, self.point(to), bulge(last, to));
+    }
+
+    /// Returns how many sectors the next line takes: a quarter of a turn, or a quarter of that, if it is out of the
+    /// rows that are drawn.
+    #[inline]
+    fn size(&self, pen: &Pen<'_, '_>, at: Place, number: u32, end: u32) -> u32 {
+        let misses = |size: u32| {
+            let next = self.center[1] + times(self.radii[1], border(number + size)[1]);
+            pen.misses(at[1].min(next), at[1].max(next))
+        };
+        if number & 15 == 0 && number + 16 <= end && misses(16) {
+            16
+        } else if number & 3 == 0 && number + 4 <= end && misses(4) {
+            4
+        } else {
+            self.stride
+        }
     }
 
     /// Draws clockwise by an angle of up to a turn, in 65,536ths, from the angle where the pen is.

@@ -139,11 +139,23 @@ impl<P: PixelFormat, const N: usize> Shader<P> for LinearGradient<'_, N> {
 
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        if P::DITHER.is_some() {
+            return draw_fragments(self, span, test);
+        }
         let (x, y) = span.position;
         let first = self.place((x, y));
         let last = self.place((x.wrapping_add(span.color.len() as i32).wrapping_sub(1), y));
-        if P::DITHER.is_some() || u32::try_from(first).is_err() || u32::try_from(last).is_err() {
-            return draw_fragments(self, span, test);
+        if u32::try_from(first).is_err() || u32::try_from(last).is_err() {
+            let (mut place, Span { color, depth, z, .. }) = (first, span);
+            let near = (z >> 16) as u16;
+            for (color, stored) in color.iter_mut().zip(depth) {
+                if !D::ENABLED || test.passes(near, *stored) {
+                    test.write(near, stored);
+                    *color = P::pack(self.color(clamped(place)));
+                }
+                place = place.wrapping_add(self.steps[0]);
+            }
+            return;
         }
         let (mut place, step) = (first as u32, self.steps[0] as u32);
         let Span { color, depth, z, .. } = span;

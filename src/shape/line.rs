@@ -1,8 +1,8 @@
 //! Thick lines through given points, with joins, caps and dashes.
 //!
-//! Both sides of a segment, its caps, and the joins between segments are edges that make one contour, though they come in
-//! another order. On the inner side of a join, sides end where they meet, so that the line covers nothing twice there. If
-//! segments are too short for that, sides overlap, and go through the point; the fill rule unites them.
+//! Both sides of a segment, its caps, and the joins between segments are edges that make one contour, though they come
+//! in another order. On the inner side of a join, sides end where they meet, so that the line covers nothing twice
+//! there. If segments are too short for that, sides overlap, and go through the point; the fill rule unites them.
 //!
 //! ```text
 //!       L ──────────────► L       the left side goes on, and the right side back: clockwise
@@ -14,10 +14,9 @@
 
 use super::arc::{Curve, Direction, times};
 use super::round::{length, place};
-use crate::math::{Pixels, divide, mul_wide};
+use crate::math::{Pixels, leading_zeros, mul_high, mul_wide, reciprocal};
 use crate::raster::unit;
 use crate::scene::{Outline, Pen, Place, ScreenPoint};
-use core::num::NonZeroU32;
 use core::ops::Range;
 
 /// Form of the corners of a thick line.
@@ -236,14 +235,11 @@ impl Stroker<'_, '_, '_> {
             minus(plus(ends[1], starts[1]), plus(at, at))
         };
         let sine = (turn >> 30).unsigned_abs().min(1 << 30) as i32;
-        let divisor = NonZeroU32::new(sum >> 1);
-        let meets = divisor.filter(|divisor| {
-            // Along the segments, they meet at half the width times sine / (1 + cosine), below 2³⁰.
-            let along = (times(self.half, sine) as u64) << 29;
-            along >> 30 < u64::from(divisor.get()) && i64::from(divide(along, *divisor).0) <= room
-        });
-        if let Some(divisor) = meets {
-            let meeting = minus(at, over(both, divisor));
+        // Along the segments, they meet at half the width times sine / (1 + cosine), 0 or more.
+        let [along, _] = over([times(self.half, sine), 0], sum);
+        let meets = sum > 0 && along <= room;
+        if meets {
+            let meeting = minus(at, over(both, sum));
             if turns_right {
                 (ends[1], starts[1]) = (meeting, meeting);
             } else {
@@ -251,10 +247,10 @@ impl Stroker<'_, '_, '_> {
             }
         }
         // (Miter length / width)² = 2 / (1 + cosine).
-        let is_short = u64::from(sum) * u64::from(self.limit) >= 2 << 38;
-        let miter = divisor.filter(|_| is_short).map(|divisor| plus(at, over(both, divisor)));
+        let has_miter = self.join == Join::Miter && u64::from(sum) * u64::from(self.limit) >= 2 << 38;
+        let miter = has_miter.then(|| plus(at, over(both, sum)));
         let is_straight = turn == 0 && ahead >= 0;
-        Corner { ends, starts, turns_right, meets: meets.is_some(), is_straight, miter }
+        Corner { ends, starts, turns_right, meets, is_straight, miter }
     }
 
     /// Draws a join between two segments, and the sides of the first one.
@@ -300,11 +296,14 @@ struct Corner {
     miter: Option<Place>,
 }
 
-/// Divides a change of place by twice a divisor, 2.30: by 1 + cosine. The quotient is below 2³².
-fn over(change: Place, divisor: NonZeroU32) -> Place {
+/// Divides a change of place, below 2²⁷, by 1 + cosine, 2.30; at most 2³² for quotients that are larger.
+fn over(change: Place, sum: u32) -> Place {
+    let shift = leading_zeros(sum | 1) & 31;
+    let inverse = reciprocal((sum | 1) << shift);
     change.map(|c| {
-        let (quotient, _) = divide(c.unsigned_abs() << 29, divisor);
-        if c < 0 { -i64::from(quotient) } else { i64::from(quotient) }
+        let quotient = u64::from(mul_high((c.unsigned_abs() as u32) << 5, inverse)) << shift >> 6;
+        let quotient = quotient.min(1 << 32) as i64;
+        if c < 0 { -quotient } else { quotient }
     })
 }
 
@@ -405,8 +404,8 @@ impl Segment {
 }
 
 impl Stroker<'_, '_, '_> {
-    /// Draws a segment dash by dash. The first dash goes on from the segment before, if `goes_on` says so; and the last one
-    /// goes on, unless the line `ends`.
+    /// Draws a segment dash by dash. The first dash goes on from the segment before, if `goes_on` says so; and the last
+    /// one goes on, unless the line `ends`.
     fn dash(&mut self, dashes: &mut Dashes<'_>, segment: &Segment, mut goes_on: bool, ends: bool) {
         let all = segment.length;
         let near = segment.near(self.pen.area(), self.reach());
