@@ -52,7 +52,7 @@ impl<'m> AreaMemory<'m> {
     }
 
     /// Begins an area that is drawn in a rectangle.
-    pub(crate) fn area(&mut self, rect: &PixelRect, rule: FillRule) -> Area<'_> {
+    pub(crate) fn area(&mut self, rect: &PixelRect, rule: FillRule, convex: bool) -> Area<'_> {
         let Self { edges, order, cover, ranges } = self;
         let order_len = order.len().min(1 << 14) as i32;
         let width = (cover.len() as i32 - 1).min(rect.x.end.wrapping_sub(rect.x.start)).max(0);
@@ -70,6 +70,7 @@ impl<'m> AreaMemory<'m> {
             order,
             cells: Cells { cover, ranges, count: 0, left: rect.x.start, width },
             rule,
+            convex,
             row: rect.y.start,
             end: rect.y.end,
             // Most outlines have fewer than 4 edges per row.
@@ -96,6 +97,8 @@ pub(crate) struct Area<'a> {
     order: &'a mut [u32],
     cells: Cells<'a>,
     rule: FillRule,
+    /// Set if the outline is one convex contour.
+    convex: bool,
     /// The current row, the end of all rows, and the number of rows of a band.
     row: i32,
     end: i32,
@@ -315,7 +318,11 @@ impl<'a> Area<'a> {
         if self.active == 0 {
             return false;
         }
-        self.in_row().fill(0, 1 << 16);
+        if self.convex {
+            self.in_row().fill_convex();
+        } else {
+            self.in_row().fill(0, 1 << 16);
+        }
         let mut kept = 0;
         for k in 0..self.active {
             let Some(number) = self.order.get(k).copied() else { break };

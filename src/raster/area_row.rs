@@ -295,6 +295,33 @@ impl Row<'_, '_> {
         }
     }
 
+    /// Fills the cells of a row of one convex contour: edges of one direction are on the left, and those of the other one
+    /// on the right. No two of them cross.
+    #[inline(never)]
+    pub(super) fn fill_convex(&mut self) {
+        let Self { edges, order, cells, top, .. } = self;
+        let (mut down, mut up) = ((i32::MAX, i32::MIN), (i32::MAX, i32::MIN));
+        for k in 0..order.len() {
+            let edge = edge_of(edges, order, k);
+            let piece = edge.piece(*top);
+            let (left, right) = if piece.from < piece.to { (piece.from, piece.to) } else { (piece.to, piece.from) };
+            if edge.winding() > 0 {
+                down = (down.0.min(left), down.1.max(right));
+                cells.add(&piece, edge, true);
+            } else if piece.start < piece.end {
+                up = (up.0.min(left), up.1.max(right));
+                cells.add(&piece, edge, false);
+            }
+        }
+        let (left, right) = if down.0 < up.0 { (down, up) } else { (up, down) };
+        if left.1 < right.0 {
+            cells.add_range(left.0, left.1);
+            cells.add_range(right.0, right.1);
+        } else {
+            cells.add_range(left.0, left.1.max(right.1));
+        }
+    }
+
     /// Fills the cells between two edges, if that is all there is: both are as high as the row, and do not cross.
     #[inline(always)]
     fn fill_between(&mut self, from: i32, to: i32) -> bool {

@@ -57,6 +57,10 @@ impl Outline for Circle {
         Ellipse::new(self.center, self.radius, self.radius).trace(pen);
     }
 
+    fn is_convex(&self) -> bool {
+        true
+    }
+
     fn bounds(&self) -> Option<Rectangle> {
         Ellipse::new(self.center, self.radius, self.radius).bounds()
     }
@@ -80,6 +84,10 @@ impl Ellipse {
 impl Outline for Ellipse {
     fn trace(&self, pen: &mut Pen<'_, '_>) {
         Curve::new(place(self.center), self.radii.map(length)).whole(pen, true);
+    }
+
+    fn is_convex(&self) -> bool {
+        true
     }
 
     fn bounds(&self) -> Option<Rectangle> {
@@ -200,6 +208,10 @@ impl Outline for Ring {
         }
     }
 
+    fn is_convex(&self) -> bool {
+        self.inner <= Pixels::ZERO && !self.round && (self.sweep <= Self::TURN / 2 || self.sweep >= Self::TURN)
+    }
+
     fn bounds(&self) -> Option<Rectangle> {
         Some(around(place(self.center), [length(self.outer); 2]))
     }
@@ -276,6 +288,10 @@ impl Outline for RoundedRectangle {
             }
             curve.sweep(pen, Angle16(angle), 1 << 14);
         }
+    }
+
+    fn is_convex(&self) -> bool {
+        true
     }
 
     fn bounds(&self) -> Option<Rectangle> {

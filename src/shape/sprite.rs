@@ -198,6 +198,10 @@ impl<'a, T: Texture, F> Sprite<'a, T, F> {
 }
 
 impl<T: Texture, F> Outline for Sprite<'_, T, F> {
+    fn is_convex(&self) -> bool {
+        true
+    }
+
     fn trace(&self, pen: &mut Pen<'_, '_>) {
         if self.is_empty() {
             return;
