@@ -165,13 +165,11 @@ impl AreaEdges<'_> {
     /// Adds a line of an outline, in 16.16 px. Its direction is that of the outline.
     #[inline]
     pub(crate) fn line(&mut self, from: Place, to: Place) {
-        if self.misses(from[1].min(to[1]), from[1].max(to[1])) {
-            return;
-        }
-        let near = |c: i64| c + i64::from(GUARD) >= 0 && c <= i64::from(GUARD);
-        if near(from[0]) & near(from[1]) & near(to[0]) & near(to[1]) {
+        // Nearly all lines are within ±8,192 px: all their coordinates, plus that, are below 2³⁰.
+        let above = |c: i64| c.wrapping_add(1 << 29) as u64;
+        if (above(from[0]) | above(from[1]) | above(to[0]) | above(to[1])) >> 30 == 0 {
             self.near_line(from.map(|c| c as i32), to.map(|c| c as i32));
-        } else {
+        } else if !self.misses(from[1].min(to[1]), from[1].max(to[1])) {
             self.far_line(from, to);
         }
     }
@@ -227,7 +225,8 @@ impl AreaEdges<'_> {
     /// Adds a line that is inside of the guard.
     fn near_line(&mut self, from: [i32; 2], to: [i32; 2]) {
         let (a, b, turn) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
-        if b[1] <= self.top || a[1] >= self.bottom || a[0].min(b[0]) >= self.right {
+        let is_in_vain = self.overflowed && self.wanted == Wanted::Rows;
+        if b[1] <= self.top || a[1] >= self.bottom || a[0].min(b[0]) >= self.right || is_in_vain {
             return;
         }
         if a[1] == b[1] {

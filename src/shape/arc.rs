@@ -70,6 +70,9 @@ pub(super) fn times(length: i64, factor: i32) -> i64 {
 
 /// Returns the direction of an angle, clockwise from the right.
 pub(super) fn direction(angle: Angle16) -> Direction {
+    if angle.0 & 0x3FF == 0 {
+        return border(u32::from(angle.0) >> 10);
+    }
     [angle.cos_q30() as i32, angle.sin_q30() as i32]
 }
 
