@@ -1,5 +1,5 @@
-//! An instrument cluster with smooth edges: dials, rings, ticks and turned numbers, needles that turn by parts of a pixel,
-//! a plot and dashes, strip by strip and without a depth buffer. `scenes/gauges.rs` draws them.
+//! An instrument cluster with smooth edges: dials, rings, ticks and turned numbers, needles that turn by parts of a
+//! pixel, a plot and dashes, strip by strip and without a depth buffer. `scenes/gauges.rs` draws them.
 //!
 //! ```text
 //! cargo run --release --example gauges -- --help

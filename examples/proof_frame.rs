@@ -1,7 +1,7 @@
-//! Firmware whose only user code is frames, for `ci/proofs` to look into. Built five times:
+//! Firmware whose only user code is frames, for `ci/proofs` to look into. Built six times:
 //! `--cfg 'proof="empty"'` draws nothing, the baseline; `proof="w4"` draws the flat torus of the
-//! benchmark without records, `proof="w1-w6"` all six workloads; `proof="all"` draws every scene,
-//! `proof="formats"` those in other pixel formats.
+//! benchmark without records, `proof="w1-w6"` all six workloads; `proof="all"` draws every scene but one,
+//! `proof="shapes"` that one, with smooth edges, and `proof="formats"` those in other pixel formats.
 //!
 //! It prints the peak stack of a frame, the largest of all, as eight hexadecimal digits, one by one: formatting would
 //! link the panics that the image must not contain.
@@ -61,7 +61,7 @@ mod image {
     /// How many frames there are to draw.
     const FRAMES: usize = if cfg!(proof = "w1-w6") {
         6
-    } else if cfg!(proof = "all") {
+    } else if cfg!(any(proof = "all", proof = "shapes")) {
         scenes::SCENES.len()
     } else if cfg!(proof = "formats") {
         scenes::formats::FORMATS.len()
@@ -89,7 +89,7 @@ mod image {
                     black_box(bytes);
                 });
             }
-        } else if cfg!(proof = "all") {
+        } else if cfg!(any(proof = "all", proof = "shapes")) {
             scenes::draw(index, 0, [WIDTH, HEIGHT], color, depth, records, |_, strip| {
                 black_box(strip);
             });

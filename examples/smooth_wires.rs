@@ -1,5 +1,5 @@
-//! A wireframe with smooth edges: a geodesic dome of thick smooth lines in space, which hide each other by their depths,
-//! around a solid cube. Discs at the ends of lines make their joints round.
+//! A wireframe with smooth edges: a geodesic dome of thick smooth lines in space, which hide each other by their
+//! depths, around a solid cube. Discs at the ends of lines make their joints round.
 //!
 //! ```text
 //! cargo run --release --example smooth_wires -- --help

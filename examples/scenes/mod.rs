@@ -19,6 +19,7 @@ pub mod light;
 pub mod overlay;
 pub mod polygons;
 pub mod pot;
+pub mod shapes;
 pub mod soup;
 pub mod textured;
 pub mod tiles;
@@ -110,6 +111,9 @@ const MANY: &[SceneInfo] = &[
         name: "horizon",
         make: |screen, turn| kept_drawing(|| horizon::Horizon::new(screen, turn + turn, turn + Angle16(2000))),
     },
+    // Shapes take more stack than all other scenes, and have an image of their own.
+    #[cfg(not(proof = "all"))]
+    SHAPES[0],
     SceneInfo { name: "overlay", make: |screen, turn| kept_drawing(|| overlay::Markers::new(screen, turn)) },
     // Text and shapes of embedded-graphics can panic: they stay out of the image that proves that nothing else can.
     #[cfg(not(proof = "all"))]
@@ -129,8 +133,12 @@ const MANY: &[SceneInfo] = &[
     SceneInfo { name: "glass", make: |screen, turn| kept_drawing(|| light::Glass::new(screen, turn)) },
 ];
 
+const SHAPES: [SceneInfo; 1] =
+    [SceneInfo { name: "shapes", make: |screen, turn| kept_drawing(|| shapes::Shapes::new(screen, turn)) }];
+
 /// All scenes that there is room for.
-pub const SCENES: &[SceneInfo] = &{
+pub const SCENES: &[SceneInfo] = if cfg!(proof = "shapes") { &SHAPES } else { ALL };
+const ALL: &[SceneInfo] = &{
     let mut all = [PLAIN[0]; PLAIN.len() + OTHERS.len()];
     let mut k = 1;
     while k < all.len() {

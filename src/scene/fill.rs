@@ -335,9 +335,7 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
         while rect.x.start < rect.x.end {
             let mut area = buffer.0.area(&rect, shape.rule(), shape.is_convex());
             while area.begin_band() {
-                let mut pen = Pen { edges: &mut area.edges, start: [0; 2], at: [0; 2] };
-                shape.trace(&mut pen);
-                pen.close();
+                trace(shape, &mut area.edges);
                 area.end_band();
                 while let Some(run) = area.next_run() {
                     spans.draw(&run, if run.part.is_none() { area.parts(&run) } else { &[] });
@@ -346,6 +344,14 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
             rect.x.start = area.right();
         }
     }
+}
+
+/// Traces a shape. Out of line, so that its frame is not on the stack while pixels are drawn.
+#[inline(never)]
+fn trace(shape: &impl Outline, edges: &mut AreaEdges<'_>) {
+    let mut pen = Pen { edges, start: [0; 2], at: [0; 2] };
+    shape.trace(&mut pen);
+    pen.close();
 }
 
 /// Draws the runs of a shape.
