@@ -1,7 +1,8 @@
-//! Firmware whose only user code is frames, for `ci/proofs` to look into. Built six times:
+//! Firmware whose only user code is frames, for `ci/proofs` to look into. Built seven times:
 //! `--cfg 'proof="empty"'` draws nothing, the baseline; `proof="w4"` draws the flat torus of the
 //! benchmark without records, `proof="w1-w6"` all six workloads; `proof="all"` draws every scene but one,
-//! `proof="shapes"` that one, with smooth edges, and `proof="formats"` those in other pixel formats.
+//! `proof="shapes"` that one, with smooth shapes, `proof="formats"` those in other pixel formats, and
+//! `proof="smooth"` those with several samples per pixel.
 //!
 //! It prints the peak stack of a frame, the largest of all, as eight hexadecimal digits, one by one: formatting would
 //! link the panics that the image must not contain.
@@ -65,6 +66,8 @@ mod image {
         scenes::SCENES.len()
     } else if cfg!(proof = "formats") {
         scenes::formats::FORMATS.len()
+    } else if cfg!(proof = "smooth") {
+        scenes::formats::SMOOTH.len()
     } else {
         1
     };
@@ -81,6 +84,13 @@ mod image {
             let all: [Draw; 6] = [quad, gouraud_quad, textured_quad, flat_torus, gouraud_torus, tiny];
             if let Some(draw) = all.get(index) {
                 draw(workloads::Buffers { color, depth, records }, send);
+            }
+        } else if cfg!(proof = "smooth") {
+            let memory = scenes::formats::Memory { color, depth, records };
+            if let Some(scene) = scenes::formats::SMOOTH.get(index) {
+                (scene.draw)(memory, &mut |bytes| {
+                    black_box(bytes);
+                });
             }
         } else if cfg!(proof = "formats") {
             let memory = scenes::formats::Memory { color, depth, records };

@@ -365,8 +365,22 @@ struct Spans<'s, 't, F: Framebuffer, S: Shader<F::Format>> {
 }
 
 impl<F: Framebuffer, S: Shader<F::Format>> Spans<'_, '_, F, S> {
+    /// Draws a run: all samples of a pixel alike.
     #[inline]
     fn draw(&mut self, run: &Run, parts: &[i32]) {
+        if F::SAMPLES == 1 {
+            return self.draw_at_sample(run, parts);
+        }
+        let Self { screen, test, z, shader, primitive, .. } = *self;
+        for sample in 0..F::SAMPLES {
+            let target = &mut self.target.sample(sample, screen.0);
+            Spans { screen, target, test, z, shader, primitive }.draw_at_sample(run, parts);
+        }
+        self.target.framebuffer.select_sample(0);
+    }
+
+    #[inline(always)]
+    fn draw_at_sample(&mut self, run: &Run, parts: &[i32]) {
         let Self { screen, target, test, z, shader, primitive } = self;
         let (column, length) = (run.x.start as usize, (run.x.end - run.x.start) as usize);
         let row = usize::from(screen.0).wrapping_mul((run.y - target.rows.start) as usize);

@@ -12,7 +12,7 @@ use crate::span::{
     interpolate, set_up_shader, subslice,
 };
 use crate::target::{Framebuffer, turns as turns_of};
-use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, ScreenVertex, Varyings, VertexShader, pack, signed_area};
+use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, ScreenVertex, Side, Varyings, VertexShader, pack, signed_area};
 use core::ops::Range;
 
 /// Draws the triangles of a draw call, with its state and its shader.
@@ -75,8 +75,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         if area == 0 {
             return;
         }
-        let primitive = Primitive::constant(S::Varyings::ZERO, flat, self.state.side(area), S::Setup::default());
-        let mut set_up = SetUp { v, area, depth: PlaneEquation::default(), primitive };
+        let side = self.state.side(area);
+        let mut set_up = SetUp::new(v, area, flat, side);
         self.set_up(&mut set_up, varyings);
         // Stage 9, in a loop for each kind of depth test.
         if F::SAMPLES == 1 {
@@ -85,7 +85,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         // Each sample is a picture of its own, in which the triangle is moved.
         self.each_sample(|painter, (x, y)| {
             let moved = &v.each_ref().map(|v| ScreenVertex { x: v.x + x, y: v.y + y, z: v.z });
-            let mut at_sample = SetUp { v: moved, area, depth: PlaneEquation::default(), primitive };
+            let mut at_sample = SetUp::new(moved, area, flat, side);
             painter.set_up(&mut at_sample, varyings);
             (painter.hooks.spans)(painter, &at_sample, Some(&set_up));
         });
@@ -383,6 +383,15 @@ pub(super) struct SetUp<'a, V: Varyings, T> {
     area: i64,
     depth: PlaneEquation,
     primitive: Primitive<V, T>,
+}
+
+impl<'a, V: Varyings, T: Default> SetUp<'a, V, T> {
+    /// Makes the set-up of a triangle whose planes are not computed yet.
+    #[inline(always)]
+    fn new(v: &'a [ScreenVertex; 3], area: i64, flat: u32, side: Side) -> Self {
+        let primitive = Primitive::constant(V::ZERO, flat, side, T::default());
+        Self { v, area, depth: PlaneEquation::default(), primitive }
+    }
 }
 
 impl<'a, F: Framebuffer> Scene<'a, F> {

@@ -111,7 +111,7 @@ pub(super) fn draw_sampled_rows<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>
     if !R::IS_FLAT {
         triangle.each_row((0, 0), |number, columns| {
             if let Some(centres) = centres.get_mut(number) {
-                *centres = [columns.start, columns.end];
+                *centres = [columns.start as u8, columns.end as u8];
             }
         });
     }
@@ -127,7 +127,7 @@ fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
     target: &mut SmallTarget<'_, P::Raw>,
     triangle: &SampledTriangle,
     rows: &R,
-    centres: &[[u32; 2]; ROWS],
+    centres: &[[u8; 2]; ROWS],
     sample: usize,
     test: D,
 ) {
@@ -160,7 +160,7 @@ fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
                 rows.span(color, depth, z, dz_dx, from as i32, test);
             }
         };
-        let [start, end] = centres.get(number).copied().unwrap_or_default();
+        let [start, end] = centres.get(number).copied().unwrap_or_default().map(u32::from);
         if R::IS_FLAT || columns.start >= start && columns.end <= end {
             return draw(&rows, columns);
         }
