@@ -25,6 +25,7 @@ static TILE: Tile<'static, 4, 4> =
     Tile::new(&[[0xF800, 0x07E0, 0x001F, 0xFFFF], [1, 2, 3, 4], [500, 600, 700, 800], [0x8410, 0, 0x8410, 0]]);
 
 /// A shape of one kind, with all that any kind takes.
+#[derive(Debug)]
 struct Thing {
     kind: u8,
     points: Vec<ScreenPoint>,
@@ -62,7 +63,7 @@ impl Thing {
             angle: Angle16(source.u16()),
             sweep: source.u32() as i32 >> source.below(16),
             // Dashes take their time where they are very short.
-            pattern: (0..pattern).map(|_| Pixels::from_bits(i32::from(source.u16()) + 64)).collect(),
+            pattern: (0..pattern).map(|_| Pixels::from_bits(i32::from(source.u16()) + 512)).collect(),
             flags: source.u8(),
             color: Rgb888::new(source.u8(), source.u8(), source.u8()),
             z: source.u16(),
@@ -95,7 +96,11 @@ impl Thing {
             11..=13 => {
                 let join = [Join::Miter, Join::Round, Join::Bevel][usize::from(flags >> 1 & 3) % 3];
                 let cap = [Cap::Butt, Cap::Round, Cap::Square][usize::from(flags >> 3 & 3) % 3];
-                let line = Polyline::new(&self.points, *a).with_join(join).with_cap(cap).with_miter_limit(*flags);
+                // Up to 24 px wide: each dash of a wider line may reach the screen.
+                let line = Polyline::new(&self.points, Pixels::from_bits(a.to_bits() % 6000))
+                    .with_join(join)
+                    .with_cap(cap)
+                    .with_miter_limit(*flags);
                 let line = line.with_dashes(&self.pattern, *b);
                 canvas.fill(&if flags & 0x80 == 0 { line } else { line.closed() }, *color, buffer);
             }
@@ -146,7 +151,7 @@ pub fn run(input: &[u8]) -> u64 {
         found
     };
     let (expected, found) = (picture(usize::from(screen.1)), picture(rows));
-    assert_alike(&found, &expected, screen, &rows);
+    assert_alike(&found, &expected, screen, &(rows, edges, width, &things));
     let mut hash = Hash::default();
     found.iter().for_each(|pixel| hash.bytes(&pixel.to_le_bytes()));
     hash.0

@@ -408,26 +408,30 @@ impl Stroker<'_, '_, '_> {
     /// one goes on, unless the line `ends`.
     fn dash(&mut self, dashes: &mut Dashes<'_>, segment: &Segment, mut goes_on: bool, ends: bool) {
         let all = segment.length;
-        let near = segment.near(self.pen.area(), self.reach());
+        let mut near = segment.near(self.pen.area(), self.reach());
         let mut done = 0;
-        if near.start > 0 && near.start < all {
-            let begun = dashes.length() - dashes.left;
-            dashes.skip(near.start);
-            // Back to the beginning of the dash or gap, so that a dash is the same in every strip.
-            let back = dashes.length() - dashes.left;
-            if back <= near.start {
-                (done, goes_on) = (near.start - back, false);
-                dashes.left += back;
-            } else {
-                dashes.left = dashes.length() - begun;
-            }
-        }
         while done < all {
-            if done > near.end {
+            // A dash that has begun is drawn to its end, wherever that is.
+            if !goes_on && done > near.end {
                 dashes.skip(all - done);
-                // A dash that goes on behind the corner begins out of sight.
-                self.begin(segment.at(all), segment.way);
+                if dashes.goes_on() {
+                    // It begins out of sight.
+                    self.begin(segment.at(all), segment.way);
+                }
                 return;
+            }
+            if !goes_on && done < near.start && near.start < all {
+                let begun = dashes.length() - dashes.left;
+                dashes.skip(near.start - done);
+                // Back to the beginning of the dash or gap, so that a dash is the same in every strip.
+                let back = dashes.length() - dashes.left;
+                if back <= near.start - done {
+                    done = near.start - back;
+                    dashes.left += back;
+                } else {
+                    dashes.left = dashes.length() - begun;
+                }
+                near.start = 0;
             }
             let ended = dashes.left <= all - done;
             let end = if ended { done + dashes.left } else { all };
