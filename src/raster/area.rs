@@ -112,7 +112,8 @@ pub(crate) struct Area<'a> {
     band_end: i32,
     /// Set while the current row has runs left.
     scanning: bool,
-    /// Column up to which the row is scanned, from the first one on, the next range of cells, and the covered part there.
+    /// Column up to which the row is scanned, from the first one on, the next range of cells, and the covered part
+    /// there.
     scanned: i32,
     range: usize,
     sum: i32,

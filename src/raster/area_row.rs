@@ -46,8 +46,8 @@ const EXACT_SLABS: u32 = 256;
 /// Height of those slabs: 1/128 px.
 const ROUGH: i32 = 512;
 
-/// Cells of a row: the covered part of each pixel, in 2⁻¹⁶, less that of its left neighbour; and ranges of cells that may
-/// not be 0.
+/// Cells of a row: the covered part of each pixel, in 2⁻¹⁶, less that of its left neighbour; and ranges of cells that
+/// may not be 0.
 #[derive(Debug)]
 pub(super) struct Cells<'c> {
     /// One per pixel, and one more.
@@ -295,8 +295,8 @@ impl Row<'_, '_> {
         }
     }
 
-    /// Fills the cells of a row of one convex contour: edges of one direction are on the left, and those of the other one
-    /// on the right. No two of them cross.
+    /// Fills the cells of a row of one convex contour: edges of one direction are on the left, and those of the other
+    /// one on the right. No two of them cross.
     #[inline(never)]
     pub(super) fn fill_convex(&mut self) {
         let Self { edges, order, cells, top, .. } = self;

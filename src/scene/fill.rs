@@ -47,8 +47,8 @@ pub trait Outline {
         FillRule::NonZero
     }
 
-    /// Returns whether the outline is one convex contour. Then rows are filled faster, because its edges are not looked at
-    /// for crossings. An outline that says so and is not convex is covered wrongly where it goes to and fro.
+    /// Returns whether the outline is one convex contour. Then rows are filled faster, because its edges are not looked
+    /// at for crossings. An outline that says so and is not convex is covered wrongly where it goes to and fro.
     fn is_convex(&self) -> bool {
         false
     }

@@ -147,7 +147,7 @@ struct Stroker<'s, 'p, 'm> {
     join: Join,
     cap: Cap,
     limit: u32,
-    /// Where the left and the right side of the current segment begin.
+    /// Places where the left and the right side of the current segment begin.
     sides: [Place; 2],
 }
 
@@ -292,7 +292,7 @@ struct Corner {
     /// Set if the inner sides end where they meet.
     meets: bool,
     is_straight: bool,
-    /// Where the outer sides meet, if that is within the miter limit.
+    /// Place where the outer sides meet, if that is within the miter limit.
     miter: Option<Place>,
 }
 
@@ -480,7 +480,7 @@ impl Polyline<'_> {
     /// their neighbours.
     fn trace_sides(&self, stroker: &mut Stroker<'_, '_, '_>) {
         // The previous segment, its direction and length if they are known, and whether it is out of the rows.
-        let mut previous: Option<(Place, Place, Option<(Direction, i64)>, bool)> = None;
+        let mut previous = None::<(Place, Place, Option<(Direction, i64)>, bool)>;
         let mut first = None;
         if self.closed {
             // The last segment comes before the first one.
