@@ -472,3 +472,20 @@ fn thick_lines_are_their_segments_joins_and_caps() {
     }
     errors.print();
 }
+
+/// A line to a point and back is the line.
+#[test]
+fn lines_that_turn_back_cover_nothing_else() {
+    let mut rng = Rng::new(11);
+    for case in 0..300 {
+        let [(a, _), (b, _)] = [center(&mut rng), center(&mut rng)];
+        let width = px(rng.between(20, 1000));
+        let (there, back) = ([a, b], [a, b, a]);
+        let line = Polyline::new(&there, width);
+        let found = [drawn(&line, 64, 64), drawn(&line.closed(), 64, 64), drawn(&Polyline::new(&back, width), 64, 64)];
+        for other in &found[1..] {
+            let most = found[0].iter().zip(other).map(|(a, b)| a.abs_diff(*b)).max();
+            assert!(most <= Some(2), "case {case}: {a:?}, {b:?}, {width}: {most:?}");
+        }
+    }
+}
