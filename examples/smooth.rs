@@ -58,7 +58,10 @@ where
     let renderer = Renderer::<Rgb565>::new(size)?.with_samples::<N>(&mut depth, &mut samples)?;
     let mut picture = vec![];
     let Ok(_) = renderer.with_records(&mut records).frame_to(
-        |strip: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(picture.extend_from_slice(strip.pixels())),
+        |strip: &StripPixels<'_, Rgb565>| {
+            picture.extend_from_slice(strip.pixels());
+            Ok::<(), Infallible>(())
+        },
         &mut color,
         scenes::BACKGROUND,
         |scene| subject.draw(scene),
@@ -75,7 +78,10 @@ fn supersampled(subject: &Subject, size: Size) -> Result<Vec<u16>, RendererError
     let fine = Renderer::<Rgb565>::new(size * 2)?.with_depth(&mut depth)?.with_records(&mut records);
     let mut picture = vec![];
     let Ok(_) = Supersampled::<_, _, _, 2>::new(fine)?.frame_to(
-        |strip: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(picture.extend_from_slice(strip.pixels())),
+        |strip: &StripPixels<'_, Rgb565>| {
+            picture.extend_from_slice(strip.pixels());
+            Ok::<(), Infallible>(())
+        },
         &mut color,
         scenes::BACKGROUND,
         |scene| subject.draw(scene),

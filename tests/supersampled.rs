@@ -1,6 +1,5 @@
 //! Supersampling: a pixel is the mean of N × N pixels of a finer screen, in any strips.
 
-#[allow(dead_code)]
 mod reference;
 #[path = "../examples/scenes/mod.rs"]
 mod scenes;

@@ -265,7 +265,10 @@ pub fn supersampled(
     let renderer = Renderer::<Rgb565>::new(screen).and_then(|renderer| renderer.with_depth(depth));
     let renderer = renderer.map(|renderer| renderer.with_records(records));
     let Ok(mut renderer) = renderer.and_then(Supersampled::<_, _, _, 2>::new) else { return Stats::default() };
-    let sink = |strip: &StripPixels<'_, Rgb565>| Ok::<(), Infallible>(sink(strip.pixels()));
+    let sink = |strip: &StripPixels<'_, Rgb565>| {
+        sink(strip.pixels());
+        Ok::<(), Infallible>(())
+    };
     let stats = match workload {
         Priced::W4 => {
             renderer.frame_to(sink, color, BACKGROUND, |s| s.draw(&TORUS, &OF_TORUS, &Flat::new(TORUS_SURFACE)))

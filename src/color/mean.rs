@@ -105,7 +105,7 @@ impl<P: PixelFormat, M: Mean> PixelSum<P, M> {
         }
         // Sums are below 2²⁰: for them, ⌈2³² / 9⌉ / 2³² is as good as a ninth.
         let divided = |sum: u32| match count {
-            9 => (u64::from(sum) * 0x1C71_C71D >> 32) as u32,
+            9 => ((u64::from(sum) * 0x1C71_C71D) >> 32) as u32,
             _ => sum >> (count.trailing_zeros() & 31),
         };
         P::pack(self.channels.map(|sum| M::code(divided(sum + (count >> 1)))))

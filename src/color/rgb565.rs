@@ -42,7 +42,7 @@ pub(super) const fn mean_rgb565(sum: u32, count: u32) -> u16 {
     let sum = sum.wrapping_add(UNITS.wrapping_mul(count >> 1));
     if count == 9 {
         let (g, r, b) = (sum >> 21, sum >> 11 & 0x3FF, sum & 0x7FF);
-        return (((r * 7282 >> 16) << 11) | ((g * 7282 >> 16) << 5) | (b * 7282 >> 16)) as u16;
+        return ((((r * 7282) >> 16) << 11) | (((g * 7282) >> 16) << 5) | ((b * 7282) >> 16)) as u16;
     }
     fold_rgb565(sum >> (count.trailing_zeros() & 31) & SPREAD)
 }

@@ -235,8 +235,8 @@ impl Stroker<'_, '_, '_> {
             minus(plus(ends[1], starts[1]), plus(at, at))
         };
         let sine = (turn >> 30).unsigned_abs().min(1 << 30) as i32;
-        // Along the segments, they meet at half the width times sine / (1 + cosine), 0 or more. Where a line nearly turns
-        // back, at 1 + cosine below 1/64, directions of 2.30 are not exact enough for that.
+        // Along the segments, they meet at half the width times sine / (1 + cosine), 0 or more. Where a line nearly
+        // turns back, at 1 + cosine below 1/64, directions of 2.30 are not exact enough for that.
         let [along, _] = over([times(self.half, sine), 0], sum);
         let meets = sum >= 1 << 24 && along <= room;
         if meets {

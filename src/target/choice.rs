@@ -103,7 +103,7 @@ impl DepthChoice for WithDepth {
         NoSamples
     }
 
-    fn first<'r, R>(_: &'r mut NoSamples, _: usize) -> NoSamples {
+    fn first<R>(_: &mut NoSamples, _: usize) -> NoSamples {
         NoSamples
     }
 }
@@ -137,7 +137,7 @@ impl DepthChoice for WithoutDepth {
         NoSamples
     }
 
-    fn first<'r, R>(_: &'r mut NoSamples, _: usize) -> NoSamples {
+    fn first<R>(_: &mut NoSamples, _: usize) -> NoSamples {
         NoSamples
     }
 }
