@@ -9,7 +9,6 @@ mod support;
 use reference::rng::Rng;
 use scenes::{Draw, dashboard, labels, light, textured, water, wires};
 use support::{difference, sampled_strips, whole};
-use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
