@@ -74,11 +74,16 @@ fn contours(rng: &mut Rng) -> Vec<Vec<Bits>> {
         .collect()
 }
 
+/// Returns the number of cases of a test: a quarter of them without optimization, where they take minutes.
+const fn cases(all: usize) -> usize {
+    if cfg!(debug_assertions) { all / 4 } else { all }
+}
+
 #[test]
 fn covered_parts_are_exact_areas() {
     let mut rng = Rng::new(1);
     let (mut worst, mut sum, mut count) = ([0_f64; 2], 0.0, 0);
-    for case in 0..200 {
+    for case in 0..cases(200) {
         let bits = contours(&mut rng);
         let points = points(&bits);
         let slices: Vec<_> = points.iter().map(Vec::as_slice).collect();
@@ -162,7 +167,7 @@ fn draw_any<F: Framebuffer>(scene: &mut Scene<'_, F>, seed: u64, words: &mut [u3
     let rng = &mut Rng::new(seed);
     let mut buffer = ShapeBuffer::new(words, 64).expect("enough words");
     let mut canvas = scene.canvas();
-    for _ in 0..30 {
+    for _ in 0..cases(30) {
         fill_any(&mut canvas, rng, &mut buffer);
         if rng.one_in(4) {
             let corner = Point::new(rng.between(-20, 60), rng.between(-20, 60));
@@ -175,7 +180,7 @@ fn draw_any<F: Framebuffer>(scene: &mut Scene<'_, F>, seed: u64, words: &mut [u3
 
 #[test]
 fn strips_do_not_matter() {
-    for seed in 0..10 {
+    for seed in 0..cases(10) as u64 {
         for edges in [5, 100] {
             let mut words = vec![0; ShapeBuffer::words(64, edges)];
             let (expected, ..) = whole::<Rgb565>(SCREEN, Rgb565::BLACK, |scene| draw_any(scene, seed, &mut words));
@@ -243,7 +248,7 @@ fn center(rng: &mut Rng) -> (ScreenPoint, [f64; 2]) {
 fn round_shapes_are_round() {
     let mut rng = Rng::new(5);
     let mut errors = Errors::new("circles and ellipses");
-    for case in 0..60 {
+    for case in 0..cases(60) {
         let (at, place) = center(&mut rng);
         let radius = rng.between(0, [300, 2000, 8000][case % 3]);
         let r = f64::from(radius) / 256.0;
@@ -252,7 +257,7 @@ fn round_shapes_are_round() {
         errors.add(&Ellipse::new(at, px(radius), px(other)), &[arc(place, [r, f64::from(other) / 256.0], 0.0, 1.0)]);
     }
     // So large that only a part is on the screen.
-    for _ in 0..20 {
+    for _ in 0..cases(20) {
         let radius = rng.between(10_000, 4096 * 256);
         let r = f64::from(radius) / 256.0;
         let turn = rng.unit();
@@ -269,7 +274,7 @@ fn round_shapes_are_round() {
     }
     errors.print();
     let mut errors = Errors::new("rings and pies");
-    for case in 0..80 {
+    for case in 0..cases(80) {
         let (at, place) = center(&mut rng);
         let [a, b] = [(); 2].map(|()| rng.between(0, 8000));
         let (outer, inner) = (a.max(b), if case % 4 == 0 { 0 } else { a.min(b) });
@@ -306,7 +311,7 @@ fn round_shapes_are_round() {
     }
     errors.print();
     let mut errors = Errors::new("rectangles");
-    for _ in 0..60 {
+    for _ in 0..cases(60) {
         let ((a, p), (b, q)) = (center(&mut rng), center(&mut rng));
         let radius = rng.between(0, 3000);
         let (from, to) = ([p[0].min(q[0]), p[1].min(q[1])], [p[0].max(q[0]), p[1].max(q[1])]);
@@ -450,7 +455,7 @@ fn joined(at: [f64; 2], before: [f64; 2], after: [f64; 2], half: f64, join: Join
 fn thick_lines_are_their_segments_joins_and_caps() {
     let mut rng = Rng::new(8);
     let mut errors = Errors::new("thick lines");
-    for case in 0..150 {
+    for case in 0..cases(150) {
         let count = rng.between(2, 6);
         let points: Vec<_> = (0..count).map(|_| center(&mut rng)).collect();
         let (line, exact): (Vec<_>, Vec<_>) = points.into_iter().unzip();
@@ -477,7 +482,7 @@ fn thick_lines_are_their_segments_joins_and_caps() {
 #[test]
 fn lines_that_turn_back_cover_nothing_else() {
     let mut rng = Rng::new(11);
-    for case in 0..300 {
+    for case in 0..cases(300) {
         let [(a, _), (b, _)] = [center(&mut rng), center(&mut rng)];
         let width = px(rng.between(20, 1000));
         let (there, back) = ([a, b], [a, b, a]);
