@@ -155,7 +155,7 @@ impl Gauges {
         let band = Ring::new(center, px(67 * 256), px(63 * 256));
         canvas.fill(&band.part(START, SWEEP), Rgb888::new(40, 48, 58), buffer);
         canvas.fill(&band.part(START + Angle16((SWEEP * 7 / 8) as u16), SWEEP / 8), RED, buffer);
-        let way = (SWEEP * share) >> 16;
+        let way = ((SWEEP >> 4) * (share >> 4)) >> 8;
         canvas.fill(&band.part(START, way).with_round_ends(), color, buffer);
         self.scale(panel, center, number);
         self.needle(panel, center, START + Angle16(way as u16));
@@ -258,6 +258,6 @@ impl Gauges {
                 .part(START + Angle16((SWEEP * k / 20) as u16), SWEEP / 32);
             canvas.fill(&part, if lit { color } else { Rgb888::new(44, 52, 62) }, buffer);
         }
-        canvas.fill(&Ring::pie(center, px(10 * 256), START, (SWEEP * share) >> 16), color, buffer);
+        canvas.fill(&Ring::pie(center, px(10 * 256), START, ((SWEEP >> 4) * (share >> 4)) >> 8), color, buffer);
     }
 }
