@@ -156,7 +156,7 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice, const N: usize, M: Mean>
         draw: impl FnMut(&mut Scene<'_, Strip<'_, P, D, R>>),
     ) -> Result<Option<StripPixels<'c, P>>, FrameError> {
         let unit = N * self.width;
-        let whole = buffer.len() - buffer.len() % unit;
+        let whole = buffer.len() - buffer.len().checked_rem(unit).unwrap_or_default();
         if whole == 0 {
             return Err(FrameError::BufferTooShort { pixels: buffer.len(), needed: unit });
         }
