@@ -360,7 +360,7 @@ fn check_all<P: Kind<Raw: PartialEq + Debug>>(plan: &Plan, way: Way) -> u64 {
     let mut few = vec![0xDEAD_BEEF; way.words];
     let renderer = Renderer::<P>::new(plan.size()).expect("a renderer");
     let rows = width * way.rows;
-    match way.renderer >> 1 & 3 {
+    match way.renderer >> 1 & 1 {
         0 => {
             let mut with = renderer.with_depth(&mut depth).expect("depths").with_records(&mut few);
             let expected = strips(&mut with, &mut color[..rows], plan);
@@ -376,18 +376,6 @@ fn check_all<P: Kind<Raw: PartialEq + Debug>>(plan: &Plan, way: Way) -> u64 {
                 .expect("the same scene");
             let found: Vec<_> = pixels.chunks(stride).flat_map(|row| &row[..width]).copied().collect();
             assert_alike(&found, &expected, plan.screen, &("framebuffer", way));
-        }
-        1 => {
-            // Several samples per pixel: in strips, and in one.
-            let (mut samples, mut depths) = (vec![P::pack([1; 3]); 3 * pixels], vec![0x4321; 4 * pixels]);
-            let mut all = vec![0xDEAD_BEEF; 3000];
-            let sampled = renderer.with_samples::<4>(&mut depths, &mut samples).expect("samples");
-            let expected = strips(&mut sampled.with_records(&mut all), &mut color, plan);
-            let renderer = Renderer::<P>::new(plan.size()).expect("a renderer");
-            let (samples, depths) = (&mut samples[..3 * rows], &mut depths[..4 * rows]);
-            let sampled = renderer.with_samples::<4>(depths, samples).expect("samples");
-            let found = strips(&mut sampled.with_records(&mut few), &mut color[..rows], plan);
-            assert_alike(&found, &expected, plan.screen, &("samples", way));
         }
         _ => {
             // Without depths the picture is another one.
