@@ -69,7 +69,10 @@ fn the_estimate_counts_what_the_library_counts() {
         assert_eq!(estimate.cores.len(), CORES.len(), "{name}");
         for of in &estimate.cores {
             let fps = of.frames_per_second();
-            assert!(of.frame.mean <= of.frame.worst && fps.worst <= fps.mean && fps.worst > 0.0, "{name}: {of:?}");
+            // The mean of equal frames is rounded.
+            let exceeds = |less: f64, more: f64| less > more * (1.0 + 1e-12);
+            assert!(!exceeds(of.frame.mean, of.frame.worst) && !exceeds(fps.worst, fps.mean), "{name}: {of:?}");
+            assert!(fps.worst > 0.0, "{name}: {of:?}");
         }
         assert!(estimate.to_string().contains("RP2040"));
     }

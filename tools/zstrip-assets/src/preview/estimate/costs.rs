@@ -135,7 +135,7 @@ mod tests {
                         let key = [core, unit, format];
                         let costs = |strips| table.material(key, material.name(), material.in_formats(), strips);
                         let (one, many) = (costs(1).expect("one strip"), costs(15).expect("15 strips"));
-                        assert!(one.terms[DRAW] < many.terms[DRAW], "{core} {unit} {format} {material:?}");
+                        assert!(one.terms[DRAW] <= many.terms[DRAW], "{core} {unit} {format} {material:?}");
                         assert!(one.worst_percent > 0.0, "{core} {unit} {format} {material:?}");
                     }
                 }
