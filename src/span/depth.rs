@@ -146,70 +146,48 @@ storing_test!(DepthLessEqual, <=, LESS_EQUAL);
 #[derive(Clone, Copy, Debug)]
 pub struct Carrying<D>(pub D);
 
-impl<D: DepthTest> DepthTest for Carrying<D> {
-    const ENABLED: bool = D::ENABLED;
-
-    const CARRIES: bool = true;
-
-    type Depth = D::Depth;
-
-    #[inline(always)]
-    fn passes(self, z: u16, stored: D::Depth) -> bool {
-        self.0.passes(z, stored)
-    }
-
-    #[inline(always)]
-    fn write(self, z: u16, stored: &mut D::Depth) {
-        self.0.write(z, stored);
-    }
-}
-
-impl<D: DepthTest> DepthStorage<D::Depth> for Carrying<D> {
-    #[inline(always)]
-    fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [D::Depth] {
-        D::slots(depths, nothing)
-    }
-
-    #[inline(always)]
-    fn as_dyn(self, stored: &mut [D::Depth]) -> Option<(DepthDyn, &mut [u16])> {
-        self.0.as_dyn(stored)
-    }
-}
-
 /// A depth test of small triangles in pixels of several samples. As this is said by a type, programs without such
 /// pixels link nothing of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Sampled<D>(pub D);
 
-impl<D: DepthTest> DepthTest for Sampled<D> {
-    const ENABLED: bool = D::ENABLED;
+/// Implements a test that is another one, with a constant set that says what is done beside it.
+macro_rules! marked_test {
+    ($name:ident, $mark:ident) => {
+        impl<D: DepthTest> DepthTest for $name<D> {
+            const ENABLED: bool = D::ENABLED;
 
-    const SAMPLED: bool = true;
+            const $mark: bool = true;
 
-    type Depth = D::Depth;
+            type Depth = D::Depth;
 
-    #[inline(always)]
-    fn passes(self, z: u16, stored: D::Depth) -> bool {
-        self.0.passes(z, stored)
-    }
+            #[inline(always)]
+            fn passes(self, z: u16, stored: D::Depth) -> bool {
+                self.0.passes(z, stored)
+            }
 
-    #[inline(always)]
-    fn write(self, z: u16, stored: &mut D::Depth) {
-        self.0.write(z, stored);
-    }
+            #[inline(always)]
+            fn write(self, z: u16, stored: &mut D::Depth) {
+                self.0.write(z, stored);
+            }
+        }
+
+        impl<D: DepthTest> DepthStorage<D::Depth> for $name<D> {
+            #[inline(always)]
+            fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [D::Depth] {
+                D::slots(depths, nothing)
+            }
+
+            #[inline(always)]
+            fn as_dyn(self, stored: &mut [D::Depth]) -> Option<(DepthDyn, &mut [u16])> {
+                self.0.as_dyn(stored)
+            }
+        }
+    };
 }
 
-impl<D: DepthTest> DepthStorage<D::Depth> for Sampled<D> {
-    #[inline(always)]
-    fn slots<'d>(depths: &'d mut [u16], nothing: &'d mut [()]) -> &'d mut [D::Depth] {
-        D::slots(depths, nothing)
-    }
-
-    #[inline(always)]
-    fn as_dyn(self, stored: &mut [D::Depth]) -> Option<(DepthDyn, &mut [u16])> {
-        self.0.as_dyn(stored)
-    }
-}
+marked_test!(Carrying, CARRIES);
+marked_test!(Sampled, SAMPLED);
 
 /// The test of [`DepthState::OFF`].
 #[derive(Clone, Copy, Debug)]

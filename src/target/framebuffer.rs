@@ -26,7 +26,8 @@ pub trait Framebuffer {
     /// True if the state of small triangles may be carried on from strip to strip, beside the records.
     const CARRIES: bool = false;
 
-    /// Number of samples per pixel: 1, 2, 4 or 8. The pixels of each sample are rows of their own.
+    /// Number of samples per pixel: 1, 2, 4 or 8. The pixels of each sample are rows of their own. Only a [`Strip`] of
+    /// a renderer [with samples](crate::frame::Renderer::with_samples) has more than one.
     const SAMPLES: usize = 1;
 
     /// Chooses the sample, from 0 to [`SAMPLES`](Self::SAMPLES) - 1, whose rows are asked for from now on. At first,
