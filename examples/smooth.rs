@@ -47,6 +47,14 @@ impl<F: Framebuffer<Format = Rgb565>> Draw<F> for Subject {
     }
 }
 
+/// Returns a sink that adds strips to a picture.
+fn to(picture: &mut Vec<u16>) -> impl FnMut(&StripPixels<'_, Rgb565>) -> Result<(), Infallible> {
+    |strip| {
+        picture.extend_from_slice(strip.pixels());
+        Ok(())
+    }
+}
+
 /// Returns the pixels of a picture with `N` samples per pixel.
 fn sampled<const N: usize>(subject: &Subject, size: Size) -> Result<Vec<u16>, RendererError>
 where
@@ -54,40 +62,26 @@ where
 {
     let pixels = size.width as usize * ROWS;
     let (mut color, mut samples, mut depth) = (vec![0; pixels], vec![0; (N - 1) * pixels], vec![0; N * pixels]);
-    let mut records = vec![0; 16 * 1024];
+    let (mut records, mut picture) = (vec![0; 16 * 1024], vec![]);
     let renderer = Renderer::<Rgb565>::new(size)?.with_samples::<N>(&mut depth, &mut samples)?;
-    let mut picture = vec![];
-    let Ok(_) = renderer.with_records(&mut records).frame_to(
-        |strip: &StripPixels<'_, Rgb565>| {
-            picture.extend_from_slice(strip.pixels());
-            Ok::<(), Infallible>(())
-        },
-        &mut color,
-        scenes::BACKGROUND,
-        |scene| subject.draw(scene),
-    ) else {
-        unreachable!("one scene, and a sink that takes all strips")
-    };
+    let drawn =
+        renderer
+            .with_records(&mut records)
+            .frame_to(to(&mut picture), &mut color, scenes::BACKGROUND, |scene| subject.draw(scene));
+    drawn.expect("one scene, and a sink that takes all strips");
     Ok(picture)
 }
 
 /// Returns the pixels of a picture with 2 × 2 pixels for one.
 fn supersampled(subject: &Subject, size: Size) -> Result<Vec<u16>, RendererError> {
     let pixels = 4 * size.width as usize * ROWS;
-    let (mut color, mut depth, mut records) = (vec![0; pixels], vec![0; pixels], vec![0; 16 * 1024]);
+    let (mut color, mut depth) = (vec![0; pixels], vec![0; pixels]);
+    let (mut records, mut picture) = (vec![0; 16 * 1024], vec![]);
     let fine = Renderer::<Rgb565>::new(size * 2)?.with_depth(&mut depth)?.with_records(&mut records);
-    let mut picture = vec![];
-    let Ok(_) = Supersampled::<_, _, _, 2>::new(fine)?.frame_to(
-        |strip: &StripPixels<'_, Rgb565>| {
-            picture.extend_from_slice(strip.pixels());
-            Ok::<(), Infallible>(())
-        },
-        &mut color,
-        scenes::BACKGROUND,
-        |scene| subject.draw(scene),
-    ) else {
-        unreachable!("one scene, and a sink that takes all strips")
-    };
+    let drawn =
+        Supersampled::<_, _, _, 2>::new(fine)?
+            .frame_to(to(&mut picture), &mut color, scenes::BACKGROUND, |scene| subject.draw(scene));
+    drawn.expect("one scene, and a sink that takes all strips");
     Ok(picture)
 }
 

@@ -79,7 +79,7 @@ impl Cells<'_> {
     /// it. Without room for another range, the last one is made longer.
     #[inline(always)]
     fn add_range(&mut self, left: i32, right: i32) {
-        // What is right of a place in a column is added up in this column and in the next one.
+        // The area to the right of a place in a column is added up in this column and in the next one.
         let start = ((left >> 16) - self.left).max(0);
         let end = ((right >> 16) - self.left + 2).max(1).min(self.width);
         if start >= end {

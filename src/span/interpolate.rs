@@ -52,7 +52,7 @@ struct ShaderRows<'s, P: PixelFormat, S: Shader<P> + ?Sized> {
 
 impl<'s, P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> Brush<P, D> for ShaderBrush<'s, P, S> {
     const PLANES: bool = false;
-    // What a shader has set up is for the centres.
+    // A shader's set-up is for the centres of pixels.
     const SHIFTS: bool = size_of::<S::Setup>() == 0;
 
     type Rows = ShaderRows<'s, P, S>;

@@ -158,7 +158,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
     if row >= end.min(target.rows.end) {
         return SmallResult::Outside;
     }
-    // Where a pixel has samples to the left of its centre, edges there begin further left.
+    // Edges of samples to the left of the centre begin further left, by at most 112 / 256 px.
     let column = (ax + least - if SAMPLED { 112 } else { 0 }) >> 8;
     let (z, mut bz, mut cz) = (a.z(), b.z(), c.z());
     // From here on, b is on the left and c on the right.
