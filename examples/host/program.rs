@@ -14,7 +14,8 @@ use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::frame::{RamBudget, RendererError};
 use zstrip::math::Angle16;
-use zstrip::target::{DepthChoice, Stats, Strip, StripPixels, WithDepth, WithRecords, WithoutDepth};
+use zstrip::target::{DepthChoice, Stats, Strip, StripPixels, WithDepth, WithOcclusion, WithRecords};
+use zstrip::target::{WithoutDepth, occlusion_len};
 
 /// Lends a renderer its depth buffer, if it is to have one.
 pub trait Depth: DepthChoice + Sized {
@@ -30,6 +31,15 @@ impl Depth for WithDepth {
         depth: &'b mut [u16],
     ) -> Result<Renderer<'b, P, Self>, RendererError> {
         renderer.with_depth(depth)
+    }
+}
+
+impl Depth for WithOcclusion {
+    fn lend<'b, P: PixelFormat>(
+        renderer: Renderer<'b, P>,
+        depth: &'b mut [u16],
+    ) -> Result<Renderer<'b, P, Self>, RendererError> {
+        renderer.with_depth(depth)?.with_occlusion()
     }
 }
 
@@ -98,8 +108,10 @@ fn render<D: Demo<Z>, Z: Depth>(
     settings: &Settings,
     picture: &mut Picture,
 ) -> Result<Stats, Box<dyn Error>> {
-    let pixels = usize::from(settings.size.0) * usize::from(settings.strip_rows.min(settings.size.1));
-    let depths = if Z::DEPTH { pixels } else { 0 };
+    let (width, rows) = (usize::from(settings.size.0), usize::from(settings.strip_rows.min(settings.size.1)));
+    let pixels = width * rows;
+    let coarse = if Z::OCCLUDES { occlusion_len(width, rows) } else { 0 };
+    let depths = if Z::DEPTH { pixels + coarse } else { 0 };
     let mut color = vec![bytemuck::Zeroable::zeroed(); pixels];
     let (mut depth, mut records) = (vec![0; depths], vec![0; settings.records]);
     let (width, height) = settings.size;

@@ -1,6 +1,8 @@
-//! Scenes in formats other than RGB565, dithered ones and strips packed for panels; and scenes with smooth edges.
+//! Scenes in formats other than RGB565, dithered ones and strips packed for panels; scenes with smooth edges; and one
+//! with hidden draws.
 
 use super::kept::kept;
+use super::street::Street;
 use super::{Draw, Room, Torus, in_place};
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::geometry::Size;
@@ -8,7 +10,7 @@ use zstrip::embedded_graphics_core::pixelcolor::{Gray2, Gray4, Gray8, Rgb888};
 use zstrip::frame::{Renderer, Supersampled};
 use zstrip::math::Angle16;
 use zstrip::target::{PackedFormat, Packer, Pages, Rows, Strip};
-use zstrip::target::{WithDepth, WithRecords, WithSamples};
+use zstrip::target::{WithDepth, WithOcclusion, WithRecords, WithSamples};
 
 /// The memory of a frame; `color` holds colours and packed strips in any format.
 pub struct Memory<'m> {
@@ -67,10 +69,34 @@ pub const SMOOTH: &[FormatInfo] = &[
         draw: |memory, sink| sampled(memory, sink, &*kept(|| Room::new(Size::new(320, 240), Angle16(0)))),
     },
     FormatInfo {
+        name: "street_occluded",
+        draw: |memory, sink| {
+            occluded(memory, sink, &*kept(|| Street::behind_a_wall(Size::new(320, 240), Angle16(5000))));
+        },
+    },
+    FormatInfo {
         name: "torus_2x2",
         draw: |memory, sink| supersampled(memory, sink, &*kept(|| Torus::flat(Size::new(320, 240), Angle16(0)))),
     },
 ];
+
+/// Draws 320×240 pixels, and leaves out hidden draws.
+fn occluded<S>(Memory { color, depth, records }: Memory<'_>, sink: &mut Sink<'_>, drawing: &S)
+where
+    S: for<'p> Draw<Strip<'p, Rgb565Be, WithOcclusion, WithRecords>>,
+{
+    let mut renderer = in_place(|| {
+        Renderer::<Rgb565Be>::new(Size::new(320, 240))
+            .and_then(|renderer| renderer.with_depth(depth))
+            .and_then(Renderer::with_occlusion)
+            .map(|renderer| renderer.with_records(records))
+    });
+    let Ok(renderer) = &mut renderer else { return };
+    let mut frame = renderer.begin(Rgb888::new(24, 28, 24));
+    while let Ok(Some(strip)) = frame.next_strip(color, |scene| drawing.draw(scene)) {
+        sink(strip.bytes());
+    }
+}
 
 /// Draws 320×240 pixels with four samples each.
 fn sampled<S>(Memory { color, depth, records }: Memory<'_>, sink: &mut Sink<'_>, drawing: &S)

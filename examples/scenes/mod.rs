@@ -21,6 +21,7 @@ pub mod polygons;
 pub mod pot;
 pub mod shapes;
 pub mod soup;
+pub mod street;
 pub mod textured;
 pub mod tiles;
 pub mod torus;

@@ -16,7 +16,7 @@ use zstrip::math::{Pixels, Projective};
 use zstrip::mesh::Positions;
 use zstrip::shader::{Fogged, Gouraud, Phong, Textured};
 use zstrip::span::{DepthState, Shader};
-use zstrip::target::{DepthChoice, FrameSlice, RecordsChoice, Strip, StripPixels};
+use zstrip::target::{DepthChoice, FrameSlice, RecordsChoice, Strip, StripPixels, occlusion_len};
 use zstrip::vertex::Viewport;
 use zstrip::{Dashed, Framebuffer, Scene, ScreenPoint, Smooth, State, Thick, Thin};
 
@@ -360,7 +360,7 @@ fn check_all<P: Kind<Raw: PartialEq + Debug>>(plan: &Plan, way: Way) -> u64 {
     let mut few = vec![0xDEAD_BEEF; way.words];
     let renderer = Renderer::<P>::new(plan.size()).expect("a renderer");
     let rows = width * way.rows;
-    match way.renderer >> 1 & 1 {
+    match way.renderer >> 1 & 3 {
         0 => {
             let mut with = renderer.with_depth(&mut depth).expect("depths").with_records(&mut few);
             let expected = strips(&mut with, &mut color[..rows], plan);
@@ -376,6 +376,28 @@ fn check_all<P: Kind<Raw: PartialEq + Debug>>(plan: &Plan, way: Way) -> u64 {
                 .expect("the same scene");
             let found: Vec<_> = pixels.chunks(stride).flat_map(|row| &row[..width]).copied().collect();
             assert_alike(&found, &expected, plan.screen, &("framebuffer", way));
+        }
+        1 => {
+            // Several samples per pixel: in strips, and in one.
+            let (mut samples, mut depths) = (vec![P::pack([1; 3]); 3 * pixels], vec![0x4321; 4 * pixels]);
+            let mut all = vec![0xDEAD_BEEF; 3000];
+            let sampled = renderer.with_samples::<4>(&mut depths, &mut samples).expect("samples");
+            let expected = strips(&mut sampled.with_records(&mut all), &mut color, plan);
+            let renderer = Renderer::<P>::new(plan.size()).expect("a renderer");
+            let (samples, depths) = (&mut samples[..3 * rows], &mut depths[..4 * rows]);
+            let sampled = renderer.with_samples::<4>(depths, samples).expect("samples");
+            let found = strips(&mut sampled.with_records(&mut few), &mut color[..rows], plan);
+            assert_alike(&found, &expected, plan.screen, &("samples", way));
+        }
+        2 => {
+            // Hidden draws are left out, and it does not show.
+            let plain = renderer.with_depth(&mut depth).expect("depths");
+            let expected = strips(&mut plain.with_records(&mut few), &mut color[..rows], plan);
+            let mut depths = vec![0x4321; rows + occlusion_len(width, way.rows)];
+            let renderer = Renderer::<P>::new(plan.size()).expect("a renderer").with_depth(&mut depths);
+            let occluding = renderer.and_then(Renderer::with_occlusion).expect("depths");
+            let found = strips(&mut occluding.with_records(&mut few), &mut color[..rows], plan);
+            assert_alike(&found, &expected, plan.screen, &("occlusion", way));
         }
         _ => {
             // Without depths the picture is another one.

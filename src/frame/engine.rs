@@ -3,7 +3,7 @@
 use super::error::RendererError;
 use crate::color::clear;
 use crate::scene::{Phase, Scene, Target};
-use crate::target::{Framebuffer, Layout, Records, Stats, StripRows, whole_rows};
+use crate::target::{Framebuffer, Layout, Records, Stats, StripRows, occlusion_len, whole_rows};
 use crate::vertex::Viewport;
 use embedded_graphics_core::geometry::Size;
 
@@ -87,6 +87,22 @@ impl<'b> Engine<'b> {
             return Err(RendererError::SamplesTooShort { pixels, needed: further * self.width() });
         }
         self.grid.most_rows = rows;
+        Ok(self)
+    }
+
+    /// Leaves room for coarse depths after the depths of a strip, which limits the height of strips.
+    #[inline]
+    pub(super) fn with_occlusion(mut self) -> Result<Self, RendererError> {
+        let (width, pixels, mut rows) = (self.width(), self.depth.len(), usize::from(self.grid.most_rows));
+        let needed = |rows: usize| width.saturating_mul(rows).saturating_add(occlusion_len(width, rows));
+        // Coarse depths take less than a row for every 16 rows that are 32 px wide or wider.
+        while needed(rows) > pixels && rows > 0 {
+            rows -= 1;
+        }
+        if rows == 0 {
+            return Err(RendererError::DepthTooShort { pixels, needed: needed(1) });
+        }
+        self.grid.most_rows = rows as u16;
         Ok(self)
     }
 
@@ -207,7 +223,12 @@ impl Engine<'_> {
         draw: &mut dyn FnMut(&mut Scene<'_, F>),
     ) -> Result<(), u32> {
         if F::DEPTH {
-            let pixels = usize::from(self.grid.viewport.width()) * usize::from(rows) * F::SAMPLES;
+            let (width, rows) = (usize::from(self.grid.viewport.width()), usize::from(rows));
+            let mut pixels = width * rows * F::SAMPLES;
+            if F::OCCLUDES {
+                // Coarse depths follow the strip's depths, and begin as far away as these.
+                pixels += occlusion_len(width, rows);
+            }
             clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
         }
         loop {

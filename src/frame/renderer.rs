@@ -6,7 +6,7 @@ use super::frame::Frame;
 use crate::color::PixelFormat;
 use crate::scene::Scene;
 use crate::target::{
-    DepthChoice, NoSamples, OnDisplay, RecordsChoice, Stats, Strip, StripSink, WithCarriedState, WithDepth,
+    DepthChoice, NoSamples, OnDisplay, RecordsChoice, Stats, Strip, StripSink, WithCarriedState, WithDepth, WithOcclusion,
     WithRecords, WithSamples, WithoutDepth, WithoutRecords,
 };
 use core::marker::PhantomData;
@@ -109,6 +109,53 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
     {
         let engine = self.engine.with_depth(depth, N)?.with_samples(samples.len(), N - 1)?;
         Ok(Renderer { engine, further: WithSamples::<N>::lend(samples), choices: PhantomData })
+    }
+}
+
+impl<'b, P: PixelFormat, R> Renderer<'b, P, WithDepth, R> {
+    /// Leaves out draws that are hidden. The renderer keeps coarse depths for each strip: of blocks of 16 × 16 px, the
+    /// farthest depth that is stored. A draw whose nearest depth is behind all blocks that it touches draws nothing
+    /// there, and is skipped. The picture is the same, bit by bit. [`Stats::occluded`] counts.
+    ///
+    /// Coarse depths lie in the depth buffer, after the depths of a strip:
+    /// [`occlusion_len`](crate::target::occlusion_len) numbers. If the buffer has no room for them, strips have fewer
+    /// rows.
+    ///
+    /// **What is left out.** With records, draws of meshes in each strip: their pixels are not computed, but their
+    /// vertices are, because nothing is known of depths while a band is recorded. A draw takes 3 more words of records.
+    /// In strips that are drawn without records: draws of meshes of more than four vertices, by the box around the
+    /// mesh, and nodes of its hierarchy, before any vertex is computed; and objects that a program asks for with
+    /// [`Scene::is_visible_with`](crate::Scene::is_visible_with). In all strips, large triangles.
+    ///
+    /// **When it pays.** Draw near things first: only what is drawn before can hide what is drawn after. Draw by tests
+    /// [`Less`](crate::span::Compare::Less), [`LessEqual`](crate::span::Compare::LessEqual) or
+    /// [`Equal`](crate::span::Compare::Equal). No other test, and no bias that pulls nearer, can be hidden, and a draw
+    /// that may write farther depths lets go of all that is known of the strip. `docs/speed.md` has figures.
+    ///
+    /// A [`Shader::span`](crate::span::Shader::span) of one's own has to write depths by its test alone, as the
+    /// ready-made ones do.
+    ///
+    /// ```
+    /// # use zstrip::embedded_graphics_core::{geometry::Size, pixelcolor::{Rgb565, Rgb888, RgbColor}};
+    /// use zstrip::frame::Renderer;
+    /// use zstrip::target::occlusion_len;
+    ///
+    /// // Strips of 16 rows, with coarse depths: 80 bytes more.
+    /// let (mut color, mut depth) = ([0; 320 * 16], [0; 320 * 16 + occlusion_len(320, 16)]);
+    /// let renderer = Renderer::<Rgb565>::new(Size::new(320, 240))?.with_depth(&mut depth)?;
+    /// let mut renderer = renderer.with_occlusion()?;
+    /// let mut frame = renderer.begin(Rgb888::BLACK);
+    /// while let Some(strip) = frame.next_strip(&mut color, |scene| { /* draw near things, then far ones */ })? {
+    ///     // Send it.
+    /// }
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// When the depth buffer does not hold one row and its coarse depths.
+    pub fn with_occlusion(self) -> Result<Renderer<'b, P, WithOcclusion, R>, RendererError> {
+        let engine = self.engine.with_occlusion()?;
+        Ok(Renderer { engine, further: NoSamples, choices: PhantomData })
     }
 }
 

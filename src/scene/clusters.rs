@@ -10,7 +10,7 @@ use super::state::State;
 use crate::math::Projective;
 use crate::mesh::{BoundsNode, Topology};
 use crate::target::Framebuffer;
-use crate::vertex::{PackedVertex, Planes};
+use crate::vertex::{PackedVertex, Planes, ScreenMatrix};
 use core::ops::Range;
 
 /// The first word of a vertex that is not projected yet.
@@ -28,7 +28,7 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
         // It takes 45 instructions on a Cortex-M0+ to look for the vertices of a triangle, and 240 to project a vertex.
         // So where three quarters of the triangles may be visible, all vertices are projected in one loop.
         let mut looks = keeps_vertices;
-        let culled = self.scene.stats.culled;
+        let (culled, occluded) = (self.scene.stats.culled, self.scene.stats.occluded);
         let (mut leaves, mut seen) = (Leaves::new(nodes), 0);
         while keeps_vertices && leaves.next(self.scene, self.draw.state, mvp) {
             seen += leaves.run.len();
@@ -38,6 +38,9 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
             looks = false;
         }
         self.scene.stats.culled = culled;
+        if F::OCCLUDES {
+            self.scene.stats.occluded = occluded;
+        }
         leaves = Leaves::new(nodes);
         while leaves.next(self.scene, self.draw.state, mvp) {
             if looks {
@@ -117,9 +120,17 @@ fn visible_nodes<F: Framebuffer>(
 ) -> u32 {
     let mut planes = Planes::EMPTY;
     scene.set_planes(&mut planes, mvp, state.range);
+    let mut screen = ScreenMatrix::EMPTY;
+    if F::OCCLUDES {
+        screen.set_from(mvp, &scene.viewport);
+    }
     let (first, mut visible) = (*next, 0);
     while let (Some(node), Some(bit)) = (nodes.get(*next), 1_u32.checked_shl((*next - first) as u32)) {
-        if planes.sees(&node.bounds) {
+        let seen = planes.sees(&node.bounds);
+        if F::OCCLUDES && seen && scene.hides_bounds(state, &screen, &node.bounds) {
+            scene.stats.occluded = scene.stats.occluded.wrapping_add(1);
+            *next = usize::from(node.skip);
+        } else if seen {
             visible |= bit;
             *next += 1;
         } else {

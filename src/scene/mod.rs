@@ -11,6 +11,7 @@ mod draw;
 mod fill;
 mod hooks;
 mod lines;
+mod occlusion;
 mod overlay;
 mod painter;
 mod program;

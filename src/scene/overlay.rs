@@ -35,6 +35,9 @@ impl<F: Framebuffer> Scene<'_, F> {
 
     /// Returns an embedded-graphics target at a depth, with any depth test.
     pub fn at_depth_with(&mut self, z: u16, state: DepthState) -> Overlay<'_, F, DepthDyn> {
+        if F::OCCLUDES {
+            self.note_test(state);
+        }
         self.target_at(z, DepthDyn::new(state))
     }
 

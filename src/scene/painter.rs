@@ -404,6 +404,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         shader: &'p S,
     ) -> Painter<'p, 'a, F, S> {
         check::<S>();
+        if F::OCCLUDES {
+            self.note_test(state.depth);
+        }
         Painter { target: &mut self.target, screen: self.screen, clip, state, hooks, shader }
     }
 }

@@ -1,6 +1,7 @@
 //! Triangles from the records → stages 8 to 11 of [the pipeline](crate#the-pipeline). They come in with the numbers of
 //! their vertices; small ones are drawn from the words that the vertex stage left, large ones by the painter.
 
+use super::occlusion::hides_triangle;
 use super::painter::{Painter, RasterHooks};
 use super::scan::BoxTest;
 use super::scene::{Scene, Target};
@@ -171,6 +172,14 @@ impl<F: Framebuffer> Scene<'_, F> {
         waiting: bool,
         drawer: &mut dyn RecordDrawer<F>,
     ) {
+        if F::OCCLUDES && !waiting && self.records.has_triangles() && self.hides_recorded(state) {
+            let end = Triangles::end_of(self.target.rows.end, F::SAMPLES);
+            return if F::CARRIES {
+                self.records.triangles().skip_each::<true>(end);
+            } else {
+                self.records.triangles().skip_each::<false>(end);
+            };
+        }
         let clip = &self.clip_rect(&self.target.rows);
         let end = Triangles::end_of(self.target.rows.end, F::SAMPLES);
         let (target, screen) = (&mut self.target, self.screen);
@@ -185,10 +194,10 @@ impl<F: Framebuffer> Scene<'_, F> {
         let fits = drawer.fits();
         // States are carried on if the rows of the next strip follow those that are drawn here.
         let carries = F::CARRIES && !waiting && clip.y.end == target.rows.end;
-        let mut state = LeftState::NONE;
+        let mut left = LeftState::NONE;
         loop {
-            let state = if carries { Some(&mut state) } else { None };
-            let mut place = if fits { rows.place(target, None, state) } else { None };
+            let left = if carries { Some(&mut left) } else { None };
+            let mut place = if fits { rows.place(target, None, left) } else { None };
             let tried = place.is_some();
             let draw = &mut SmallDrawer { place: &mut place, drawer };
             let found = if waiting {
@@ -201,6 +210,11 @@ impl<F: Framebuffer> Scene<'_, F> {
             }
             if !waiting || test.first_row::<F>(triangles.positions_of(record.corners)).is_some() {
                 triangles.vertices_of(&record, &mut v);
+                // A test takes little beside the set-up of a large triangle. Small ones would pay for it.
+                if F::OCCLUDES && hides_triangle(target, screen, clip, state, &v) {
+                    self.stats.occluded = self.stats.occluded.wrapping_add(1);
+                    continue;
+                }
                 drawer.single((target, screen, clip), &triangles, &record, &v, tried);
             }
         }

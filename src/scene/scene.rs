@@ -127,7 +127,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     }
 
     /// Returns whether bounds may be visible in the band, or up to `reach` px away from it.
-    fn sees(&self, screen: &ScreenMatrix, bounds: &Bounds, reach: i32, range: DepthRange) -> bool {
+    pub(super) fn sees(&self, screen: &ScreenMatrix, bounds: &Bounds, reach: i32, range: DepthRange) -> bool {
         let PixelRect { x, y } = self.clip_rect(&self.band);
         let (x, y) = (x.start - reach..x.end + reach, y.start - reach..y.end + reach);
         screen.sees(bounds, &x, &y, range.clamped())
@@ -157,7 +157,11 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         screen.set_from(mvp, &self.viewport);
         let (first, mut visible) = (*next, 0);
         while let (Some(node), Some(bit)) = (nodes.get(*next), 1_u32.checked_shl((*next - first) as u32)) {
-            if self.sees(&screen, &node.bounds, 0, state.range) {
+            let seen = self.sees(&screen, &node.bounds, 0, state.range);
+            if F::OCCLUDES && seen && self.hides_bounds(state, &screen, &node.bounds) {
+                self.stats.occluded = self.stats.occluded.wrapping_add(1);
+                *next = usize::from(node.skip);
+            } else if seen {
                 visible |= bit;
                 *next += 1;
             } else {
@@ -195,6 +199,12 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
             self.end_draw();
             return false;
         }
+        if F::OCCLUDES && !recording {
+            if self.hides_draw(draw, &screen) {
+                return false;
+            }
+            self.note_test(draw.state.depth);
+        }
         if F::RECORDS && !recording {
             self.records.keep_vertices(draw.mesh.vertex_count(), draw.stride);
         }
@@ -206,6 +216,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
 
     pub(super) fn end_draw(&mut self) {
         if self.is_recording() {
+            if F::OCCLUDES {
+                self.records.keep_extent();
+            }
             self.records.end_draw();
         }
     }
@@ -239,6 +252,9 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         let print = fingerprint(draw, &self.viewport);
         let number = self.count_draw();
         let found = self.changed.is_none() && self.records.replay_draw(print, draw.mesh.vertex_count(), draw.stride);
+        if F::OCCLUDES {
+            self.note_test(draw.state.depth);
+        }
         if !found {
             self.changed = self.changed.or(Some(number));
         }
@@ -320,6 +336,11 @@ impl<'d> Draw<'d> {
     /// Returns the hierarchy that parts of the mesh can be culled by.
     pub(super) fn hierarchy(&self) -> Option<&'d [BoundsNode]> {
         if self.is_bounded() { self.mesh.data().hierarchy } else { None }
+    }
+
+    /// Returns whether the draw is one of triangles, and its mesh's bounds can be tested.
+    pub(super) fn is_filled(&self) -> bool {
+        matches!(self.primitives, Primitives::Triangles) && self.is_tested()
     }
 
     /// Returns whether the mesh's bounds can be tested, and are worth it.

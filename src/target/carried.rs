@@ -44,7 +44,7 @@ impl Triangles<'_> {
 
     /// Gives back the place of a state, and makes the record that of an ordinary triangle again.
     #[inline(never)]
-    fn give_back(&mut self, number: u16, triangle: &mut TriangleRecord) {
+    pub(super) fn give_back(&mut self, number: u16, triangle: &mut TriangleRecord) {
         let place = Place::of_word(triangle.face);
         if let Some([_, third, .., face]) =
             place.words(self.triangles).and_then(|words| words.first_chunk_mut::<CARRIED>())

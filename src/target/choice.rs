@@ -1,12 +1,15 @@
 //! Types that say which buffers a renderer has beside its colours: a program links only the loops that it needs.
 
-/// Choice of a depth buffer, said by a type: [`WithDepth`], [`WithSamples`] or [`WithoutDepth`].
+/// Choice of a depth buffer, said by a type: [`WithDepth`], [`WithOcclusion`], [`WithSamples`] or [`WithoutDepth`].
 pub trait DepthChoice: sealed::Sealed {
     /// True if there is a depth buffer.
     const DEPTH: bool;
 
     /// Number of samples per pixel.
     const SAMPLES: usize = 1;
+
+    /// True if hidden draws are left out, by coarse depths beside the depth buffer.
+    const OCCLUDES: bool = false;
 
     /// The colours of samples 1 and up, one sample after the other; nothing with one sample per pixel.
     type Further<'a, R: 'a>: Further<R>;
@@ -73,6 +76,11 @@ pub trait RecordsChoice: sealed::Sealed {
 #[derive(Clone, Copy, Debug)]
 pub struct WithDepth;
 
+/// Marks a renderer or strip with a depth buffer and coarse depths, by which hidden draws are left out. See
+/// [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion).
+#[derive(Clone, Copy, Debug)]
+pub struct WithOcclusion;
+
 /// Marks a renderer or strip with `N` samples per pixel, each with a colour and a depth: 1, 2, 4 or 8. See
 /// [`Renderer::with_samples`](crate::frame::Renderer::with_samples).
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +105,20 @@ pub struct WithoutRecords;
 
 impl DepthChoice for WithDepth {
     const DEPTH: bool = true;
+    type Further<'a, R: 'a> = NoSamples;
+
+    fn lend<R>(_: &mut [R]) -> NoSamples {
+        NoSamples
+    }
+
+    fn first<R>(_: &mut NoSamples, _: usize) -> NoSamples {
+        NoSamples
+    }
+}
+
+impl DepthChoice for WithOcclusion {
+    const DEPTH: bool = true;
+    const OCCLUDES: bool = true;
     type Further<'a, R: 'a> = NoSamples;
 
     fn lend<R>(_: &mut [R]) -> NoSamples {
@@ -160,6 +182,7 @@ mod sealed {
     pub trait Sealed {}
 
     impl Sealed for super::WithDepth {}
+    impl Sealed for super::WithOcclusion {}
     impl<const N: usize> Sealed for super::WithSamples<N> {}
     impl Sealed for super::WithoutDepth {}
     impl Sealed for super::NoSamples {}

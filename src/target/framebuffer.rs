@@ -26,6 +26,9 @@ pub trait Framebuffer {
     /// True if the state of small triangles may be carried on from strip to strip, beside the records.
     const CARRIES: bool = false;
 
+    /// True if hidden draws are left out, by coarse depths in the depth buffer.
+    const OCCLUDES: bool = false;
+
     /// Number of samples per pixel: 1, 2, 4 or 8. The pixels of each sample are rows of their own. Only a [`Strip`] of
     /// a renderer [with samples](crate::frame::Renderer::with_samples) has more than one.
     const SAMPLES: usize = 1;
@@ -117,6 +120,8 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice> Framebuffer for Strip<'_,
     const RECORDS: bool = R::RECORDS;
 
     const CARRIES: bool = R::CARRIES && D::SAMPLES == 1;
+
+    const OCCLUDES: bool = D::OCCLUDES;
 
     const SAMPLES: usize = D::SAMPLES;
 

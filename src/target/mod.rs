@@ -3,6 +3,7 @@
 
 mod carried;
 mod choice;
+mod coarse;
 mod draw_target;
 mod framebuffer;
 mod layout;
@@ -15,9 +16,11 @@ mod strip_rows;
 mod triangles;
 
 pub use choice::{
-    DepthChoice, Further, NoSamples, RecordsChoice, Samples, WithCarriedState, WithDepth, WithRecords, WithSamples,
-    WithoutDepth, WithoutRecords,
+    DepthChoice, Further, NoSamples, RecordsChoice, Samples, WithCarriedState, WithDepth, WithOcclusion, WithRecords,
+    WithSamples, WithoutDepth, WithoutRecords,
 };
+pub(crate) use coarse::Coarse;
+pub use coarse::occlusion_len;
 pub use draw_target::Overlay;
 pub(crate) use draw_target::OverlayTarget;
 pub use framebuffer::{Depthless, FrameSlice, Framebuffer, FramebufferError, Strip};

@@ -21,10 +21,13 @@ use super::layout::{Layout, NONE, TRIANGLE};
 use super::state_pool::StatePool;
 use super::triangles::{Triangles, Unshaded};
 use crate::color::clear_words;
-use crate::vertex::{PackedVertex, VERTEX_WORDS, Varyings, VertexShader};
+use crate::vertex::{Extent, PackedVertex, VERTEX_WORDS, Varyings, VertexShader};
+use core::ops::Range;
 
 /// Words of a draw's header: fingerprint, first word of its vertices, number of its last triangle + 1, next header.
 const HEADER: usize = 4;
+/// Words of a draw's extent, which end its words if hidden draws are left out: columns, rows, nearest depth.
+const EXTENT: usize = 3;
 
 /// Returns the words of records that a scene needs at most when nothing is clipped. `draws` is the number of draw
 /// calls, `vertices` and `triangles` are those of all draws together, of triangles only the visible ones.
@@ -137,6 +140,55 @@ impl<'a> Records<'a> {
         }
         self.set(header, fingerprint);
         self.set(header + 1, self.layout.vertices as u32);
+    }
+
+    /// Keeps the extent of the current draw at the end of its words.
+    #[inline(never)]
+    pub(crate) fn keep_extent(&mut self) {
+        // Without vertices, there is nothing that asks for it.
+        if self.layout.count == 0 {
+            return;
+        }
+        if self.free() < EXTENT {
+            self.layout.overflow = true;
+            return;
+        }
+        let mut extent = Extent::EMPTY;
+        let mut widen = |words: [u32; 2]| {
+            let vertex = PackedVertex::of(words);
+            if vertex.is_on_screen() {
+                extent.widen(vertex.x(), vertex.y(), vertex.z() as u16);
+            }
+        };
+        self.positions().iter().for_each(|words| widen(*words));
+        let Layout { count, added, front, .. } = *self.layout;
+        for index in count..count + usize::from(added) {
+            let (position, _) = self.words_of(index);
+            widen([self.get(position), self.get(position + 1)]);
+        }
+        let Extent { columns, rows, nearest } = extent.to_pixels();
+        // Columns and rows that the screen does not have are of no use.
+        let pair = |range: Range<i32>| {
+            let [start, end] = [range.start, range.end].map(|c| c.clamp(0, 0xFFFF) as u32);
+            start | end << 16
+        };
+        for (k, word) in [pair(columns), pair(rows), nearest.into()].into_iter().enumerate() {
+            self.set(front + k, word);
+        }
+        self.layout.front = front + EXTENT;
+    }
+
+    /// Returns the extent of the draw that was found.
+    pub(crate) fn extent(&self) -> Extent {
+        let at = self.layout.front.wrapping_sub(EXTENT);
+        let range = |word: u32| (word & 0xFFFF) as i32..(word >> 16) as i32;
+        let [columns, rows, nearest] = [0, 1, 2].map(|k| self.get(at.wrapping_add(k)));
+        Extent { columns: range(columns), rows: range(rows), nearest: nearest as u16 }
+    }
+
+    /// Returns whether the draw that was found has triangles in this strip.
+    pub(crate) fn has_triangles(&self) -> bool {
+        u32::from(self.layout.next) < self.layout.last
     }
 
     /// Ends recording a draw.

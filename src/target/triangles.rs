@@ -260,6 +260,30 @@ impl<'r> Triangles<'r> {
         }
     }
 
+    /// Leaves out the triangles of the draw in this strip. Those that reach beyond `end` move on to the next strip, as
+    /// [`replay_each`](Self::replay_each) makes them.
+    #[inline(never)]
+    pub(crate) fn skip_each<const CARRIES: bool>(&mut self, end: i32) {
+        loop {
+            let number = self.layout.next;
+            if u32::from(number) >= self.layout.last {
+                return;
+            }
+            let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return };
+            let [k, next]: [u16; 2] = bytemuck::cast(*b);
+            let mut record = TriangleRecord { corners: corners_of(*a, *b), face: *face };
+            self.layout.next = next;
+            if CARRIES && k == NONE {
+                // The next strip sets it up again.
+                self.give_back(number, &mut record);
+            }
+            let [_, b, c] = self.positions_of(record.corners);
+            if (end - (b[1] as i32 >> 8)) | (end - (c[1] as i32 >> 8)) < 0 {
+                self.move_on(number);
+            }
+        }
+    }
+
     /// Starts with the first triangle that waits to be drawn at once.
     pub(crate) const fn begin_waiting(&mut self) {
         self.layout.next = 0;

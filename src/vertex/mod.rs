@@ -9,6 +9,7 @@
 pub(crate) mod clip;
 mod clip_distance;
 mod clip_line;
+mod extent;
 mod packed;
 mod packed_corners;
 mod painters_order;
@@ -24,6 +25,7 @@ pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSl
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
+pub(crate) use extent::Extent;
 pub(crate) use packed::{PackedVertex, VERTEX_WORDS, pack};
 pub use packed_corners::PackedCorners;
 pub use painters_order::{SortError, SortReport, SortScratch, painters_order};

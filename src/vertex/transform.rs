@@ -20,7 +20,7 @@ use core::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub struct ScreenMatrix {
     /// Rows x, y, z, w; the largest entry has 45 bits.
-    rows: [[i64; 4]; 4],
+    pub(super) rows: [[i64; 4]; 4],
     /// Exponent of the power of two by which the rows exceed the raw 32.32 values of the matrix.
     scale: i32,
 }
@@ -69,7 +69,7 @@ fn scale(value: i64, shift: i32) -> i64 {
 /// Returns `a b / 2¹⁶`, rounded down, for |a| < 2⁴⁶. The result is at most 2⁶¹.
 #[cfg_attr(target_has_atomic = "32", inline)]
 #[cfg_attr(not(target_has_atomic = "32"), inline(never))]
-fn times(a: i64, b: i32) -> i64 {
+pub(super) fn times(a: i64, b: i32) -> i64 {
     // The lower half of `a` takes part in two products of 16 bits, below 2³¹ and 2³².
     let (high, low) = ((a >> 16) as i32, a as u32 & 0xFFFF);
     let fraction = low as i32 * (b >> 16) + ((low * (b as u32 & 0xFFFF)) >> 16) as i32;

@@ -1,0 +1,123 @@
+//! What is hidden: draws, nodes of hierarchies and objects that lie behind all that has been drawn in their pixels of
+//! the strip are left out. See [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion).
+
+use super::scene::{Draw, Phase, Scene, Target};
+use super::state::State;
+use crate::math::Projective;
+use crate::mesh::Bounds;
+use crate::raster::PixelRect;
+use crate::span::{Compare, DepthState};
+use crate::target::{Coarse, Framebuffer};
+use crate::vertex::{DepthScale, Extent, ScreenMatrix, ScreenVertex};
+use core::ops::Range;
+
+/// Returns the least number that hides fragments at a depth of `nearest` or farther, if all stored depths are below
+/// it; 0 if none does.
+fn limit(state: &State, nearest: u16) -> u32 {
+    // A bias that pushes back, by whatever it comes to, leaves no pixel nearer than its triangle's vertices.
+    if state.bias.constant < 0 || state.bias.slope < 0 {
+        return 0;
+    }
+    match state.depth.compare {
+        Compare::Less => u32::from(nearest) + 1,
+        Compare::LessEqual | Compare::Equal => nearest.into(),
+        _ => 0,
+    }
+}
+
+impl<F: Framebuffer> Scene<'_, F> {
+    /// Returns whether objects with these bounds may be visible, as [`is_visible`](Self::is_visible) does. A renderer
+    /// with [occlusion](crate::frame::Renderer::with_occlusion) also answers `false` where it knows that all of the box
+    /// lies behind what has been drawn, while strips are drawn without records.
+    ///
+    /// `state` is the state that the objects are drawn with: its depth test, bias and depth scale decide whether they
+    /// can be hidden. Objects of several states are asked for one by one. All that is left out has to be drawn with
+    /// this state, and to lie in the box: text at no depth, for example, would be left out although nothing hides it.
+    ///
+    /// While records are made or replayed, the answer is that of [`is_visible`](Self::is_visible), because it has to be
+    /// the same for all strips. Hidden draws are left out there, too, one by one.
+    #[must_use]
+    pub fn is_visible_with(&mut self, state: State, bounds: &Bounds, mvp: &Projective) -> bool {
+        let mut screen = ScreenMatrix::EMPTY;
+        screen.set_from(mvp, &self.viewport);
+        self.sees(&screen, bounds, 0, state.range) && !(F::OCCLUDES && self.hides_bounds(&state, &screen, bounds))
+    }
+
+    /// Returns the coarse depths of the strip.
+    fn coarse(&mut self) -> Coarse<'_> {
+        let rows = self.target.rows.end - self.target.rows.start;
+        Coarse::new(self.target.depth, self.screen.0.into(), rows as usize)
+    }
+
+    /// Notes that something is drawn by a depth test. It may write depths that are farther than those that are there.
+    #[inline]
+    pub(super) fn note_test(&mut self, depth: DepthState) {
+        let nearer = matches!(depth.compare, Compare::Never | Compare::Less | Compare::LessEqual | Compare::Equal);
+        if F::OCCLUDES && depth.write && !nearer {
+            self.coarse().forget();
+        }
+    }
+
+    /// Returns whether a draw in the records is hidden in this strip.
+    #[inline(never)]
+    pub(super) fn hides_recorded(&mut self, state: &State) -> bool {
+        let extent = self.records.extent();
+        let hidden = self.hides(state, &extent);
+        self.stats.occluded = self.stats.occluded.wrapping_add(hidden.into());
+        hidden
+    }
+
+    /// Returns whether a draw that is about to be drawn at once is hidden.
+    #[inline(never)]
+    pub(super) fn hides_draw(&mut self, draw: &Draw<'_>, screen: &ScreenMatrix) -> bool {
+        let hidden = draw.is_filled() && self.hides_bounds(draw.state, screen, draw.mesh.bounds());
+        self.stats.occluded = self.stats.occluded.wrapping_add(hidden.into());
+        hidden
+    }
+
+    /// Returns whether everything in a box is hidden in the strip that is drawn without records. In other phases
+    /// nothing is, because all strips have to agree.
+    #[inline(never)]
+    pub(super) fn hides_bounds(&mut self, state: &State, screen: &ScreenMatrix, bounds: &Bounds) -> bool {
+        // An extent takes time. It is of no use if its depth is on another scale, or if no block can be covered.
+        self.phase == Phase::Direct
+            && state.depth_scale == DepthScale::Perspective
+            && limit(state, u16::MAX) > 0
+            && self.coarse().any_covered()
+            && screen.extent(bounds).is_some_and(|extent| self.hides(state, &extent))
+    }
+
+    /// Returns whether all that has an extent is hidden in this strip.
+    fn hides(&mut self, state: &State, extent: &Extent) -> bool {
+        let clip = self.clip_rect(&self.target.rows);
+        hides(&mut self.target, self.screen, &clip, state, extent)
+    }
+}
+
+/// Returns whether all that has an extent is hidden in the pixels that may be drawn.
+fn hides<F>(
+    target: &mut Target<'_, F>,
+    (width, _): (u16, u16),
+    clip: &PixelRect,
+    state: &State,
+    extent: &Extent,
+) -> bool {
+    let limit = limit(state, extent.nearest);
+    let Range { start, end } = target.rows;
+    let mut coarse = Coarse::new(target.depth, width.into(), (end - start) as usize);
+    limit > 0 && coarse.hides(limit, extent, (&clip.x, &clip.y), start)
+}
+
+/// Returns whether a triangle is hidden in the pixels that may be drawn.
+#[inline(never)]
+pub(super) fn hides_triangle<F>(
+    target: &mut Target<'_, F>,
+    screen: (u16, u16),
+    clip: &PixelRect,
+    state: &State,
+    v: &[ScreenVertex; 3],
+) -> bool {
+    let mut extent = Extent::EMPTY;
+    v.iter().for_each(|v| extent.widen(v.x, v.y, v.z));
+    hides(target, screen, clip, state, &extent.to_pixels())
+}
