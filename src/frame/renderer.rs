@@ -122,10 +122,10 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithDepth, R> {
     /// rows.
     ///
     /// **What is left out.** With records, draws of meshes in each strip: their pixels are not computed, but their
-    /// vertices are, because nothing is known of depths while a band is recorded. A draw takes 3 more words of records.
+    /// vertices are, because nothing is known of depths while a band is recorded. A draw takes 2 more words of records.
     /// In strips that are drawn without records: draws of meshes of more than four vertices, by the box around the
     /// mesh, and nodes of its hierarchy, before any vertex is computed; and objects that a program asks for with
-    /// [`Scene::is_visible_with`](crate::Scene::is_visible_with). In all strips, large triangles.
+    /// [`Scene::is_visible_with`](crate::Scene::is_visible_with).
     ///
     /// **When it pays.** Draw near things first: only what is drawn before can hide what is drawn after. Draw by tests
     /// [`Less`](crate::span::Compare::Less), [`LessEqual`](crate::span::Compare::LessEqual) or

@@ -1,15 +1,13 @@
 //! What is hidden: draws, nodes of hierarchies and objects that lie behind all that has been drawn in their pixels of
 //! the strip are left out. See [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion).
 
-use super::scene::{Draw, Phase, Scene, Target};
+use super::scene::{Draw, Phase, Scene};
 use super::state::State;
 use crate::math::Projective;
 use crate::mesh::Bounds;
-use crate::raster::PixelRect;
 use crate::span::{Compare, DepthState};
 use crate::target::{Coarse, Framebuffer};
-use crate::vertex::{DepthScale, Extent, ScreenMatrix, ScreenVertex};
-use core::ops::Range;
+use crate::vertex::{DepthScale, Extent, STEPS, ScreenMatrix, ScreenVertex};
 
 /// Returns the least number that hides fragments at a depth of `nearest` or farther, if all stored depths are below
 /// it; 0 if none does.
@@ -79,45 +77,27 @@ impl<F: Framebuffer> Scene<'_, F> {
     /// nothing is, because all strips have to agree.
     #[inline(never)]
     pub(super) fn hides_bounds(&mut self, state: &State, screen: &ScreenMatrix, bounds: &Bounds) -> bool {
-        // An extent takes time. It is of no use if its depth is on another scale, or if no block can be covered.
+        // An extent takes time. It is of no use if its depth is on another scale.
         self.phase == Phase::Direct
             && state.depth_scale == DepthScale::Perspective
             && limit(state, u16::MAX) > 0
-            && self.coarse().any_covered()
-            && screen.extent(bounds).is_some_and(|extent| self.hides(state, &extent))
+            && screen
+                .extent(bounds, |center| self.may_hide(state, &center))
+                .is_some_and(|extent| self.hides(state, &extent))
+    }
+
+    /// Returns whether an object whose centre is at a position may be hidden. It is not if a part of it is seen there.
+    fn may_hide(&mut self, state: &State, center: &ScreenVertex) -> bool {
+        // Off the pixels that may be drawn, nothing is hidden and nothing is seen: the extent decides.
+        let mut extent = Extent::EMPTY;
+        extent.widen(center.x, center.y, center.z.saturating_add(STEPS));
+        self.hides(state, &extent.to_pixels())
     }
 
     /// Returns whether all that has an extent is hidden in this strip.
     fn hides(&mut self, state: &State, extent: &Extent) -> bool {
-        let clip = self.clip_rect(&self.target.rows);
-        hides(&mut self.target, self.screen, &clip, state, extent)
+        let limit = limit(state, extent.nearest);
+        let (clip, first) = (self.clip_rect(&self.target.rows), self.target.rows.start);
+        limit > 0 && self.coarse().hides(limit, extent, (&clip.x, &clip.y), first)
     }
-}
-
-/// Returns whether all that has an extent is hidden in the pixels that may be drawn.
-fn hides<F>(
-    target: &mut Target<'_, F>,
-    (width, _): (u16, u16),
-    clip: &PixelRect,
-    state: &State,
-    extent: &Extent,
-) -> bool {
-    let limit = limit(state, extent.nearest);
-    let Range { start, end } = target.rows;
-    let mut coarse = Coarse::new(target.depth, width.into(), (end - start) as usize);
-    limit > 0 && coarse.hides(limit, extent, (&clip.x, &clip.y), start)
-}
-
-/// Returns whether a triangle is hidden in the pixels that may be drawn.
-#[inline(never)]
-pub(super) fn hides_triangle<F>(
-    target: &mut Target<'_, F>,
-    screen: (u16, u16),
-    clip: &PixelRect,
-    state: &State,
-    v: &[ScreenVertex; 3],
-) -> bool {
-    let mut extent = Extent::EMPTY;
-    v.iter().for_each(|v| extent.widen(v.x, v.y, v.z));
-    hides(target, screen, clip, state, &extent.to_pixels())
 }

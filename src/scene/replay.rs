@@ -1,7 +1,6 @@
 //! Triangles from the records → stages 8 to 11 of [the pipeline](crate#the-pipeline). They come in with the numbers of
 //! their vertices; small ones are drawn from the words that the vertex stage left, large ones by the painter.
 
-use super::occlusion::hides_triangle;
 use super::painter::{Painter, RasterHooks};
 use super::scan::BoxTest;
 use super::scene::{Scene, Target};
@@ -194,10 +193,10 @@ impl<F: Framebuffer> Scene<'_, F> {
         let fits = drawer.fits();
         // States are carried on if the rows of the next strip follow those that are drawn here.
         let carries = F::CARRIES && !waiting && clip.y.end == target.rows.end;
-        let mut left = LeftState::NONE;
+        let mut state = LeftState::NONE;
         loop {
-            let left = if carries { Some(&mut left) } else { None };
-            let mut place = if fits { rows.place(target, None, left) } else { None };
+            let state = if carries { Some(&mut state) } else { None };
+            let mut place = if fits { rows.place(target, None, state) } else { None };
             let tried = place.is_some();
             let draw = &mut SmallDrawer { place: &mut place, drawer };
             let found = if waiting {
@@ -210,11 +209,6 @@ impl<F: Framebuffer> Scene<'_, F> {
             }
             if !waiting || test.first_row::<F>(triangles.positions_of(record.corners)).is_some() {
                 triangles.vertices_of(&record, &mut v);
-                // A test takes little beside the set-up of a large triangle. Small ones would pay for it.
-                if F::OCCLUDES && hides_triangle(target, screen, clip, state, &v) {
-                    self.stats.occluded = self.stats.occluded.wrapping_add(1);
-                    continue;
-                }
                 drawer.single((target, screen, clip), &triangles, &record, &v, tried);
             }
         }

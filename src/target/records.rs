@@ -22,12 +22,11 @@ use super::state_pool::StatePool;
 use super::triangles::{Triangles, Unshaded};
 use crate::color::clear_words;
 use crate::vertex::{Extent, PackedVertex, VERTEX_WORDS, Varyings, VertexShader};
-use core::ops::Range;
 
 /// Words of a draw's header: fingerprint, first word of its vertices, number of its last triangle + 1, next header.
 const HEADER: usize = 4;
-/// Words of a draw's extent, which end its words if hidden draws are left out: columns, rows, nearest depth.
-const EXTENT: usize = 3;
+/// Words of a draw's extent, which end its words if hidden draws are left out: columns, nearest depth.
+const EXTENT: usize = 2;
 
 /// Returns the words of records that a scene needs at most when nothing is clipped. `draws` is the number of draw
 /// calls, `vertices` and `triangles` are those of all draws together, of triangles only the visible ones.
@@ -153,11 +152,13 @@ impl<'a> Records<'a> {
             self.layout.overflow = true;
             return;
         }
-        let mut extent = Extent::EMPTY;
-        let mut widen = |words: [u32; 2]| {
-            let vertex = PackedVertex::of(words);
-            if vertex.is_on_screen() {
-                extent.widen(vertex.x(), vertex.y(), vertex.z() as u16);
+        // x is compared with the byte of z below it, which changes nothing above it.
+        let (mut left, mut right, mut nearest) = (i32::MAX, i32::MIN, u32::from(u16::MAX));
+        let mut widen = |[a, b]: [u32; 2]| {
+            let x = a as i32;
+            if x >= PackedVertex::LEAST_X {
+                (left, right) = (left.min(x), right.max(x));
+                nearest = nearest.min((a & 0xFF) << 8 | b & 0xFF);
             }
         };
         self.positions().iter().for_each(|words| widen(*words));
@@ -166,24 +167,23 @@ impl<'a> Records<'a> {
             let (position, _) = self.words_of(index);
             widen([self.get(position), self.get(position + 1)]);
         }
-        let Extent { columns, rows, nearest } = extent.to_pixels();
-        // Columns and rows that the screen does not have are of no use.
-        let pair = |range: Range<i32>| {
-            let [start, end] = [range.start, range.end].map(|c| c.clamp(0, 0xFFFF) as u32);
-            start | end << 16
-        };
-        for (k, word) in [pair(columns), pair(rows), nearest.into()].into_iter().enumerate() {
-            self.set(front + k, word);
-        }
+        // Whole pixels, the last one too. Columns that the screen does not have are of no use.
+        let [left, right] = [left >> 16, (right >> 16) + 1].map(|c| c.clamp(0, 0xFFFF) as u32);
+        self.set(front, left | right << 16);
+        self.set(front + 1, nearest);
         self.layout.front = front + EXTENT;
     }
 
     /// Returns the extent of the draw that was found.
     pub(crate) fn extent(&self) -> Extent {
         let at = self.layout.front.wrapping_sub(EXTENT);
-        let range = |word: u32| (word & 0xFFFF) as i32..(word >> 16) as i32;
-        let [columns, rows, nearest] = [0, 1, 2].map(|k| self.get(at.wrapping_add(k)));
-        Extent { columns: range(columns), rows: range(rows), nearest: nearest as u16 }
+        let (columns, nearest) = (self.get(at), self.get(at.wrapping_add(1)));
+        // Rows are not kept: the draw has triangles in the strip, which is a few blocks high at most.
+        Extent {
+            columns: (columns & 0xFFFF) as i32..(columns >> 16) as i32,
+            rows: 0..i32::MAX,
+            nearest: nearest as u16,
+        }
     }
 
     /// Returns whether the draw that was found has triangles in this strip.

@@ -19,7 +19,7 @@ pub struct Stats {
     /// Draws, or nodes of a hierarchy, whose bounds are all outside of the view. Bounds of meshes of up to four
     /// vertices are not tested.
     pub culled: u32,
-    /// Draws, nodes of a hierarchy, and large triangles that were left out of a strip because they are hidden. See
+    /// Draws, or nodes of a hierarchy, that were left out of a strip because they are hidden. See
     /// [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion).
     pub occluded: u32,
     /// Vertices shaded.

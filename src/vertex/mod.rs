@@ -25,7 +25,7 @@ pub(crate) use clip::{CLIPPED_CORNERS, ClipCorner, ClipVertex, Clipping, DepthSl
 pub(crate) use clip_distance::DISTANCE_CORNERS;
 pub use clip_distance::MAX_DISTANCES;
 pub(crate) use clip_line::clip_line;
-pub(crate) use extent::Extent;
+pub(crate) use extent::{Extent, STEPS};
 pub(crate) use packed::{PackedVertex, VERTEX_WORDS, pack};
 pub use packed_corners::PackedCorners;
 pub use painters_order::{SortError, SortReport, SortScratch, painters_order};
