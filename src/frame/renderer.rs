@@ -6,8 +6,8 @@ use super::frame::Frame;
 use crate::color::PixelFormat;
 use crate::scene::Scene;
 use crate::target::{
-    DepthChoice, NoSamples, OnDisplay, RecordsChoice, Stats, Strip, StripSink, WithCarriedState, WithDepth, WithOcclusion,
-    WithRecords, WithSamples, WithoutDepth, WithoutRecords,
+    DepthChoice, NoSamples, OnDisplay, RecordsChoice, Stats, Strip, StripSink, WithCarriedState, WithDepth,
+    WithOcclusion, WithRecords, WithSamples, WithoutDepth, WithoutRecords,
 };
 use core::marker::PhantomData;
 use embedded_graphics_core::draw_target::DrawTarget;
