@@ -92,6 +92,8 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
     /// Returns whether an object with these bounds may be visible in the part of the screen that is being drawn. An
     /// object that is not visible can be left out together with everything inside of it, which culls a tree of objects.
     ///
+    /// [`is_visible_with`](Self::is_visible_with) also asks whether the object is hidden by what has been drawn.
+    ///
     /// The result is the same in all calls of the closure that must draw the same. The near and the far plane count as
     /// borders, whatever [`State::range`] says about geometry outside of them.
     ///
