@@ -347,3 +347,27 @@ fn coarse_depths_take_room() {
     assert_eq!(rows(PIXELS), Ok(148));
     assert_eq!(rows(225), Err(RendererError::DepthTooShort { pixels: 225, needed: 226 }));
 }
+
+/// Things a few steps in front of a wall, at its depth, and behind it: each is drawn where its test lets it pass.
+#[test]
+fn steps_around_a_wall_are_the_same() {
+    struct Steps(Compare, i32);
+    impl<F: Framebuffer> Draw<F> for Steps {
+        fn draw(&self, scene: &mut Scene<'_, F>) {
+            let wall = Affine::translation(Vec3::new(Scalar::ZERO, Scalar::ZERO, Scalar::from_bits(1 << 15)));
+            let thing = Affine::translation(Vec3::new(Scalar::ZERO, Scalar::ZERO, Scalar::from_bits(self.1)));
+            let depth = DepthState { compare: self.0, write: true };
+            let [wall, thing] = [wall, thing].map(|place| Projective::from_affine(&place));
+            scene.draw(&textured_wall(), &wall, &Flat::unlit(Rgb888::new(90, 90, 90)));
+            let shader = Flat::unlit(Rgb888::new(250, 40, 40));
+            scene.draw_with(State { depth, ..State::DEFAULT }, &textured_wall(), &thing, &shader);
+        }
+    }
+    for step in -6..=6 {
+        for compare in [Compare::Less, Compare::LessEqual, Compare::Equal, Compare::Greater] {
+            let left_out = same(&format!("{compare:?} {step}"), &Steps(compare, (1 << 15) + step), &[16], &[0, AMPLE]);
+            let hidden = compare != Compare::Greater && step > 1;
+            assert!(!hidden || left_out[0] == 10, "{compare:?} {step}: {left_out:?}");
+        }
+    }
+}
