@@ -1,6 +1,6 @@
 //! What leaving out hidden draws saves and costs: firmware that counts. `ci/occlusion` runs it and prints the counts.
 //!
-//! It prints, for each run, `scene how/rows ticks drawn occluded hash`. How is `records` or `direct`, with `+` for
+//! It prints, for each run, `scene how/rows ticks drawn culled hash`. How is `records` or `direct`, with `+` for
 //! occlusion; rows are those of a strip; ticks are SysTick's over a frame (instructions on RISC-V). Triangles drawn,
 //! draws that were left out, and a hash of the picture follow.
 #![cfg_attr(target_os = "none", no_std, no_main)]
@@ -88,8 +88,8 @@ mod counting {
             })
         });
         let mut hash = Hash::NEW;
-        let Stats { drawn, occluded, .. } = frame(&mut renderer, color, drawing, &mut |strip| hash.add(strip));
-        println!("{scene} {how}/{rows} {ticks} {drawn} {occluded} {:08x}", hash.0);
+        let Stats { drawn, culled, .. } = frame(&mut renderer, color, drawing, &mut |strip| hash.add(strip));
+        println!("{scene} {how}/{rows} {ticks} {drawn} {culled} {:08x}", hash.0);
     }
 
     fn renderer(depth: &mut [u16]) -> Result<Renderer<'_, Rgb565, WithDepth>, RendererError> {

@@ -115,7 +115,7 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
 impl<'b, P: PixelFormat, R> Renderer<'b, P, WithDepth, R> {
     /// Leaves out draws that are hidden. The renderer keeps coarse depths for each strip: of blocks of 16 × 16 px, the
     /// farthest depth that is stored. A draw whose nearest depth is behind all blocks that it touches draws nothing
-    /// there, and is skipped. The picture is the same, bit by bit. [`Stats::occluded`] counts.
+    /// there, and is skipped. The picture is the same, bit by bit. [`Stats::culled`] counts.
     ///
     /// Coarse depths lie in the depth buffer, after the depths of a strip:
     /// [`occlusion_len`](crate::target::occlusion_len) numbers. If the buffer has no room for them, strips have fewer

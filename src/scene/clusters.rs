@@ -28,7 +28,7 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
         // It takes 45 instructions on a Cortex-M0+ to look for the vertices of a triangle, and 240 to project a vertex.
         // So where three quarters of the triangles may be visible, all vertices are projected in one loop.
         let mut looks = keeps_vertices;
-        let (culled, occluded) = (self.scene.stats.culled, self.scene.stats.occluded);
+        let culled = self.scene.stats.culled;
         let (mut leaves, mut seen) = (Leaves::new(nodes), 0);
         while keeps_vertices && leaves.next(self.scene, self.draw.state, mvp) {
             seen += leaves.run.len();
@@ -38,9 +38,6 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
             looks = false;
         }
         self.scene.stats.culled = culled;
-        if F::OCCLUDES {
-            self.scene.stats.occluded = occluded;
-        }
         leaves = Leaves::new(nodes);
         while leaves.next(self.scene, self.draw.state, mvp) {
             if looks {
@@ -128,7 +125,7 @@ fn visible_nodes<F: Framebuffer>(
     while let (Some(node), Some(bit)) = (nodes.get(*next), 1_u32.checked_shl((*next - first) as u32)) {
         let seen = planes.sees(&node.bounds);
         if F::OCCLUDES && seen && scene.hides_bounds(state, &screen, &node.bounds) {
-            scene.stats.occluded = scene.stats.occluded.wrapping_add(1);
+            scene.stats.culled = scene.stats.culled.wrapping_add(1);
             *next = usize::from(node.skip);
         } else if seen {
             visible |= bit;

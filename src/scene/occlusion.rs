@@ -61,7 +61,7 @@ impl<F: Framebuffer> Scene<'_, F> {
     pub(super) fn hides_recorded(&mut self, state: &State) -> bool {
         let extent = self.records.extent();
         let hidden = self.hides(state, &extent);
-        self.stats.occluded = self.stats.occluded.wrapping_add(hidden.into());
+        self.stats.culled = self.stats.culled.wrapping_add(hidden.into());
         hidden
     }
 
@@ -69,7 +69,7 @@ impl<F: Framebuffer> Scene<'_, F> {
     #[inline(never)]
     pub(super) fn hides_draw(&mut self, draw: &Draw<'_>, screen: &ScreenMatrix) -> bool {
         let hidden = draw.is_filled() && self.hides_bounds(draw.state, screen, draw.mesh.bounds());
-        self.stats.occluded = self.stats.occluded.wrapping_add(hidden.into());
+        self.stats.culled = self.stats.culled.wrapping_add(hidden.into());
         hidden
     }
 

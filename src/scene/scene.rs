@@ -161,7 +161,7 @@ impl<'a, F: Framebuffer> Scene<'a, F> {
         while let (Some(node), Some(bit)) = (nodes.get(*next), 1_u32.checked_shl((*next - first) as u32)) {
             let seen = self.sees(&screen, &node.bounds, 0, state.range);
             if F::OCCLUDES && seen && self.hides_bounds(state, &screen, &node.bounds) {
-                self.stats.occluded = self.stats.occluded.wrapping_add(1);
+                self.stats.culled = self.stats.culled.wrapping_add(1);
                 *next = usize::from(node.skip);
             } else if seen {
                 visible |= bit;

@@ -17,11 +17,9 @@ pub struct Stats {
     /// Draws that were processed.
     pub draws: u32,
     /// Draws, or nodes of a hierarchy, whose bounds are all outside of the view. Bounds of meshes of up to four
-    /// vertices are not tested.
+    /// vertices are not tested. With [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion), also those
+    /// that are hidden, once for each strip that they are left out of.
     pub culled: u32,
-    /// Draws, or nodes of a hierarchy, that were left out of a strip because they are hidden. See
-    /// [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion).
-    pub occluded: u32,
     /// Vertices shaded.
     pub vertices: u32,
     /// Triangles taken in.
