@@ -34,6 +34,7 @@ const AMPLE: usize = 60_000;
 /// Draws a scene into strips of a renderer with any depth and any records.
 trait Draws:
     for<'p> Draw<Strip<'p, Rgb565, WithDepth, WithoutRecords>>
+    + for<'p> Draw<Strip<'p, Rgb565, WithDepth, WithRecords>>
     + for<'p> Draw<Strip<'p, Rgb565, WithOcclusion, WithRecords>>
     + for<'p> Draw<Strip<'p, Rgb565, WithOcclusion, WithoutRecords>>
     + for<'p> Draw<Strip<'p, Rgb565, WithOcclusion, WithCarriedState>>
@@ -42,6 +43,7 @@ trait Draws:
 
 impl<T> Draws for T where
     T: for<'p> Draw<Strip<'p, Rgb565, WithDepth, WithoutRecords>>
+        + for<'p> Draw<Strip<'p, Rgb565, WithDepth, WithRecords>>
         + for<'p> Draw<Strip<'p, Rgb565, WithOcclusion, WithRecords>>
         + for<'p> Draw<Strip<'p, Rgb565, WithOcclusion, WithoutRecords>>
         + for<'p> Draw<Strip<'p, Rgb565, WithOcclusion, WithCarriedState>>
