@@ -1,7 +1,7 @@
 //! The RAM that a frame needs, as constants.
 
 use crate::color::PixelFormat;
-use crate::target::records_len;
+use crate::target::{occlusion_len, records_len};
 
 /// Bytes of the buffers that a frame is drawn with. It is `const`, so that a program can assert that they fit. A number
 /// that is too large for `usize` counts as the largest, so that such an assertion fails.
@@ -21,6 +21,7 @@ pub struct RamBudget {
     pub depth: usize,
     /// Records.
     pub records: usize,
+    width: u32,
     rows: u32,
 }
 
@@ -29,7 +30,7 @@ impl RamBudget {
     #[must_use]
     pub const fn new<P: PixelFormat>(width: u32, rows: u32) -> Self {
         let pixels = width as u64 * rows as u64;
-        Self { color: bytes(pixels, size_of::<P::Raw>()), depth: bytes(pixels, 2), records: 0, rows }
+        Self { color: bytes(pixels, size_of::<P::Raw>()), depth: bytes(pixels, 2), records: 0, width, rows }
     }
 
     /// Counts `samples` per pixel: 2, 4 or 8. The colours of all samples, and so those of the strip, are in `color`.
@@ -55,8 +56,22 @@ impl RamBudget {
     /// ```
     #[must_use]
     pub const fn supersampled(self, scale: usize) -> Self {
-        let Self { rows, .. } = self;
-        Self { rows: rows.saturating_mul(scale as u32), ..self.with_samples(scale * scale) }
+        let (width, rows) = (self.width.saturating_mul(scale as u32), self.rows.saturating_mul(scale as u32));
+        Self { width, rows, ..self.with_samples(scale * scale) }
+    }
+
+    /// Counts coarse depths beside the depths of a strip; see
+    /// [`Renderer::with_occlusion`](super::Renderer::with_occlusion).
+    ///
+    /// ```
+    /// use embedded_graphics_core::pixelcolor::Rgb565;
+    /// use zstrip::frame::RamBudget;
+    /// assert_eq!(RamBudget::new::<Rgb565>(320, 16).with_occlusion().total(), 20_480 + 80);
+    /// ```
+    #[must_use]
+    pub const fn with_occlusion(self) -> Self {
+        let coarse = occlusion_len(self.width as usize, self.rows as usize).saturating_mul(2);
+        Self { depth: self.depth.saturating_add(coarse), ..self }
     }
 
     /// Leaves out the depth buffer, for scenes drawn from back to front and for 2-D drawing.
