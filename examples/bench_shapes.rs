@@ -27,7 +27,8 @@ mod counting {
     use zstrip::scene::ShapeBuffer;
     use zstrip::shader::{Blend, Flat, Opacity};
     use zstrip::shape::{
-        Circle, Join, LinearGradient, Path, Polyline, RadialGradient, Ramp, Ring, RoundedRectangle, Sprite,
+        Circle, CurvePath, Ellipse, Join, LinearGradient, Path, PathStep, Polyline, RadialGradient, Ramp, Ring,
+        RoundedRectangle, Sprite,
     };
     use zstrip::target::{DepthChoice, RecordsChoice, Strip, StripPixels};
     use zstrip::texture::{Bilinear, Image, Rgb565Texel, Texture};
@@ -46,7 +47,7 @@ mod counting {
     static mut BUFFER: [u32; WORDS] = [0; _];
 
     /// Kinds of shapes, and about how many pixels each covers.
-    const KINDS: [(&str, u32); 13] = [
+    const KINDS: [(&str, u32); 16] = [
         ("nothing", 0),
         ("circle,_radius_40", 5027),
         ("circle,_blended", 5027),
@@ -58,8 +59,19 @@ mod counting {
         ("needle_of_4_corners,_70_px", 175),
         ("star_of_5_corners,_crossing", 1500),
         ("line_of_33_points,_3_px,_round_joins", 250),
+        ("line_of_33_points,_3_px,_dashes_of_1_px", 125),
+        ("ellipse,_40_by_20,_turned", 2513),
+        ("drop_of_4_curves,_70_px_high", 2400),
         ("sprite,_64_×_64,_turned", 4096),
         ("sprite,_bilinear", 4096),
+    ];
+
+    static DROP: [PathStep; 5] = [
+        PathStep::Move(ScreenPoint::corner(0, -35)),
+        PathStep::Quad(ScreenPoint::corner(6, -20), ScreenPoint::corner(16, -6)),
+        PathStep::Cubic(ScreenPoint::corner(33, 19), ScreenPoint::corner(17, 35), ScreenPoint::corner(0, 35)),
+        PathStep::Cubic(ScreenPoint::corner(-17, 35), ScreenPoint::corner(-33, 19), ScreenPoint::corner(-16, -6)),
+        PathStep::Quad(ScreenPoint::corner(-6, -20), ScreenPoint::corner(0, -35)),
     ];
 
     fn px(bits: i32) -> Pixels {
@@ -128,16 +140,20 @@ mod counting {
                 let star: [_; 5] = core::array::from_fn(|n| around(angle + Angle16((n * 26_214) as u16), 40));
                 canvas.fill(&Path::new(&[&star]), color, buffer);
             }
-            10 => {
+            10 | 11 => {
                 let points: [_; 33] = core::array::from_fn(|n| {
                     let x = n as i32 * 500 - 8000;
                     let y = (Angle16((n * 5000) as u16 + angle.0).sin().to_bits() * 16) >> 8;
                     ScreenPoint::new(center.x() + px(x), center.y() + px(y))
                 });
-                canvas.fill(&Polyline::new(&points, px(3 * 256)).with_join(Join::Round), color, buffer);
+                let line = Polyline::new(&points, px(3 * 256)).with_join(Join::Round);
+                let pattern = [px(256), px(256)];
+                canvas.fill(&if kind == 10 { line } else { line.with_dashes(&pattern, px(0)) }, color, buffer);
             }
-            11 => canvas.sprite(&Sprite::new(&things.image).at(center).turned(angle), buffer),
-            12 => sprite(canvas, &things.image, center, angle, buffer),
+            12 => canvas.fill(&Ellipse::new(center, radius, px(20 * 256)).turned(angle), color, buffer),
+            13 => canvas.fill(&CurvePath::new(&DROP).at(center).turned(angle), color, buffer),
+            14 => canvas.sprite(&Sprite::new(&things.image).at(center).turned(angle), buffer),
+            15 => sprite(canvas, &things.image, center, angle, buffer),
             _ => {}
         }
     }

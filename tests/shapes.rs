@@ -6,22 +6,19 @@ mod support;
 
 use reference::rng::Rng;
 use support::area::{Contour, areas, compare};
-use support::{difference, strips, whole};
+use support::outlines::{BOUND, Errors, SCREEN, arc, center, curved, drawn, px, thick, turned};
+use support::{accuracy, difference, strips, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
-use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
+use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
-use zstrip::math::Angle16;
-use zstrip::math::Pixels;
-use zstrip::scene::{Outline, ShapeBuffer};
-use zstrip::shape::{Cap, Circle, Ellipse, FillRule, Join, Path, Polyline, Ring, RoundedRectangle};
+use zstrip::math::{Angle16, Pixels, Scalar};
+use zstrip::scene::ShapeBuffer;
+use zstrip::shape::{
+    Cap, Circle, CurvePath, Ellipse, FillRule, Join, Path, PathStep, Polyline, Ring, RoundedRectangle,
+};
 use zstrip::span::DepthState;
 use zstrip::target::Framebuffer;
 use zstrip::{Canvas, Scene, ScreenPoint};
-
-const SCREEN: (u16, u16) = (64, 48);
-
-/// Bound of the error of a covered part.
-const BOUND: f64 = 1.0 / 128.0;
 
 type Bits = [i32; 2];
 
@@ -32,13 +29,6 @@ fn points(contours: &[Vec<Bits>]) -> Vec<Vec<ScreenPoint>> {
 
 fn in_pixels(contours: &[Vec<Bits>]) -> Vec<Contour> {
     contours.iter().map(|contour| contour.iter().map(|p| p.map(|c| f64::from(c) / 256.0)).collect()).collect()
-}
-
-/// A picture of the covered parts, white on black.
-fn drawn(shape: &impl Outline, edges: usize, width: u16) -> Vec<u8> {
-    let mut words = vec![0xDEAD_BEEF; ShapeBuffer::words(width, edges)];
-    let mut buffer = ShapeBuffer::new(&mut words, width).expect("enough words");
-    whole::<Gray8>(SCREEN, Gray8::new(0), |scene| scene.canvas().fill(shape, Rgb888::WHITE, &mut buffer)).0
 }
 
 /// Random contours of one of many kinds.
@@ -106,12 +96,9 @@ fn covered_parts_are_exact_areas() {
             }
         }
     }
-    println!(
-        "worst error 1/{:.0}, with few edges 1/{:.0}; mean 1/{:.0}",
-        1.0 / worst[0],
-        1.0 / worst[1],
-        f64::from(count) / sum
-    );
+    println!("polygons: mean error 1/{:.0}", f64::from(count) / sum);
+    accuracy::check("coverage of a pixel by a polygon", worst[0] * 255.0);
+    accuracy::check("coverage of a pixel by a polygon, with memory for 4 to 9 edges", worst[1] * 255.0);
 }
 
 /// A length or a place of any size, most of them near the screen.
@@ -135,9 +122,25 @@ fn fill_any<F: Framebuffer>(canvas: &mut Canvas<'_, '_, F>, rng: &mut Rng, buffe
     let at = any_point(rng);
     let [a, b] = [(); 2].map(|()| px(any_bits(rng)));
     let round = rng.pick(&[false, true]);
-    match rng.below(7) {
+    match rng.below(8) {
         0 => canvas.fill(&Circle::new(at, a), color, buffer),
-        1 => canvas.fill(&Ellipse::new(at, a, b), color, buffer),
+        1 => {
+            let angle = if round { Angle16(rng.next_u64() as u16) } else { Angle16::ZERO };
+            canvas.fill(&Ellipse::new(at, a, b).turned(angle), color, buffer);
+        }
+        6 => {
+            let steps: Vec<_> = (0..rng.below(6))
+                .map(|_| match rng.below(5) {
+                    0 => PathStep::Move(any_point(rng)),
+                    1 => PathStep::Line(any_point(rng)),
+                    2 => PathStep::Quad(any_point(rng), any_point(rng)),
+                    _ => PathStep::Cubic(any_point(rng), any_point(rng), any_point(rng)),
+                })
+                .collect();
+            let path = CurvePath::new(&steps).at(at).turned(Angle16(rng.next_u64() as u16));
+            let scale = rng.pick(&[1 << 16, 40_000, -65_536, 0, i32::MAX, i32::MIN]);
+            canvas.fill(&path.scaled(Scalar::from_bits(scale)), color, buffer);
+        }
         2 | 3 => {
             let ring = Ring::new(at, a, b).part(Angle16(rng.next_u64() as u16), any_bits(rng));
             canvas.fill(&if round { ring.with_round_ends() } else { ring }, color, buffer);
@@ -194,56 +197,6 @@ fn strips_do_not_matter() {
     }
 }
 
-fn px(bits: i32) -> Pixels {
-    Pixels::from_bits(bits)
-}
-
-fn turned(center: [f64; 2], radii: [f64; 2], turn: f64) -> [f64; 2] {
-    let (sine, cosine) = (turn * core::f64::consts::TAU).sin_cos();
-    [center[0] + radii[0] * cosine, center[1] + radii[1] * sine]
-}
-
-/// An arc in so many chords that they do not matter, from one turn to another.
-fn arc(center: [f64; 2], radii: [f64; 2], from: f64, to: f64) -> Contour {
-    let chords = ((to - from).abs() * 4000.0).ceil().max(8.0) as usize;
-    (0..=chords).map(|k| turned(center, radii, from + (to - from) * k as f64 / chords as f64)).collect()
-}
-
-/// Worst and mean errors of one kind of shape.
-struct Errors {
-    name: &'static str,
-    worst: f64,
-    sum: f64,
-    count: u32,
-}
-
-impl Errors {
-    fn new(name: &'static str) -> Self {
-        Self { name, worst: 0.0, sum: 0.0, count: 0 }
-    }
-
-    fn add(&mut self, shape: &(impl Outline + core::fmt::Debug), exact: &[Contour]) {
-        let found = drawn(shape, 64, 64);
-        let exact = areas(exact, false, (64, 48));
-        let (error, mean, at) = compare(&found, &exact);
-        let (x, y) = (at % 64, at / 64);
-        let (is, exact) = (f64::from(found[at]) / 255.0, exact[at]);
-        assert!(error <= BOUND, "{}: pixel ({x}, {y}) is {is}, exactly {exact}: {shape:?}", self.name);
-        self.worst = self.worst.max(error);
-        (self.sum, self.count) = (self.sum + mean, self.count + 1);
-    }
-
-    fn print(&self) {
-        let mean = f64::from(self.count) / self.sum;
-        println!("{}: worst error 1/{:.0}, mean 1/{mean:.0}", self.name, 1.0 / self.worst);
-    }
-}
-
-fn center(rng: &mut Rng) -> (ScreenPoint, [f64; 2]) {
-    let [x, y] = [rng.between(0, 64 * 256), rng.between(0, 48 * 256)];
-    (ScreenPoint::new(px(x), px(y)), [f64::from(x) / 256.0, f64::from(y) / 256.0])
-}
-
 #[test]
 fn round_shapes_are_round() {
     let mut rng = Rng::new(5);
@@ -273,6 +226,7 @@ fn round_shapes_are_round() {
         errors.add(&Circle::new(ScreenPoint::new(px(x), px(y)), px(radius)), &[contour]);
     }
     errors.print();
+    accuracy::check("coverage of a pixel by a circle or an ellipse", errors.worst * 255.0);
     let mut errors = Errors::new("rings and pies");
     for case in 0..cases(80) {
         let (at, place) = center(&mut rng);
@@ -310,6 +264,7 @@ fn round_shapes_are_round() {
         }
     }
     errors.print();
+    accuracy::check("coverage of a pixel by a part of a ring", errors.worst * 255.0);
     let mut errors = Errors::new("rectangles");
     for _ in 0..cases(60) {
         let ((a, p), (b, q)) = (center(&mut rng), center(&mut rng));
@@ -329,126 +284,7 @@ fn round_shapes_are_round() {
         errors.add(&RoundedRectangle::new(a, b), &[sharp]);
     }
     errors.print();
-}
-
-/// The contours of a thick line, in f64: segments, joins and caps, all clockwise.
-#[allow(clippy::too_many_arguments)] // the parts of a stroke
-fn thick(
-    points: &[[f64; 2]],
-    closed: bool,
-    half: f64,
-    join: Join,
-    cap: Cap,
-    limit: f64,
-    dashes: &[f64],
-    offset: f64,
-) -> Vec<Contour> {
-    let mut points = points.to_vec();
-    points.dedup();
-    if closed {
-        points.push(points[0]);
-        points.dedup();
-    }
-    let mut contours = Vec::new();
-    // The parts of the line that are drawn, as distances along it.
-    let lengths: Vec<f64> = points.windows(2).map(|s| (s[1][0] - s[0][0]).hypot(s[1][1] - s[0][1])).collect();
-    let total: f64 = lengths.iter().sum();
-    let mut drawn = vec![];
-    if dashes.is_empty() {
-        drawn.push((0.0, total));
-    } else {
-        let (mut at, mut k) = (-offset, 0);
-        while at < total {
-            let end = at + dashes[k % dashes.len()];
-            if k % 2 == 0 && end > 0.0 {
-                drawn.push((at, end));
-            }
-            (at, k) = (end, k + 1);
-        }
-    }
-    let meets = closed && dashes.is_empty();
-    for (start, end) in drawn {
-        let mut from = 0.0;
-        let mut previous: Option<[f64; 2]> = None;
-        for (segment, length) in points.windows(2).zip(&lengths) {
-            let to = from + length;
-            let u = [(segment[1][0] - segment[0][0]) / length, (segment[1][1] - segment[0][1]) / length];
-            let (a, b) = (start.max(from), end.min(to));
-            if a < b || (start == end && a == b) {
-                let n = [-u[1] * half, u[0] * half];
-                let at = |d: f64| [segment[0][0] + u[0] * (d - from), segment[0][1] + u[1] * (d - from)];
-                let (mut p, mut q) = (at(a), at(b));
-                let capped = [
-                    !meets && a == start.max(0.0) && from <= a && (start > from || from == 0.0 || start == from),
-                    !meets && b == end.min(total),
-                ];
-                let turn = u[1].atan2(u[0]) / core::f64::consts::TAU;
-                if cap == Cap::Round {
-                    if capped[0] {
-                        contours.push(arc(p, [half; 2], turn + 0.25, turn + 0.75));
-                    }
-                    if capped[1] {
-                        contours.push(arc(q, [half; 2], turn - 0.25, turn + 0.25));
-                    }
-                }
-                if cap == Cap::Square {
-                    if capped[0] {
-                        p = [p[0] - u[0] * half, p[1] - u[1] * half];
-                    }
-                    if capped[1] {
-                        q = [q[0] + u[0] * half, q[1] + u[1] * half];
-                    }
-                }
-                contours.push(vec![
-                    [p[0] + n[0], p[1] + n[1]],
-                    [p[0] - n[0], p[1] - n[1]],
-                    [q[0] - n[0], q[1] - n[1]],
-                    [q[0] + n[0], q[1] + n[1]],
-                ]);
-                if let Some(v) = previous.filter(|_| a == from) {
-                    contours.extend(joined(segment[0], v, u, half, join, limit));
-                }
-            }
-            previous = Some(u);
-            from = to;
-        }
-    }
-    if meets {
-        let direction = |k: usize| {
-            let s = &points[k..k + 2];
-            [(s[1][0] - s[0][0]) / lengths[k], (s[1][1] - s[0][1]) / lengths[k]]
-        };
-        contours.extend(joined(points[0], direction(lengths.len() - 1), direction(0), half, join, limit));
-    }
-    contours
-}
-
-fn joined(at: [f64; 2], before: [f64; 2], after: [f64; 2], half: f64, join: Join, limit: f64) -> Option<Contour> {
-    let turn = before[0] * after[1] - before[1] * after[0];
-    let cosine = before[0] * after[0] + before[1] * after[1];
-    let side = if turn >= 0.0 { -1.0 } else { 1.0 };
-    let place = |u: [f64; 2]| [at[0] - side * u[1] * half, at[1] + side * u[0] * half];
-    let (mut first, mut second) = (place(before), place(after));
-    if turn < 0.0 {
-        core::mem::swap(&mut first, &mut second);
-    }
-    let mut contour = vec![at];
-    match join {
-        Join::Round => {
-            let angle = |p: [f64; 2]| (p[1] - at[1]).atan2(p[0] - at[0]) / core::f64::consts::TAU;
-            let (from, mut to) = (angle(first), angle(second));
-            if to < from {
-                to += 1.0;
-            }
-            contour.extend(arc(at, [half; 2], from, to));
-        }
-        Join::Miter if 2.0 / (1.0 + cosine) <= limit * limit => {
-            let sum = [first[0] + second[0] - 2.0 * at[0], first[1] + second[1] - 2.0 * at[1]];
-            contour.extend([first, [at[0] + sum[0] / (1.0 + cosine), at[1] + sum[1] / (1.0 + cosine)], second]);
-        }
-        _ => contour.extend([first, second]),
-    }
-    (half > 0.0).then_some(contour)
+    accuracy::check("coverage of a pixel by a rectangle with round corners", errors.worst * 255.0);
 }
 
 #[test]
@@ -476,6 +312,7 @@ fn thick_lines_are_their_segments_joins_and_caps() {
         errors.add(&shape, &exact);
     }
     errors.print();
+    accuracy::check("coverage of a pixel by a thick line", errors.worst * 255.0);
 }
 
 /// A line to a point and back is the line.
@@ -493,4 +330,64 @@ fn lines_that_turn_back_cover_nothing_else() {
             assert!(most <= Some(2), "case {case}: {a:?}, {b:?}, {width}: {most:?}");
         }
     }
+}
+
+#[test]
+fn curves_are_near_their_polynomials() {
+    let mut rng = Rng::new(21);
+    let mut errors = Errors::of_curves("curves");
+    for case in 0..cases(80) {
+        let middle = center(&mut rng);
+        let reach = [2000, 8000][case % 2];
+        let mut near = |rng: &mut Rng| {
+            let [x, y] = [(); 2].map(|()| rng.between(-reach, reach));
+            let c = f64::from;
+            let (point, [a, b]) = middle;
+            (ScreenPoint::new(point.x() + px(x), point.y() + px(y)), [a + c(x) / 256.0, b + c(y) / 256.0])
+        };
+        let (steps, contour) = curved(&mut rng, &mut near);
+        errors.add(&CurvePath::new(&steps), &[contour]);
+    }
+    errors.print();
+    accuracy::check("coverage of a pixel by a path of curves", errors.worst * 255.0);
+}
+
+#[test]
+fn ellipses_and_paths_turn() {
+    let mut rng = Rng::new(22);
+    let mut errors = Errors::of_curves("turned ellipses");
+    for case in 0..cases(60) {
+        let (at, place) = center(&mut rng);
+        let [a, b] = [(); 2].map(|()| rng.between(0, [2000, 8000][case % 2]));
+        let angle = Angle16(rng.next_u64() as u16);
+        let (sine, cosine) = (f64::from(angle.0) / 65_536.0 * core::f64::consts::TAU).sin_cos();
+        let mut exact = arc([0.0; 2], [a, b].map(|bits| f64::from(bits) / 256.0), 0.0, 1.0);
+        for point in &mut exact {
+            let [x, y] = *point;
+            *point = [place[0] + x * cosine - y * sine, place[1] + x * sine + y * cosine];
+        }
+        errors.add(&Ellipse::new(at, px(a), px(b)).turned(angle), &[exact]);
+    }
+    errors.print();
+    accuracy::check("coverage of a pixel by a turned ellipse", errors.worst * 255.0);
+    let mut errors = Errors::of_curves("turned paths");
+    for _ in 0..cases(30) {
+        let (at, place) = center(&mut rng);
+        let angle = Angle16(rng.next_u64() as u16);
+        let (sine, cosine) = (f64::from(angle.0) / 65_536.0 * core::f64::consts::TAU).sin_cos();
+        let scale = rng.between(-100_000, 100_000);
+        let mut around = |rng: &mut Rng| {
+            let [x, y] = [(); 2].map(|()| rng.between(-3000, 3000));
+            (ScreenPoint::new(px(x), px(y)), [x, y].map(|c| f64::from(c) / 256.0))
+        };
+        let (steps, mut exact) = curved(&mut rng, &mut around);
+        for point in &mut exact {
+            let [x, y] = point.map(|c| c * f64::from(scale) / 65_536.0);
+            *point = [place[0] + x * cosine - y * sine, place[1] + x * sine + y * cosine];
+        }
+        let path = CurvePath::new(&steps).at(at).turned(angle).scaled(Scalar::from_bits(scale));
+        errors.add(&path, &[exact]);
+    }
+    errors.print();
+    accuracy::check("coverage of a pixel by a turned path", errors.worst * 255.0);
 }

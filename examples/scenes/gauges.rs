@@ -11,8 +11,8 @@ use zstrip::math::{Angle16, Pixels, Scalar};
 use zstrip::scene::ShapeBuffer;
 use zstrip::shader::{Alpha, Blend, Flat, Opacity};
 use zstrip::shape::{
-    Cap, Circle, Join, LinearGradient, Path, Polyline, RadialGradient, Ramp, Ring, RoundedRectangle, Sprite, Stencil,
-    Tinted,
+    Cap, Circle, CurvePath, Ellipse, Join, LinearGradient, Path, PathStep, Polyline, RadialGradient, Ramp, Ring,
+    RoundedRectangle, Sprite, Stencil, Tinted,
 };
 use zstrip::texture::Bilinear;
 use zstrip::{Canvas, Framebuffer, Scene, ScreenPoint};
@@ -71,6 +71,28 @@ fn write(bytes: &mut [u8], size: Size, text: &str) {
         let Ok(_) = Text::with_text_style(text, Point::new(size.width as i32 / 2, 0), font, style).draw(&mut stencil);
     }
 }
+
+/// A point of an icon, 256 units high.
+const fn icon(x: i32, y: i32) -> ScreenPoint {
+    ScreenPoint::new(Pixels::from_bits(x << 8), Pixels::from_bits(y << 8))
+}
+
+/// A leaf with its stem, and a drop, in curves around their middle.
+static LEAF: [PathStep; 6] = [
+    PathStep::Move(icon(0, -128)),
+    PathStep::Cubic(icon(90, -80), icon(110, 30), icon(10, 74)),
+    PathStep::Line(icon(10, 128)),
+    PathStep::Line(icon(-10, 128)),
+    PathStep::Line(icon(-10, 74)),
+    PathStep::Cubic(icon(-110, 30), icon(-90, -80), icon(0, -128)),
+];
+static DROP: [PathStep; 5] = [
+    PathStep::Move(icon(0, -128)),
+    PathStep::Quad(icon(20, -70), icon(56, -20)),
+    PathStep::Cubic(icon(120, 70), icon(60, 128), icon(0, 128)),
+    PathStep::Cubic(icon(-60, 128), icon(-120, 70), icon(-56, -20)),
+    PathStep::Quad(icon(-20, -70), icon(0, -128)),
+];
 
 /// Size of the stencil of a title.
 const TITLE: Size = Size::new(48, 10);
@@ -157,6 +179,7 @@ impl Gauges {
         canvas.fill(&band.part(START + Angle16((SWEEP * 7 / 8) as u16), SWEEP / 8), RED, buffer);
         let way = ((SWEEP >> 4) * (share >> 4)) >> 8;
         canvas.fill(&band.part(START, way).with_round_ends(), color, buffer);
+        Self::icon(panel, around(center, Angle16::from_degrees(90), 58 * 256), number, color);
         self.scale(panel, center, number);
         self.needle(panel, center, START + Angle16(way as u16));
     }
@@ -186,6 +209,25 @@ impl Gauges {
         let Some(Ok(title)) = self.titles.get(number).map(|title| Tinted::new(title, TITLE, DIM)) else { return };
         let sprite = Sprite::new(&title).filter(Bilinear).at(around(center, Angle16::from_degrees(90), 38 * 256));
         canvas.fill_with(&sprite, &Blend::new(sprite, Alpha), 0, buffer);
+    }
+
+    /// A turned leaf, or a drop with a highlight.
+    #[inline(never)]
+    fn icon<F: Framebuffer>(
+        Panel { canvas, buffer }: &mut Panel<'_, '_, '_, '_, F>,
+        at: ScreenPoint,
+        number: usize,
+        color: Rgb888,
+    ) {
+        let scale = Scalar::from_bits(16 << 8);
+        if number == 0 {
+            let leaf = CurvePath::new(&LEAF).at(at).scaled(scale).turned(Angle16::from_degrees(40));
+            return canvas.fill(&leaf, color, buffer);
+        }
+        canvas.fill(&CurvePath::new(&DROP).at(at).scaled(scale), color, buffer);
+        let middle = ScreenPoint::new(at.x() - px(500), at.y() + px(800));
+        let highlight = Ellipse::new(middle, px(200), px(560)).turned(Angle16::from_degrees(-20));
+        canvas.fill(&highlight, TEXT, buffer);
     }
 
     /// A needle with its shadow, and its hub.

@@ -6,8 +6,9 @@
 //! ... of its height, whose covered parts add up. Where so many edges cross one height that even 1/256 of a row has too
 //! many, the places where they cross it are found, as many at a time as fit. So any memory will do for any outline.
 
+use super::area_cells::{Cells, start_and_end};
 use super::area_edge::{AreaEdge, AreaEdges, EDGE_WORDS, Wanted};
-use super::area_row::{Cells, FillRule, Row, start_and_end};
+use super::area_row::{FillRule, Row};
 use super::triangle::PixelRect;
 
 /// Height of the smallest part of a row, 1/256 px: that of a unit of [`Pixels`](crate::math::Pixels).

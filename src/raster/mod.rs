@@ -5,8 +5,10 @@
 
 mod along;
 mod area;
+mod area_cells;
 mod area_edge;
 mod area_row;
+mod bezier;
 mod direction;
 mod edge;
 mod gradient;
@@ -21,6 +23,7 @@ pub use along::Along;
 pub(crate) use area::{AreaMemory, LEAST_EDGES, Run, area_words};
 pub(crate) use area_edge::AreaEdges;
 pub use area_row::FillRule;
+pub(crate) use bezier::Bezier;
 pub(crate) use direction::unit;
 pub use gradient::{Gradients, PlaneEquation};
 pub(crate) use gradient::{gradients, high};

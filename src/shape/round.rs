@@ -66,24 +66,69 @@ impl Outline for Circle {
     }
 }
 
-/// An ellipse whose axes are those of the screen.
+/// An ellipse. Its axes are those of the screen, unless it is turned.
+///
+/// ```
+/// use zstrip::ScreenPoint;
+/// use zstrip::math::{Angle16, Pixels};
+/// use zstrip::shape::Ellipse;
+/// let orbit = Ellipse::new(ScreenPoint::corner(60, 60), Pixels::from_num(50), Pixels::from_num(20));
+/// let orbit = orbit.turned(Angle16::from_degrees(-25));
+/// # let _ = orbit;
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ellipse {
     center: ScreenPoint,
     radii: [Pixels; 2],
+    angle: Angle16,
 }
+
+/// Distance of an arc's control points from its ends, for a sixteenth of a turn of the circle of radius 1, in 2.30:
+/// 4/3 tan(π / 32).
+const CONTROL: i32 = 141_005_785;
 
 impl Ellipse {
     /// Makes an ellipse of the radii along x and along y.
     #[must_use]
     pub const fn new(center: ScreenPoint, x: Pixels, y: Pixels) -> Self {
-        Self { center, radii: [x, y] }
+        Self { center, radii: [x, y], angle: Angle16::ZERO }
+    }
+
+    /// Returns the ellipse turned clockwise around its centre.
+    #[must_use]
+    pub const fn turned(self, angle: Angle16) -> Self {
+        Self { angle, ..self }
+    }
+
+    /// Draws a turned ellipse as 16 curves of the third degree, which are within 1/500 px of it up to a radius of
+    /// 16,384 px.
+    fn trace_turned(&self, pen: &mut Pen<'_, '_>) {
+        let (center, radii, axis) = (place(self.center), self.radii.map(length), direction(self.angle));
+        let turned = |x: i64, y: i64| [times(x, axis[0]) - times(y, axis[1]), times(x, axis[1]) + times(y, axis[0])];
+        // A point, and its distance from both of its control points.
+        let at = |number: u16| {
+            let [cosine, sine] = direction(Angle16(number << 12));
+            let point = turned(times(radii[0], cosine), times(radii[1], sine));
+            let way = turned(times(times(radii[0], -sine), CONTROL), times(times(radii[1], cosine), CONTROL));
+            ([center[0] + point[0], center[1] + point[1]], way)
+        };
+        let (mut from, mut way) = at(0);
+        pen.move_to_place(from);
+        for number in 1..=16 {
+            let (to, last) = at(number & 15);
+            pen.cubic_to_place([from[0] + way[0], from[1] + way[1]], [to[0] - last[0], to[1] - last[1]], to);
+            (from, way) = (to, last);
+        }
     }
 }
 
 impl Outline for Ellipse {
     fn trace(&self, pen: &mut Pen<'_, '_>) {
-        Curve::new(place(self.center), self.radii.map(length)).whole(pen, true);
+        if self.angle == Angle16::ZERO {
+            Curve::new(place(self.center), self.radii.map(length)).whole(pen, true);
+        } else {
+            self.trace_turned(pen);
+        }
     }
 
     fn is_convex(&self) -> bool {
@@ -91,7 +136,15 @@ impl Outline for Ellipse {
     }
 
     fn bounds(&self) -> Option<Rectangle> {
-        Some(around(place(self.center), self.radii.map(length)))
+        let radii = self.radii.map(length);
+        if self.angle == Angle16::ZERO {
+            return Some(around(place(self.center), radii));
+        }
+        // No farther than the greater radius, nor than the sum of what both radii reach.
+        let [cosine, sine] = direction(self.angle).map(i32::abs);
+        let most = radii[0].max(radii[1]);
+        let reach = |a: i32, b: i32| most.min(times(radii[0], a) + times(radii[1], b) + 2);
+        Some(around(place(self.center), [reach(cosine, sine), reach(sine, cosine)]))
     }
 }
 

@@ -3,6 +3,7 @@
 
 pub mod accuracy;
 pub mod area;
+pub mod outlines;
 
 use crate::reference::rng::Rng;
 use crate::reference::scenes::clip_soup;
