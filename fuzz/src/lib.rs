@@ -7,6 +7,7 @@
 //! | [`coverage`] | one triangle | exactly the pixels and, within 1, the depths of the model in integers |
 //! | [`clipping`] | triangles in clip space, in every depth range | the pixels of a rasterizer that does not clip |
 //! | [`strokes`] | lines in every stroke, and the canvas | thin lines: exactly the model's pixels; all: the same bytes |
+//! | [`shapes`] | shapes with smooth edges, gradients, sprites | the same bytes for any strips |
 //! | [`constructors`] | constructors and functions on numbers | results in range, the model's where there is one |
 //! | [`bytes`] | what reads bytes: images, palettes, packed formats | the model's texels and bits |
 //! | [`models`] | containers with changed bytes | an error, or pictures: the same bytes for any strips and records |
@@ -23,6 +24,7 @@ pub mod models;
 mod reference;
 pub mod replay;
 pub mod scenes;
+pub mod shapes;
 pub mod sinks;
 mod source;
 pub mod strokes;
@@ -35,11 +37,12 @@ pub use reference::rng::Rng;
 pub type Target = (&'static str, fn(&[u8]) -> u64);
 
 /// All targets.
-pub const TARGETS: [Target; 8] = [
+pub const TARGETS: [Target; 9] = [
     ("scenes", scenes::run),
     ("coverage", coverage::run),
     ("clipping", clipping::run),
     ("strokes", strokes::run),
+    ("shapes", shapes::run),
     ("constructors", constructors::run),
     ("bytes", bytes::run),
     ("models", models::run),
