@@ -293,7 +293,16 @@ fn thick_lines_are_their_segments_joins_and_caps() {
     let mut errors = Errors::new("thick lines");
     for case in 0..cases(150) {
         let count = rng.between(2, 6);
-        let points: Vec<_> = (0..count).map(|_| center(&mut rng)).collect();
+        // On the screen, or on both sides of it.
+        let point = |rng: &mut Rng| {
+            let (at, place) = center(rng);
+            if case % 4 < 2 {
+                return (at, place);
+            }
+            let wide = |bits: i32| 4 * bits - 96 * 256;
+            (ScreenPoint::new(px(wide(at.x().to_bits())), at.y()), [4.0 * place[0] - 96.0, place[1]])
+        };
+        let points: Vec<_> = (0..count).map(|_| point(&mut rng)).collect();
         let (line, exact): (Vec<_>, Vec<_>) = points.into_iter().unzip();
         let width = rng.between(20, [600, 3000][case % 2]);
         let join = rng.pick(&[Join::Miter, Join::Round, Join::Bevel]);

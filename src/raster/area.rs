@@ -1,10 +1,11 @@
 //! Areas → runs of pixels: outlines come in, for as many rows at a time as there is memory for, and runs of pixels that
 //! are covered alike, or each to a part of its own, go out, row by row from the top.
 //!
-//! An outline is traced once per band of rows. Where its edges in the band do not fit the memory, the band is halved
-//! and the outline traced again, down to a single row. A row with too many edges is cut into parts of a half, a quarter
-//! ... of its height, whose covered parts add up. Where so many edges cross one height that even 1/256 of a row has too
-//! many, the places where they cross it are found, as many at a time as fit. So any memory will do for any outline.
+//! An outline is traced once per band of rows. Where its edges in the band do not fit the memory, the band loses its
+//! last rows while the outline is traced, down to a single row. A row with too many edges is cut into parts of a half,
+//! a quarter ... of its height, whose covered parts add up. Where so many edges cross one height that even 1/256 of a
+//! row has too many, the places where they cross it are found, as many at a time as fit. So any memory will do for any
+//! outline.
 
 use super::area_cells::{Cells, start_and_end};
 use super::area_edge::{AreaEdge, AreaEdges, EDGE_WORDS, Wanted};
@@ -53,7 +54,7 @@ impl<'m> AreaMemory<'m> {
     }
 
     /// Begins an area that is drawn in a rectangle.
-    pub(crate) fn area(&mut self, rect: &PixelRect, rule: FillRule, convex: bool) -> Area<'_> {
+    pub(crate) fn area(&mut self, rect: &PixelRect, rule: FillRule, kind: Contours) -> Area<'_> {
         let Self { edges, order, cover, ranges } = self;
         let order_len = order.len().min(1 << 14) as i32;
         let width = (cover.len() as i32 - 1).min(rect.x.end.wrapping_sub(rect.x.start)).max(0);
@@ -71,7 +72,7 @@ impl<'m> AreaMemory<'m> {
             order,
             cells: Cells { cover, ranges, count: 0, left: rect.x.start, width },
             rule,
-            convex,
+            kind,
             row: rect.y.start,
             end: rect.y.end,
             // Most outlines have fewer than 4 edges per row.
@@ -90,6 +91,16 @@ impl<'m> AreaMemory<'m> {
     }
 }
 
+/// Kinds of outlines, by how their contours lie.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Contours {
+    /// One convex contour.
+    Convex,
+    /// Contours that neither cross nor touch, with winding numbers of 0 and 1, or 0 and -1.
+    Apart,
+    Any,
+}
+
 /// An area that is being drawn. Its owner calls [`begin_band`](Self::begin_band), traces the outline into
 /// [`edges`](Self::edges), calls [`end_band`](Self::end_band), and takes all runs, until there is no band any more.
 pub(crate) struct Area<'a> {
@@ -98,8 +109,7 @@ pub(crate) struct Area<'a> {
     order: &'a mut [u32],
     cells: Cells<'a>,
     rule: FillRule,
-    /// Set if the outline is one convex contour.
-    convex: bool,
+    kind: Contours,
     /// The current row, the end of all rows, and the number of rows of a band.
     row: i32,
     end: i32,
@@ -162,19 +172,19 @@ impl<'a> Area<'a> {
         true
     }
 
-    /// Ends the tracing of a band. Without enough memory for it, the next band is a smaller one, and has no runs.
+    /// Ends the tracing of a band. Without enough memory for one row, the next band is a part of it, and has no runs.
     #[inline(never)]
     pub(crate) fn end_band(&mut self) {
         self.scanning = false;
         (self.active, self.waiting) = (0, 0);
         match self.edges.wanted {
-            Wanted::Rows if self.edges.overflowed && self.rows > 1 => self.rows >>= 1,
             Wanted::Rows if self.edges.overflowed => {
                 self.edges.wanted = Wanted::Part;
                 self.part = 0..1 << 15;
             }
             Wanted::Rows => {
-                self.band_end = self.row + self.rows;
+                self.band_end = self.edges.bottom >> 16;
+                self.rows = self.band_end - self.row;
                 // Twice as many rows may well have twice as many edges.
                 if self.edges.count < self.edges.edges.len() / 2 {
                     self.rows = self.rows.saturating_mul(2);
@@ -320,10 +330,10 @@ impl<'a> Area<'a> {
         if self.active == 0 {
             return false;
         }
-        if self.convex {
-            self.in_row().fill_convex();
-        } else {
-            self.in_row().fill(0, 1 << 16);
+        match self.kind {
+            Contours::Convex => self.in_row().fill_convex(),
+            Contours::Apart => self.in_row().fill_apart(),
+            Contours::Any => self.in_row().fill(0, 1 << 16),
         }
         let mut kept = 0;
         for k in 0..self.active {

@@ -254,28 +254,61 @@ impl AreaEdges<'_> {
         }
     }
 
+    /// Returns the place of the next edge, which begins at a height; `None` if the edge is not wanted any more.
+    #[inline(always)]
+    fn next_edge(&mut self, top: i32) -> Option<&mut AreaEdge> {
+        if self.count >= self.edges.len() && !self.make_room(top) {
+            return None;
+        }
+        let edge = self.edges.get_mut(self.count)?;
+        self.count += 1;
+        Some(edge)
+    }
+
+    /// Makes room for an edge that begins at a height: the band loses a quarter of its rows, and its edges below them,
+    /// as often as it takes. So an outline is traced once for as many rows as fit. Returns whether the edge is still
+    /// wanted.
+    #[cold]
+    #[inline(never)]
+    fn make_room(&mut self, top: i32) -> bool {
+        while self.count >= self.edges.len() {
+            let rows = (self.bottom - self.top) >> 16;
+            if self.wanted != Wanted::Rows || rows <= 1 {
+                self.overflowed = true;
+                return false;
+            }
+            self.bottom = self.top + ((rows - ((rows + 3) >> 2)) << 16);
+            let mut kept = 0;
+            for k in 0..self.count {
+                let Some(edge) = self.edges.get(k).filter(|edge| edge.top < self.bottom) else { continue };
+                if kept < k {
+                    let edge = *edge;
+                    if let Some(place) = self.edges.get_mut(kept) {
+                        *place = edge;
+                    }
+                }
+                kept += 1;
+            }
+            self.count = kept;
+        }
+        top < self.bottom
+    }
+
     /// Adds a horizontal line. It bounds no area by itself, but in its row, it crosses gaps between other edges.
     fn level(&mut self, a: [i32; 2], b: [i32; 2]) {
         let is_between_rows = self.wanted == Wanted::Rows && a[1] & 0xFFFF == 0;
         if is_between_rows || matches!(self.wanted, Wanted::Crossings { .. }) {
             return;
         }
-        let Some(edge) = self.edges.get_mut(self.count) else {
-            self.overflowed = true;
-            return;
-        };
-        self.count += 1;
+        let Some(edge) = self.next_edge(a[1]) else { return };
         *edge = AreaEdge { top: a[1], bottom: a[1], x: a[0], next: b[0], last: b[0], ..AreaEdge::default() };
     }
 
     /// Adds an edge. `width` and `height` are those of the line that it is a part of.
     #[inline(always)]
     fn push(&mut self, a: [i32; 2], b: [i32; 2], turn: i32, (width, height): (i32, u32)) {
-        let Some(edge) = self.edges.get_mut(self.count) else {
-            self.overflowed = true;
-            return;
-        };
-        self.count += 1;
+        let band_top = self.top;
+        let Some(edge) = self.next_edge(a[1]) else { return };
         let (rise, flat) = rise(a[0], b[0], width, height);
         *edge = AreaEdge { top: a[1], bottom: b[1], x: a[0], next: b[0], last: b[0], rise, ..AreaEdge::default() };
         edge.turn = 2 * turn + flat;
@@ -292,7 +325,7 @@ impl AreaEdges<'_> {
             let half = (1_i32 << down) >> 1;
             edge.slope = (mul_high_signed(width, reciprocal(height << shift)).saturating_add(half)) >> down;
         }
-        let skipped = (self.top >> 16) - row;
+        let skipped = (band_top >> 16) - row;
         if skipped > 0 {
             // Modulo 2³²; the result is inside of the guard.
             edge.x = edge.next.wrapping_add(edge.slope.wrapping_mul(skipped - 1));
@@ -321,11 +354,7 @@ impl AreaEdges<'_> {
             return;
         }
         let (start, end) = (place(self.top), place(self.bottom));
-        let Some(edge) = self.edges.get_mut(self.count) else {
-            self.overflowed = true;
-            return;
-        };
-        self.count += 1;
+        let Some(edge) = self.next_edge(start[1]) else { return };
         let (rise, flat) = rise(start[0], end[0], width, height);
         *edge = AreaEdge {
             top: start[1],

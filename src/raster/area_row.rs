@@ -171,6 +171,32 @@ impl Row<'_, '_> {
         }
     }
 
+    /// Fills the cells of a row of contours that do not cross, where winding numbers are 0 and 1, or 0 and -1. So edges
+    /// of one direction have the inside on their right, those of the other one on their left, and only the ranges of
+    /// cells need an order.
+    #[inline(never)]
+    pub(super) fn fill_apart(&mut self) {
+        let (top, count) = (self.top, self.order.len());
+        for k in 0..count {
+            let Self { edges, order, cells, .. } = self;
+            let Some(edge) = order.get(k).and_then(|number| edges.get_mut(*number as usize)) else { break };
+            let piece = edge.piece(top);
+            let (left, right) = if piece.from < piece.to { (piece.from, piece.to) } else { (piece.to, piece.from) };
+            (edge.low, edge.high) = (left, right);
+            if piece.start < piece.end {
+                cells.add(&piece, edge, edge.winding() > 0);
+            }
+        }
+        self.sort(0, count, |edge| edge.low);
+        let Self { edges, order, cells, .. } = self;
+        for k in 0..count {
+            let edge = edge_of(edges, order, k);
+            if edge.top < edge.bottom {
+                cells.add_range(edge.low, edge.high);
+            }
+        }
+    }
+
     /// Fills the cells between two edges, if that is all there is: both are as high as the row, and do not cross.
     #[inline(always)]
     fn fill_between(&mut self, from: i32, to: i32) -> bool {

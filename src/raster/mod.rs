@@ -20,7 +20,7 @@ mod small;
 mod triangle;
 
 pub use along::Along;
-pub(crate) use area::{AreaMemory, LEAST_EDGES, Run, area_words};
+pub(crate) use area::{AreaMemory, Contours, LEAST_EDGES, Run, area_words};
 pub(crate) use area_edge::AreaEdges;
 pub use area_row::FillRule;
 pub(crate) use bezier::Bezier;

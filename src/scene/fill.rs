@@ -5,7 +5,7 @@ use super::canvas::{Canvas, ScreenPoint, level};
 use super::outline::{Outline, Pen};
 use super::scene::{Target, check};
 use crate::color::{PixelFormat, channels, packed};
-use crate::raster::{AreaEdges, AreaMemory, Gradients, LEAST_EDGES, PixelRect, Run, area_words};
+use crate::raster::{AreaEdges, AreaMemory, Contours, Gradients, LEAST_EDGES, PixelRect, Run, area_words};
 use crate::shader::Flat;
 use crate::span::{
     Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Shader, Span, SpanOf,
@@ -188,8 +188,13 @@ impl<F: Framebuffer> Canvas<'_, '_, F> {
             shader,
             primitive,
         };
+        let kind = match (shape.is_convex(), shape.is_apart()) {
+            (true, _) => Contours::Convex,
+            (_, true) => Contours::Apart,
+            _ => Contours::Any,
+        };
         while rect.x.start < rect.x.end {
-            let mut area = buffer.0.area(&rect, shape.rule(), shape.is_convex());
+            let mut area = buffer.0.area(&rect, shape.rule(), kind);
             while area.begin_band() {
                 trace(shape, &mut area.edges);
                 area.end_band();

@@ -127,6 +127,11 @@ impl Curve {
         Self { center, radii, step, stride }
     }
 
+    /// Returns the curve around another centre.
+    pub(super) const fn around(self, center: Place) -> Self {
+        Self { center, ..self }
+    }
+
     /// Returns the point in a direction.
     pub(super) fn point(&self, [x, y]: Direction) -> Place {
         [self.center[0] + times(self.radii[0], x), self.center[1] + times(self.radii[1], y)]

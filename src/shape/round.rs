@@ -265,6 +265,14 @@ impl Outline for Ring {
         self.inner <= Pixels::ZERO && !self.round && (self.sweep <= Self::TURN / 2 || self.sweep >= Self::TURN)
     }
 
+    fn is_apart(&self) -> bool {
+        // Seen from the centre, a half disc at an end reaches as far as the angle whose sine is half of the width over
+        // the middle radius: up to a quarter of a turn, and up to a twelfth where that is half or less.
+        let is_narrow = self.outer.to_bits() >> 2 <= (self.inner.to_bits() >> 2).saturating_mul(3);
+        let ends_are_apart = self.sweep <= Self::TURN / 2 || is_narrow && self.sweep <= Self::TURN / 6 * 5;
+        !self.round || self.sweep >= Self::TURN || ends_are_apart
+    }
+
     fn bounds(&self) -> Option<Rectangle> {
         Some(around(place(self.center), [length(self.outer); 2]))
     }

@@ -58,6 +58,8 @@ pub(super) fn way(from: Place, to: Place) -> Option<(Direction, i64)> {
 pub(super) struct Stroker<'s, 'p, 'm> {
     pub(super) pen: &'s mut Pen<'p, 'm>,
     half: i64,
+    /// Circle of round caps and joins, around any point.
+    round: Curve,
     join: Join,
     cap: Cap,
     limit: u32,
@@ -79,7 +81,9 @@ impl<'s, 'p, 'm> Stroker<'s, 'p, 'm> {
     /// Makes a stroker for half of a width in 16.16 px, and a miter limit from 0 to 16.
     pub(super) fn new(pen: &'s mut Pen<'p, 'm>, half: i64, join: Join, cap: Cap, limit: u32) -> Self {
         let times = if join == Join::Miter { i64::from(limit.max(2)) } else { 2 };
-        Self { pen, half, join, cap, limit, reach: times * half + (1 << 16), sides: [[0; 2]; 2] }
+        let is_round = join == Join::Round || cap == Cap::Round;
+        let round = Curve::new([0; 2], [if is_round { half } else { 0 }; 2]);
+        Self { pen, half, round, join, cap, limit, reach: times * half + (1 << 16), sides: [[0; 2]; 2] }
     }
 }
 
@@ -125,7 +129,7 @@ impl Stroker<'_, '_, '_> {
         let normal = [way[1], -way[0]];
         if self.cap == Cap::Round && !self.misses(at, at) {
             self.pen.jump(ends[0]);
-            Curve::new(at, [self.half; 2]).arc(self.pen, normal, normal.map(|c| -c));
+            self.round.around(at).arc(self.pen, normal, normal.map(|c| -c));
             self.pen.line_to_place(ends[1]);
         } else {
             self.pen.edge(ends[0], ends[1]);
@@ -196,7 +200,7 @@ impl Stroker<'_, '_, '_> {
             match (self.join, miter) {
                 (Join::Round, _) => {
                     let [from, to] = if turns_right { [[b, -a], [d, -c]] } else { [[-d, c], [-b, a]] };
-                    Curve::new(at, [self.half; 2]).arc(self.pen, from, to);
+                    self.round.around(at).arc(self.pen, from, to);
                 }
                 (Join::Miter, Some(miter)) => self.pen.line_to_place(miter),
                 _ => {}
