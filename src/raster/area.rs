@@ -18,6 +18,9 @@ const LEAST_PART: i32 = 256;
 /// Number of edges up to which insertion is the faster way to sort them.
 const FEW_EDGES: usize = 8;
 
+/// Most edges of a band: their numbers have 16 bits in the order of edges.
+const MOST_EDGES: usize = 0xFFFF;
+
 /// Fewest edges that areas take.
 pub(crate) const LEAST_EDGES: usize = 4;
 
@@ -42,7 +45,7 @@ impl<'m> AreaMemory<'m> {
         let cells = width.checked_add(1)?;
         let (cover, words) = words.split_at_mut_checked(cells)?;
         let (ranges, words) = words.split_at_mut_checked(cells.div_ceil(16))?;
-        let edges = words.len() / (EDGE_WORDS + 1);
+        let edges = (words.len() / (EDGE_WORDS + 1)).min(MOST_EDGES);
         if edges < LEAST_EDGES {
             return None;
         }
@@ -105,7 +108,7 @@ pub(crate) enum Contours {
 /// [`edges`](Self::edges), calls [`end_band`](Self::end_band), and takes all runs, until there is no band any more.
 pub(crate) struct Area<'a> {
     pub(crate) edges: AreaEdges<'a>,
-    /// Numbers of the edges in the current row, and from `waiting` on, of those below it, by their upper ends.
+    /// Numbers of the edges in the current row, and from `waiting` on, of those below it, with the rows they begin in.
     order: &'a mut [u32],
     cells: Cells<'a>,
     rule: FillRule,
@@ -252,25 +255,26 @@ impl<'a> Area<'a> {
         }
     }
 
-    /// Sorts edges by their upper ends: a few by insertion, many by Shell's method, with gaps of 2ⁿ - 1. Outlines go up
-    /// and down, so that half of their edges are in order.
+    /// Sorts edges by the rows that they begin in, and by their numbers: a few by insertion, many by Shell's method,
+    /// with gaps of 2ⁿ - 1. Outlines go up and down, so that half of their edges are in order. A row of the band is in
+    /// the upper half of a word, and a number in the lower one.
     fn sort(&mut self) {
-        let (edges, count) = (&*self.edges.edges, self.edges.count);
+        let AreaEdges { edges, count, top, .. } = &self.edges;
+        let count = *count;
         let Some(order) = self.order.get_mut(..count) else { return };
-        for (k, number) in order.iter_mut().enumerate() {
-            *number = k as u32;
+        for (k, (place, edge)) in order.iter_mut().zip(edges.iter()).enumerate() {
+            *place = (edge.top.wrapping_sub(*top).max(0) as u32 >> 16) << 16 | k as u32;
         }
-        let top = |number: u32| edges.get(number as usize).map_or(0, |edge| edge.top);
         let mut gap = 1;
         while count > FEW_EDGES && 2 * gap + 1 < count {
             gap = 2 * gap + 1;
         }
         while gap > 0 {
             for k in gap..count {
-                let Some(number) = order.get(k).copied() else { return };
-                let (own, mut at) = (top(number), k);
+                let Some(own) = order.get(k).copied() else { return };
+                let mut at = k;
                 while let Some(previous) = at.checked_sub(gap).and_then(|at| order.get(at)).copied() {
-                    if top(previous) <= own {
+                    if previous <= own {
                         break;
                     }
                     if let Some(place) = order.get_mut(at) {
@@ -279,7 +283,7 @@ impl<'a> Area<'a> {
                     at -= gap;
                 }
                 if let Some(place) = order.get_mut(at) {
-                    *place = number;
+                    *place = own;
                 }
             }
             gap >>= 1;
@@ -297,15 +301,22 @@ impl<'a> Area<'a> {
                 self.scanning = false;
                 self.row += 1;
             }
+            // Without a band of rows, edges have no order.
+            if self.row < self.band_end && self.active == 0 {
+                self.row = self.next_row().max(self.row);
+            }
             if self.row >= self.band_end {
                 return None;
             }
-            if self.fill_row() {
-                self.begin_scan();
-            } else {
-                self.row += 1;
-            }
+            self.fill_row();
+            self.begin_scan();
         }
+    }
+
+    /// Returns the row that the next edge begins in, or the end of the band.
+    fn next_row(&self) -> i32 {
+        let next = self.order.get(self.waiting).filter(|_| self.waiting < self.edges.count);
+        next.map_or(self.band_end, |word| (self.edges.top >> 16) + (word >> 16) as i32)
     }
 
     fn begin_scan(&mut self) {
@@ -313,22 +324,21 @@ impl<'a> Area<'a> {
         self.range = 0;
     }
 
-    /// Fills the cells of the current row, and moves its edges on. Returns whether there are any.
+    /// Fills the cells of the current row, and moves its edges on.
     #[inline(never)]
-    fn fill_row(&mut self) -> bool {
+    fn fill_row(&mut self) {
         let bottom = (self.row + 1) << 16;
-        while let Some(number) = self.order.get(self.waiting).copied().filter(|_| self.waiting < self.edges.count) {
-            if self.edges.edges.get(number as usize).is_none_or(|edge| edge.top >= bottom) {
+        // The first word of the rows below.
+        let below = ((self.row + 1 - (self.edges.top >> 16)) as u32) << 16;
+        while let Some(next) = self.order.get(self.waiting).copied().filter(|_| self.waiting < self.edges.count) {
+            if next >= below && below > 0 {
                 break;
             }
             if let Some(place) = self.order.get_mut(self.active) {
-                *place = number;
+                *place = next & 0xFFFF;
             }
             self.active += 1;
             self.waiting += 1;
-        }
-        if self.active == 0 {
-            return false;
         }
         match self.kind {
             Contours::Convex => self.in_row().fill_convex(),
@@ -348,7 +358,6 @@ impl<'a> Area<'a> {
             }
         }
         self.active = kept;
-        true
     }
 
     /// Returns the next run of the current row; `None` after the last one. Cells are cleared on the way.

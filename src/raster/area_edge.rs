@@ -162,12 +162,20 @@ pub(super) enum Wanted {
 type Place = [i64; 2];
 
 impl AreaEdges<'_> {
+    /// Returns whether two places are within ±8,192 px, as nearly all are: all their coordinates, plus that, are below
+    /// 2³⁰.
+    #[inline(always)]
+    pub(crate) const fn are_near(a: Place, b: Place) -> bool {
+        const fn above(c: i64) -> u64 {
+            c.wrapping_add(1 << 29) as u64
+        }
+        (above(a[0]) | above(a[1]) | above(b[0]) | above(b[1])) >> 30 == 0
+    }
+
     /// Adds a line of an outline, in 16.16 px. Its direction is that of the outline.
     #[inline]
     pub(crate) fn line(&mut self, from: Place, to: Place) {
-        // Nearly all lines are within ±8,192 px: all their coordinates, plus that, are below 2³⁰.
-        let above = |c: i64| c.wrapping_add(1 << 29) as u64;
-        if (above(from[0]) | above(from[1]) | above(to[0]) | above(to[1])) >> 30 == 0 {
+        if Self::are_near(from, to) {
             self.near_line(from.map(|c| c as i32), to.map(|c| c as i32));
         } else if !self.misses(from[1].min(to[1]), from[1].max(to[1])) {
             self.far_line(from, to);
@@ -223,7 +231,7 @@ impl AreaEdges<'_> {
     }
 
     /// Adds a line that is inside of the guard.
-    fn near_line(&mut self, from: [i32; 2], to: [i32; 2]) {
+    pub(crate) fn near_line(&mut self, from: [i32; 2], to: [i32; 2]) {
         let (a, b, turn) = if from[1] < to[1] { (from, to, 1) } else { (to, from, -1) };
         let is_in_vain = self.overflowed && self.wanted == Wanted::Rows;
         if b[1] <= self.top || a[1] >= self.bottom || a[0].min(b[0]) >= self.right || is_in_vain {

@@ -76,14 +76,19 @@ impl Row<'_, '_> {
         self.order.get(at).and_then(|number| self.edges.get_mut(*number as usize))
     }
 
-    /// Sorts some edges by a key. They are nearly sorted, as they were in the row before.
+    /// Sorts some edges by a key, and those of equal keys by their numbers, if `TIES` is set. They are nearly sorted,
+    /// as they were in the row before.
     #[inline(always)]
-    fn sort(&mut self, start: usize, end: usize, key: impl Fn(&AreaEdge) -> i32) {
+    fn sort<const TIES: bool>(&mut self, start: usize, end: usize, key: impl Fn(&AreaEdge) -> i32) {
         for k in start + 1..end {
             let (Some(number), own) = (self.order.get(k).copied(), key(self.edge(k))) else { return };
             let mut at = k;
-            while at > start && key(self.edge(at - 1)) > own {
+            while at > start {
                 let previous = self.order.get(at - 1).copied().unwrap_or(0);
+                let of_previous = key(self.edge(at - 1));
+                if of_previous < own || of_previous == own && (!TIES || previous < number) {
+                    break;
+                }
                 if let Some(place) = self.order.get_mut(at) {
                     *place = previous;
                 }
@@ -111,7 +116,8 @@ impl Row<'_, '_> {
         if count == 2 && self.fill_between(from, to) {
             return;
         }
-        self.sort(0, count, |edge| edge.low);
+        // Whatever the rows above were, the order is the same.
+        self.sort::<true>(0, count, |edge| edge.low);
         let (mut first, mut winding) = (0, 0);
         while first < count {
             let (mut end, mut right, mut after) = (first, i32::MIN, winding);
@@ -187,7 +193,7 @@ impl Row<'_, '_> {
                 cells.add(&piece, edge, edge.winding() > 0);
             }
         }
-        self.sort(0, count, |edge| edge.low);
+        self.sort::<false>(0, count, |edge| edge.low);
         let Self { edges, order, cells, .. } = self;
         for k in 0..count {
             let edge = edge_of(edges, order, k);
@@ -280,13 +286,15 @@ impl Row<'_, '_> {
         if others.len() > 16 {
             return false;
         }
+        let left = piece.left();
         for k in others {
-            let other = self.edge(k).piece(self.top);
+            let other = self.edge(k);
+            if other.high <= left {
+                continue;
+            }
+            let other = other.piece(self.top);
             let (start, end) = (piece.start.max(other.start), piece.end.min(other.end));
-            let in_order = other.right() <= piece.left()
-                || start >= end
-                || other.at(start) <= piece.at(start) && other.at(end) <= piece.at(end);
-            if !in_order {
+            if start < end && (other.at(start) > piece.at(start) || other.at(end) > piece.at(end)) {
                 return false;
             }
         }
@@ -314,15 +322,15 @@ impl Row<'_, '_> {
             let end = self.place(group.clone(), height, next);
             if left > 0 {
                 left -= 1;
-                self.sort(group.start, end, |edge| edge.high);
-                self.sort(group.start, end, |edge| edge.low);
+                self.sort::<true>(group.start, end, |edge| edge.high);
+                self.sort::<false>(group.start, end, |edge| edge.low);
                 let crossing = self.first_crossing(group.start..end, height, next);
                 if crossing < next {
                     next = crossing;
                     self.place(group.start..end, height, next);
                 }
             } else {
-                self.sort(group.start, end, |edge| (edge.low >> 1) + (edge.high >> 1));
+                self.sort::<false>(group.start, end, |edge| (edge.low >> 1) + (edge.high >> 1));
             }
             let mut winding = before;
             let Self { edges, order, cells, rule, .. } = self;

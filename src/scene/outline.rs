@@ -166,12 +166,24 @@ impl Pen<'_, '_> {
     /// Changes from place to place are 16.22, and so are theirs.
     pub(crate) fn chords(&mut self, from: Place, step: u32, mut change: [i32; 2], second: [i32; 2]) {
         let (mut part, mut way) = (step, [0_i32; 2]);
+        // Sectors are at most 512 px wide, so near ones stay inside of the guard.
+        let is_near = AreaEdges::are_near(self.at, from);
+        let (mut at, near) = (self.at.map(|c| c as i32), from.map(|c| c as i32));
         // Roundings of the step leave out no chord, and add none.
         while part + (step >> 1) < 1 << 16 {
             way = [way[0].wrapping_add(change[0]), way[1].wrapping_add(change[1])];
             change = [change[0].wrapping_add(second[0]), change[1].wrapping_add(second[1])];
-            self.line_to_place([from[0] + i64::from(way[0] >> 6), from[1] + i64::from(way[1] >> 6)]);
+            if is_near {
+                let to = [near[0] + (way[0] >> 6), near[1] + (way[1] >> 6)];
+                self.edges.near_line(at, to);
+                at = to;
+            } else {
+                self.line_to_place([from[0] + i64::from(way[0] >> 6), from[1] + i64::from(way[1] >> 6)]);
+            }
             part += step;
+        }
+        if is_near {
+            self.at = at.map(i64::from);
         }
     }
 

@@ -3,10 +3,11 @@
 
 use super::arc::Direction;
 use super::dashes::{Dashes, Segment};
-use super::round::{length, place};
-use super::stroker::{Cap, Join, Stroker, way};
+use super::round::{around_all, length, place};
+use super::stroker::{Cap, Join, Stroker, reach, way};
 use crate::math::Pixels;
 use crate::scene::{Outline, Pen, Place, ScreenPoint};
+use embedded_graphics_core::primitives::Rectangle;
 
 /// A thick line through points, open or closed.
 ///
@@ -191,5 +192,10 @@ impl Outline for Polyline<'_> {
         }
         // The sides are edges by themselves, and no contour is open.
         stroker.pen.jump(first);
+    }
+
+    fn bounds(&self) -> Option<Rectangle> {
+        let reach = reach(self.half(), self.join, self.limit);
+        around_all(self.points.iter().copied().map(place), reach)
     }
 }

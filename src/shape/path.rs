@@ -2,7 +2,7 @@
 //! turned and scaled.
 
 use super::arc::{direction, times};
-use super::round::{pixels, place};
+use super::round::{around_all, pixels, place};
 use crate::math::{Angle16, Pixels, Scalar};
 use crate::raster::FillRule;
 use crate::scene::{Outline, Pen, Place, ScreenPoint};
@@ -53,6 +53,10 @@ impl Outline for Path<'_> {
 
     fn rule(&self) -> FillRule {
         self.rule
+    }
+
+    fn bounds(&self) -> Option<Rectangle> {
+        around_all(self.contours.iter().flat_map(|contour| contour.iter().copied().map(place)), 0)
     }
 }
 

@@ -16,6 +16,19 @@ pub(super) fn place(point: ScreenPoint) -> Place {
     [point.x(), point.y()].map(|c| i64::from(c.to_bits()) << 8)
 }
 
+/// Returns the pixels around places, of which none is farther away than `reach`; `None` without places.
+pub(super) fn around_all(places: impl Iterator<Item = Place>, reach: i64) -> Option<Rectangle> {
+    let (mut least, mut most) = ([i64::MAX; 2], [i64::MIN; 2]);
+    for [x, y] in places {
+        least = [least[0].min(x), least[1].min(y)];
+        most = [most[0].max(x), most[1].max(y)];
+    }
+    // No screen is that large.
+    let near = |c: i64| c.clamp(-(32_767 << 16), 32_767 << 16);
+    let is_any = least[0] <= most[0];
+    is_any.then(|| pixels(least.map(|c| near(c - reach)), most.map(|c| near(c + reach))))
+}
+
 /// Returns the pixels around a rectangle in 16.16 px, with a pixel more at each side.
 pub(super) fn pixels(from: Place, to: Place) -> Rectangle {
     let [x, y] = from.map(|c| (c >> 16) as i32 - 1);

@@ -54,6 +54,12 @@ pub(super) fn way(from: Place, to: Place) -> Option<(Direction, i64)> {
     if (u, v) == (0, 0) { None } else { Some(([u, v], times(x, u) + times(y, v))) }
 }
 
+/// Returns how far from its points a line may reach: to the corners of caps or miters, and 1 px.
+pub(super) fn reach(half: i64, join: Join, limit: u32) -> i64 {
+    let times = if join == Join::Miter { i64::from(limit.max(2)) } else { 2 };
+    times * half + (1 << 16)
+}
+
 /// Draws the sides of a thick line, from segment to segment.
 pub(super) struct Stroker<'s, 'p, 'm> {
     pub(super) pen: &'s mut Pen<'p, 'm>,
@@ -80,10 +86,9 @@ fn minus(place: Place, change: Place) -> Place {
 impl<'s, 'p, 'm> Stroker<'s, 'p, 'm> {
     /// Makes a stroker for half of a width in 16.16 px, and a miter limit from 0 to 16.
     pub(super) fn new(pen: &'s mut Pen<'p, 'm>, half: i64, join: Join, cap: Cap, limit: u32) -> Self {
-        let times = if join == Join::Miter { i64::from(limit.max(2)) } else { 2 };
         let is_round = join == Join::Round || cap == Cap::Round;
         let round = Curve::new([0; 2], [if is_round { half } else { 0 }; 2]);
-        Self { pen, half, round, join, cap, limit, reach: times * half + (1 << 16), sides: [[0; 2]; 2] }
+        Self { pen, half, round, join, cap, limit, reach: reach(half, join, limit), sides: [[0; 2]; 2] }
     }
 }
 
