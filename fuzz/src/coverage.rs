@@ -6,7 +6,7 @@ use crate::source::{LIMIT, Source};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb888, RgbColor};
 use zstrip::frame::FramebufferRenderer;
-use zstrip::internals::{PixelRect, signed_area, spans};
+use zstrip::internals::{PixelRect, blocks, bounding_box, signed_area, spans};
 use zstrip::math::{Projective, Scalar};
 use zstrip::mesh::{Mesh, MeshData, Positions};
 use zstrip::shader::Flat;
@@ -49,7 +49,7 @@ pub fn run(input: &[u8]) -> u64 {
 
 const WINDOW: i32 = 6;
 
-/// The rasterizer alone, in a window of 6×6 pixels about a point.
+/// The rasterizer's traversals alone, in a window of 6×6 pixels about a point.
 fn rasterize(triangle: Triangle, window: [i32; 2], hash: &mut Hash) {
     let v = triangle.map(|[x, y]| ScreenVertex::new(x, y, 0));
     let [left, top] = window.map(|c| (c >> 8) - WINDOW / 2);
@@ -69,6 +69,19 @@ fn rasterize(triangle: Triangle, window: [i32; 2], hash: &mut Hash) {
             *row |= bit;
         }
     });
+    let mut by_edge_functions = [0_u8; WINDOW as usize];
+    bounding_box(&v, area, &clip, |y, columns| {
+        columns.for_each(|x| by_edge_functions[(y - top) as usize] |= 1 << (x - left));
+    });
+    assert_eq!(by_edge_functions, rows, "{triangle:?}, pixels from {left}, {top}, over the bounding box");
+    let mut by_blocks = [0_u8; WINDOW as usize];
+    blocks(&v, area, &clip, |block| {
+        for (y, bits) in (block.y..).zip(block.rows).filter(|(_, bits)| *bits != 0) {
+            let bits = u32::from(bits) << 8 >> (8 + left - block.x);
+            by_blocks[(y - top) as usize] |= bits as u8;
+        }
+    });
+    assert_eq!(by_blocks, rows, "{triangle:?}, pixels from {left}, {top}, by blocks");
     for (y, row) in (top..).zip(rows) {
         let expected = (0..WINDOW)
             .map(|k| u8::from(exact::covers(tri, i64::from(left + k), y.into())) << k)

@@ -34,3 +34,4 @@ pub mod scenes;
 pub mod snapped;
 pub mod subject;
 pub mod surface;
+pub mod traversed;
