@@ -1,54 +1,112 @@
 //! Several samples of a pixel → the pixel.
+//!
+//! The plain loop:
+//!
+//! ```text
+//! for each pixel: pixel = mean of its samples
+//! ```
+//! The departures from it:
+//!
+//! 1. **Pixels whose samples are equal stay as they are.** Most lie inside of triangles.
+//! 2. **Eight pixels are compared at a time**, as words, with all of their further samples before one branch.
+//! 3. **In eight pixels that differ, each is compared again.** Most of them are equal, and a mean takes longer.
 
 use super::format::PixelFormat;
 use super::mean::{MeanOfCodes, PixelSum};
+use bytemuck::bytes_of;
 
 /// Pixels that are compared at a time.
 const GROUP: usize = 8;
 
 /// Makes each pixel the mean of its samples. `pixels` has sample 0 of each, and `samples` the others, one sample after
-/// the other. There are 2, 4 or 8 samples in all. Channels are rounded to nearest.
-///
-/// Most pixels lie inside of triangles and have equal samples: they stay as they are.
+/// the other: `FURTHER` of them, which are 1, 3 or 7. Channels are rounded to nearest.
 #[inline(never)]
-pub(crate) fn resolve<P: PixelFormat>(pixels: &mut [P::Raw], samples: &[P::Raw]) {
-    let (length, mut start) = (pixels.len(), 0);
-    while start < length {
-        let end = length.min(start + GROUP);
-        let group = pixels.get(start..end).unwrap_or_default();
-        let mut at = start;
-        while let Some(sample) = samples.get(at..at + (end - start)) {
-            if !is_equal(bytemuck::cast_slice(group), bytemuck::cast_slice(sample)) {
-                means::<P>(pixels, samples, start..end);
-                break;
-            }
-            at += length;
-        }
-        start = end;
-    }
-}
-
-/// Returns whether bytes are equal, word by word if they are words.
-#[inline(always)]
-fn is_equal(a: &[u8], b: &[u8]) -> bool {
-    let words = |bytes| bytemuck::try_from_bytes::<[u32; 4]>(bytes).ok();
-    match (words(a), words(b)) {
-        (Some([a, b, c, d]), Some([e, f, g, h])) => (a ^ e) | (b ^ f) | (c ^ g) | (d ^ h) == 0,
-        _ => a == b,
-    }
-}
-
-/// Makes some pixels the means of their samples.
-#[inline(never)]
-fn means<P: PixelFormat>(pixels: &mut [P::Raw], samples: &[P::Raw], range: core::ops::Range<usize>) {
+pub(crate) fn resolve<P: PixelFormat, const FURTHER: usize>(pixels: &mut [P::Raw], samples: &[P::Raw]) {
     let length = pixels.len();
-    for (number, pixel) in pixels.iter_mut().enumerate().take(range.end).skip(range.start) {
-        let (mut sum, mut count, mut at) = (PixelSum::<P, MeanOfCodes>::new(), 1, number);
-        sum.add(*pixel);
-        while let Some(sample) = samples.get(at) {
-            sum.add(*sample);
-            (count, at) = (count + 1, at + length);
+    let sample = |number: usize| samples.get(number.wrapping_mul(length)..).and_then(|rest| rest.get(..length));
+    let sample = |number: usize| sample(number).unwrap_or_default();
+    let whole = length - length % GROUP;
+    let groups = |number: usize| in_groups(sample(number).get(..whole).unwrap_or_default());
+    for number in whole..length {
+        let Some(pixel) = pixels.get_mut(number) else { return };
+        let (mut own, mut further) = ([*pixel; GROUP], [[*pixel; GROUP]; FURTHER]);
+        for (k, other) in further.iter_mut().enumerate() {
+            *other = [sample(k).get(number).copied().unwrap_or(*pixel); GROUP];
         }
-        *pixel = sum.mean(count);
+        means::<P, FURTHER>(&mut own, further.each_ref());
+        [*pixel, ..] = own;
     }
+    let Some(pixels) = pixels.get_mut(..whole).and_then(|pixels| bytemuck::try_cast_slice_mut(pixels).ok()) else {
+        return;
+    };
+    // One counter for all of them: their lengths are compared once.
+    let all = pixels.iter_mut().zip(groups(0));
+    match FURTHER {
+        1 => all.for_each(|(own, a)| group::<P, 1>(own, [a])),
+        3 => all.zip(groups(1)).zip(groups(2)).for_each(|(((own, a), b), c)| group::<P, 3>(own, [a, b, c])),
+        _ => all
+            .zip(groups(1))
+            .zip(groups(2))
+            .zip(groups(3))
+            .zip(groups(4))
+            .zip(groups(5))
+            .zip(groups(6))
+            .for_each(|(((((((own, a), b), c), d), e), f), g)| group::<P, 7>(own, [a, b, c, d, e, f, g])),
+    }
+}
+
+/// Returns pixels in groups. Their number is a multiple of a group's.
+fn in_groups<R: bytemuck::Pod>(pixels: &[R]) -> &[[R; GROUP]] {
+    bytemuck::try_cast_slice(pixels).unwrap_or_default()
+}
+
+/// Makes the pixels of a group the means of their samples.
+#[inline(always)]
+fn group<P: PixelFormat, const FURTHER: usize>(own: &mut [P::Raw; GROUP], further: [&[P::Raw; GROUP]; FURTHER]) {
+    if !are_equal(own, &further) {
+        means::<P, FURTHER>(own, further);
+    }
+}
+
+/// Returns whether pixels are equal to all of the others, word by word if they are words.
+#[inline(always)]
+fn are_equal<R: bytemuck::Pod, const FURTHER: usize>(own: &[R; GROUP], further: &[&[R; GROUP]; FURTHER]) -> bool {
+    fn words<R: bytemuck::Pod>(pixels: &[R; GROUP]) -> Option<&[u32; 4]> {
+        bytemuck::try_from_bytes(bytes_of(pixels)).ok()
+    }
+    let mut difference = 0;
+    for other in further {
+        match (words(own), words(other)) {
+            (Some([a, b, c, d]), Some([e, f, g, h])) => difference |= (a ^ e) | (b ^ f) | (c ^ g) | (d ^ h),
+            _ if bytes_of(own) == bytes_of(*other) => {}
+            _ => return false,
+        }
+    }
+    difference == 0
+}
+
+/// Makes the pixels of a group the means of their samples, one by one, where these differ.
+#[inline(never)]
+fn means<P: PixelFormat, const FURTHER: usize>(own: &mut [P::Raw; GROUP], further: [&[P::Raw; GROUP]; FURTHER]) {
+    // Unrolled by hand: at `opt-level = "s"`, a loop over samples would go through an array on the stack.
+    macro_rules! means {
+        ($($sample:ident)*) => {
+            if let [$($sample),*] = further[..] {
+                for number in 0..GROUP {
+                    let own = &mut own[number];
+                    let ($($sample,)*) = ($($sample[number],)*);
+                    if $(bytes_of(&$sample) == bytes_of(own))&&* {
+                        continue;
+                    }
+                    let mut sum = PixelSum::<P, MeanOfCodes>::new();
+                    sum.add(*own);
+                    $(sum.add($sample);)*
+                    *own = sum.mean(FURTHER as u32 + 1);
+                }
+            }
+        };
+    }
+    means!(a);
+    means!(a b c);
+    means!(a b c d e f g);
 }

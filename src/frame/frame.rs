@@ -210,8 +210,11 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
             let mut strip = Strip::<P, D, R>::new(&mut *pixels, further, width, u32::from(row));
             engine.next_strip(progress, &mut strip, rows, draw).map_err(|draw| FrameError::SceneChanged { draw })?;
         }
-        if D::SAMPLES > 1 {
-            resolve::<P>(pixels, samples.samples().0);
+        match D::SAMPLES {
+            1 => {}
+            2 => resolve::<P, 1>(pixels, samples.samples().0),
+            4 => resolve::<P, 3>(pixels, samples.samples().0),
+            _ => resolve::<P, 7>(pixels, samples.samples().0),
         }
         let area = Rectangle::new(Point::new(0, i32::from(row)), Size::new(width as u32, u32::from(rows)));
         Ok(Some(StripPixels::new(area, pixels)))

@@ -181,9 +181,11 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
         let Some((dx, dy)) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 7) else {
             // Nearly all of these are seen edge on, and have no pixel.
             let rows = row..end.min(target.rows.end);
-            let covers = IS_TALL
-                || SAMPLED
-                || covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len());
+            let covers = if SAMPLED {
+                covers_samples([bx, by, cx, cy], (ax - (column << 8), ay), &rows, usize::from(target.count))
+            } else {
+                IS_TALL || covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len())
+            };
             return if covers { SmallResult::Large } else { SmallResult::Drawn };
         };
         (dz_dx, dz_dy) = (dx, dy);
@@ -373,6 +375,18 @@ fn covers_pixels(sides: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
         }
     }
     false
+}
+
+/// Returns whether a triangle that is not tall covers a sample in some rows. Its highest corner is at `a`, with x relative
+/// to the first column; the others are relative to it, with that on the left first. All in 24.8.
+#[inline(never)]
+fn covers_samples(sides: [i32; 4], a: (i32, i32), rows: &Range<i32>, samples: usize) -> bool {
+    let [_, by, _, cy] = sides;
+    moves(samples).iter().any(|to_centre| {
+        let (x, y) = (a.0 + to_centre.0, a.1 + to_centre.1);
+        let (row, end) = (first_centre(y).max(rows.start), first_centre(y + by.max(cy)).min(rows.end));
+        covers_pixels(sides, x, 256 * row + 128 - y, (end - row).max(0) as usize)
+    })
 }
 
 /// Returns what a bias adds to the depths of a triangle with these depths, 16.16.
