@@ -1,12 +1,9 @@
 //! Smooth shapes beside those of tiny-skia, and both beside exact areas: docs/accuracy.md has the differences.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
-use support::accuracy;
-use support::area::{Contour, areas, compare};
-use support::outlines::{SCREEN, arc, center, curved, drawn, px, thick};
+use crate::reference::rng::Rng;
+use crate::support::accuracy;
+use crate::support::area::{Contour, areas, compare};
+use crate::support::outlines::{SCREEN, arc, center, curved, drawn, px, thick};
 use tiny_skia::{FillRule, LineCap, LineJoin, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 use zstrip::ScreenPoint;
 use zstrip::scene::Outline;

@@ -1,9 +1,7 @@
 //! Blending, discarding and fog against exact formulas.
 
-mod reference;
-mod support;
-
-use support::{difference, strips, whole};
+use crate::support;
+use crate::support::{difference, strips, whole};
 use zstrip::color::{PixelFormat, Rgb565Be, Rgba8888};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};

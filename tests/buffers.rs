@@ -1,15 +1,10 @@
 //! Colour buffers are the caller's: strips of any length in buffers of any length, errors that lose nothing, frames
 //! that are given up.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::scenes::{Draw, Room};
+use crate::support::{Soup, difference, strips};
 use core::cell::RefCell;
-use reference::rng::Rng;
-use scenes::{Draw, Room};
-use support::{Soup, difference, strips};
 use zstrip::color::Rgb565Be;
 use zstrip::embedded_graphics_core::Pixel;
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;

@@ -1,12 +1,9 @@
 //! Shapes on the screen's plane: coverage, colours, scissor, depth; and that strips do not matter.
 
-mod reference;
-mod support;
-
-use reference::exact;
-use reference::rng::Rng;
+use crate::reference::exact;
+use crate::reference::rng::Rng;
+use crate::support::{difference, strips, whole};
 use std::cell::RefCell;
-use support::{difference, strips, whole};
 use zstrip::color::{Dithered, PixelFormat, Rgb332};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};

@@ -1,11 +1,9 @@
 //! The state of small triangles that is carried on from strip to strip: the picture is the same as without, whatever
 //! the shader, the format, the height of strips and the room for states; and triangles are set up once.
 
-mod reference;
-
+use crate::reference::rng::Rng;
 use core::cell::Cell;
 use core::fmt::Debug;
-use reference::rng::Rng;
 use zstrip::color::{Dithered, PixelFormat};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888};

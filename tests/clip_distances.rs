@@ -1,11 +1,8 @@
 //! Clip and cull distances: planes of a shader's own.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
+use crate::support::{strips, vector};
 use std::cell::RefCell;
-use support::{strips, vector};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};

@@ -1,15 +1,12 @@
 //! The clipper's rules, depth ranges, culling by winding, depth functions, and input that is legal but unpleasant.
 
-mod reference;
-mod support;
-
-use reference::conformance::Rasterizer;
-use reference::homogeneous::{self, Vertex, for_each_sample};
-use reference::rng::Rng;
-use reference::scenes::{ClipKind, clip_triangle as random_triangle};
-use reference::subject::Subject;
+use crate::reference::conformance::Rasterizer;
+use crate::reference::homogeneous::{self, Vertex, for_each_sample};
+use crate::reference::rng::Rng;
+use crate::reference::scenes::{ClipKind, clip_triangle as random_triangle};
+use crate::reference::subject::Subject;
+use crate::support::{Soup, angle, strips, vector, whole};
 use std::collections::BTreeSet;
-use support::{Soup, angle, strips, vector, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};
 use zstrip::internals::{ClipVertex, Outcode, clip_triangle};

@@ -1,9 +1,7 @@
 //! The crate against the conformance files: draws of scenes, in one strip and in many, recorded and direct.
 
-mod reference;
-
-use reference::conformance::check_file;
-use reference::subject::Subject;
+use crate::reference::conformance::check_file;
+use crate::reference::subject::Subject;
 use std::path::PathBuf;
 
 /// Files whose records a depth buffer of one strip is enough for.

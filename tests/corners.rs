@@ -1,13 +1,10 @@
 //! VertexRef cases that once went wrong, or easily could.
 
-mod reference;
-mod support;
-
-use reference::conformance::Rasterizer;
-use reference::model::Model;
-use reference::rng::Rng;
-use reference::scenes::depth_soup;
-use reference::subject::Subject;
+use crate::reference::conformance::Rasterizer;
+use crate::reference::model::Model;
+use crate::reference::rng::Rng;
+use crate::reference::scenes::depth_soup;
+use crate::reference::subject::Subject;
 use std::cell::Cell;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};

@@ -1,13 +1,10 @@
 //! Culling of whole objects: never what can be seen, mostly what cannot, and the picture stays the same.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
+use crate::scenes;
+use crate::support;
+use crate::support::{difference, rigid, scalar, strips, vector};
 use std::ops::Range;
-use support::{difference, rigid, scalar, strips, vector};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::internals::{Outcode, Planes, ScreenMatrix};

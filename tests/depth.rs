@@ -1,10 +1,7 @@
 //! Depth: bias, and how well distances are told apart.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
-use support::{strips, whole};
+use crate::reference::rng::Rng;
+use crate::support::{strips, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Projected, Transform};

@@ -1,13 +1,9 @@
 //! Without a depth buffer, every depth test passes: the picture is that of draws with the test switched off.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::rng::Rng;
-use scenes::{Draw, Intersections};
-use support::{Soup, difference, strips};
+use crate::reference::rng::Rng;
+use crate::scenes;
+use crate::scenes::{Draw, Intersections};
+use crate::support::{Soup, difference, strips};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};

@@ -1,13 +1,9 @@
 //! Formats dithered while they are packed, against their undithered colours in 8 bits.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::rng::Rng;
-use scenes::{Draw, Room, Torus};
-use support::{Soup, difference, strips, whole};
+use crate::reference::rng::Rng;
+use crate::scenes;
+use crate::scenes::{Draw, Room, Torus};
+use crate::support::{Soup, difference, strips, whole};
 use zstrip::color::{Bgr565Be, Ditherable, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Bgr565, Rgb565, Rgb888, RgbColor};

@@ -1,8 +1,7 @@
 //! What embedded-graphics draws into strips is what it draws into a framebuffer of its own.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support::strips;
 use embedded_graphics::Drawable;
 use embedded_graphics::framebuffer::Framebuffer as Full;
 use embedded_graphics::geometry::{AnchorPoint, AngleUnit};
@@ -12,8 +11,6 @@ use embedded_graphics::pixelcolor::{Bgr565, BinaryColor, Gray8, Rgb565, Rgb888, 
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::*;
 use embedded_graphics::text::{Alignment, Baseline, Text, TextStyleBuilder};
-use reference::rng::Rng;
-use support::strips;
 use zstrip::color::{Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::span::{DepthOff, DepthState};

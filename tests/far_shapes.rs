@@ -1,11 +1,8 @@
 //! Shapes of a canvas whose corners are far off the screen, beyond what the rasterizer itself can take, against exact
 //! lines and half planes.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
-use support::{accuracy, difference, strips, whole};
+use crate::reference::rng::Rng;
+use crate::support::{accuracy, difference, strips, whole};
 use zstrip::embedded_graphics_core::geometry::Point;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb888, RgbColor};
 use zstrip::math::Pixels;

@@ -160,6 +160,21 @@ fn no_files_import_each_other_in_a_circle() {
     );
 }
 
+/// A file that `tests/main.rs` does not name is not built, and its tests do not run.
+#[test]
+fn every_file_of_tests_is_built() {
+    let main = include_str!("main.rs");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
+    let files = fs::read_dir(folder).expect("the tests").map(|entry| entry.expect("an entry").path());
+    let named = |file: &Path| {
+        let name = file.file_stem().and_then(|name| name.to_str()).expect("a name");
+        name == "main" || main.contains(&format!("\nmod {name};\n"))
+    };
+    let missing: Vec<_> =
+        files.filter(|file| !file.is_dir() || file.join("mod.rs").exists()).filter(|file| !named(file)).collect();
+    assert!(missing.is_empty(), "not in tests/main.rs: {missing:?}");
+}
+
 #[test]
 fn paths_are_found_where_they_stand() {
     let text = code("use crate::a::{b, c::{D, E}}; // crate::no\n/// [x](crate::neither)\nlet x = crate::f::G::new();");

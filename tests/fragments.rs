@@ -1,11 +1,8 @@
 //! The programmable fragment stage: what a shader of one's own sees, and what it can do.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
+use crate::support::{scalar, strips, whole};
 use std::cell::RefCell;
-use support::{scalar, strips, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::internals::{PixelRect, Projected, Transform, signed_area, spans};

@@ -2,11 +2,9 @@
 
 #[path = "../examples/models/mod.rs"]
 mod models;
-mod reference;
-mod support;
 
+use crate::support::strips;
 use models::{FLANGE, FLANGE_FACES, SPOT, Still, TEAPOT, Walker, Way};
-use support::strips;
 use zstrip::Scene;
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;

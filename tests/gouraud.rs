@@ -1,12 +1,9 @@
 //! Drawn like Gouraud: shaders with colours as varyings look alike in every pixel format, however the format draws them
 //! fast.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support::{Soup, difference, strips};
 use core::fmt::Debug;
-use reference::rng::Rng;
-use support::{Soup, difference, strips};
 use zstrip::color::{Bgr565Be, Ditherable, Dithered, PixelFormat, Rgb332, Rgb565Be};
 use zstrip::embedded_graphics_core::pixelcolor::{Bgr565, Bgr888, Gray8, Rgb565, Rgb666, Rgb888};
 use zstrip::light::{Lighting, Matte};

@@ -1,16 +1,12 @@
 //! A wireframe over the surface it outlines: what is visible is drawn without gaps, what is hidden does not shine
 //! through.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::exact;
-use scenes::{torus, wires};
+use crate::reference::exact;
+use crate::scenes;
+use crate::scenes::{torus, wires};
+use crate::support::whole;
 use std::cell::RefCell;
 use std::collections::BTreeSet;
-use support::whole;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::internals::{Line, PixelRect, Projected, Transform};

@@ -1,14 +1,10 @@
 //! Bad input gets an error that says what is wrong; sinks that fail, scenes that change, memory, displays and formats.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
+use crate::scenes;
+use crate::scenes::{Draw, Room, Torus};
+use crate::support::{difference, strips};
 use core::convert::Infallible;
-use scenes::{Draw, Room, Torus};
 use std::error::Error;
-use support::{difference, strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::embedded_graphics_core::Pixel;
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;

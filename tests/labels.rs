@@ -1,9 +1,8 @@
 //! 2-D drawing at a depth, among meshes: against a model that tests each pixel by itself, and where points of the world
 //! are.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support::{Soup, angle, apply, difference, matrix, on_screen, rigid, scalar, strips, vector, whole};
 use core::cell::Cell;
 use core::convert::Infallible;
 use embedded_graphics::mono_font::{MonoTextStyle, ascii};
@@ -11,8 +10,6 @@ use embedded_graphics::pixelcolor::{Rgb565, Rgb888, WebColors};
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, PrimitiveStyle, Rectangle};
 use embedded_graphics::text::{Baseline, Text};
-use reference::rng::Rng;
-use support::{Soup, angle, apply, difference, matrix, on_screen, rigid, scalar, strips, vector, whole};
 use zstrip::color::PixelFormat;
 use zstrip::frame::{FramebufferRenderer, Renderer};
 use zstrip::internals::{Projected, Transform};

@@ -1,11 +1,9 @@
 //! Materials under lights against the same equations in double precision.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support;
+use crate::support::{accuracy, strips, whole};
 use core::cell::Cell;
-use reference::rng::Rng;
-use support::{accuracy, strips, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::light::{DirectionalLight, Lighting, LitColor, Material, Matte, PointLight, Sun, Unlit, Viewer};

@@ -1,9 +1,7 @@
 //! Lines and points on the screen, against their definitions.
 
-mod reference;
-
-use reference::diamonds;
-use reference::rng::Rng;
+use crate::reference::diamonds;
+use crate::reference::rng::Rng;
 use zstrip::internals::{Line, PixelRect, square};
 
 const EVERYWHERE: PixelRect = PixelRect { x: -40_000..40_000, y: -40_000..40_000 };

@@ -1,11 +1,8 @@
 //! Angles, vectors and matrices against f64.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
+use crate::support::{accuracy, angle, apply, matrix, rigid, scalar, vector};
 use std::f64::consts::TAU;
-use support::{accuracy, angle, apply, matrix, rigid, scalar, vector};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3, Wide};
 

@@ -1,16 +1,12 @@
 //! Hidden draws are left out: the picture is the same as without, whatever is drawn by which state, in any strips, with
 //! records of any number; and a scene that is hidden takes hardly any work.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::rng::Rng;
-use scenes::street::Street;
-use scenes::{Draw, Room, Torus, dashboard, labels, light, overlay, polygons, textured, torus, water, wires};
+use crate::reference::rng::Rng;
+use crate::scenes;
+use crate::scenes::street::Street;
+use crate::scenes::{Draw, Room, Torus, dashboard, labels, light, overlay, polygons, textured, torus, water, wires};
+use crate::support::{difference, scalar, vector};
 use std::cell::Cell;
-use support::{difference, scalar, vector};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::embedded_graphics_core::primitives::Rectangle;

@@ -1,13 +1,10 @@
 //! Targets for embedded-graphics: drawings at one depth, viewports, and coordinates at the ends of 32 bits.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support::{difference, strips, whole};
 use embedded_graphics::mono_font::{MonoTextStyleBuilder, ascii};
 use embedded_graphics::prelude::*;
 use embedded_graphics::text::Text;
-use reference::rng::Rng;
-use support::{difference, strips, whole};
 use zstrip::embedded_graphics_core::image::ImageDrawable;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565};
 use zstrip::embedded_graphics_core::primitives::Rectangle;

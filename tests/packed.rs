@@ -1,16 +1,13 @@
 //! Packed strips: the bytes that panels want, the same at every strip height.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
+use crate::reference;
+use crate::scenes::{Draw, Torus};
+use crate::support;
 use core::convert::Infallible;
 use embedded_graphics_core::Pixel;
 use embedded_graphics_core::draw_target::DrawTarget;
 use embedded_graphics_core::geometry::{OriginDimensions, Size};
 use embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888, WebColors};
-use scenes::{Draw, Torus};
 use zstrip::color::{Dither, Levels, PixelFormat};
 use zstrip::frame::Renderer;
 use zstrip::math::{Angle16, Projective, Scalar};

@@ -1,12 +1,8 @@
 //! The painter's algorithm, against a depth buffer.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::rng::Rng;
-use support::whole;
+use crate::reference::rng::Rng;
+use crate::scenes;
+use crate::support::whole;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::Rgb888;
 use zstrip::math::{Affine, Angle16, Projective, Scalar, Vec3};

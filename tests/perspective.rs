@@ -1,13 +1,11 @@
 //! Perspective-correct varyings against exact rationals: at each pixel, and every 4 to 32 of them.
 
-mod reference;
-mod support;
-
-use reference::conformance::PerspectiveTriangle;
-use reference::conformance::records::Table;
-use reference::exact;
-use reference::rng::Rng;
-use reference::subject::Subject;
+use crate::reference::conformance::PerspectiveTriangle;
+use crate::reference::conformance::records::Table;
+use crate::reference::exact;
+use crate::reference::rng::Rng;
+use crate::reference::subject::Subject;
+use crate::support;
 
 const SIDE: u32 = 128;
 

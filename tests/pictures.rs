@@ -11,14 +11,11 @@
 //!
 //! In pictures of [`hits`], a digit says how often a pixel was drawn.
 
-mod reference;
-mod support;
-
+use crate::support::strips;
 use embedded_graphics::geometry::Point;
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_4X6};
 use embedded_graphics::text::Text;
 use std::fmt::Write;
-use support::strips;
 use zstrip::color::Dither;
 use zstrip::embedded_graphics_core::Drawable;
 use zstrip::embedded_graphics_core::geometry::Size;

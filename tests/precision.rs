@@ -1,15 +1,13 @@
 //! Numbers against f64 and exact fractions: projected positions, depth, interpolated colours. The worst cases are
 //! printed.
 
-mod reference;
-mod support;
-
-use reference::conformance::Rasterizer;
-use reference::exact;
-use reference::rng::Rng;
-use reference::scenes::{screen_triangle, sliver};
-use reference::subject::Subject;
-use support::{accuracy, apply, matrix, on_screen, position, rigid, scalar, vector, whole};
+use crate::reference::conformance::Rasterizer;
+use crate::reference::exact;
+use crate::reference::rng::Rng;
+use crate::reference::scenes::{screen_triangle, sliver};
+use crate::reference::subject::Subject;
+use crate::support;
+use crate::support::{accuracy, apply, matrix, on_screen, position, rigid, scalar, vector, whole};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};

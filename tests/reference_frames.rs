@@ -1,20 +1,17 @@
 //! Whole frames against three independent renderers: exact from snapped vertices, homogeneous without a clipper, and
 //! rays.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::camera::{Camera, Lens};
-use reference::exact;
-use reference::frame::{Cull as ReferenceCull, Frame};
-use reference::homogeneous::{self, Vertex};
-use reference::ray;
-use reference::rng::Rng;
-use reference::snapped::{self, Shading, SnappedVertex};
-use scenes::{Draw, polygons, soup, torus};
-use support::{apply, matrix, position, whole};
+use crate::reference::camera::{Camera, Lens};
+use crate::reference::exact;
+use crate::reference::frame::{Cull as ReferenceCull, Frame};
+use crate::reference::homogeneous::{self, Vertex};
+use crate::reference::ray;
+use crate::reference::rng::Rng;
+use crate::reference::snapped::{self, Shading, SnappedVertex};
+use crate::scenes;
+use crate::scenes::{Draw, polygons, soup, torus};
+use crate::support;
+use crate::support::{apply, matrix, position, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb888, RgbColor};
 use zstrip::light::{Matte, NORMAL_ONE, Sun};

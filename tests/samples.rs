@@ -1,14 +1,10 @@
 //! Several samples per pixel: each sample is a picture of its own, whose triangles are moved; and a pixel is the mean
 //! of its samples, in any strips.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use reference::rng::Rng;
-use scenes::{Draw, dashboard, labels, light, textured, water, wires};
-use support::{difference, sampled_strips, whole};
+use crate::reference::rng::Rng;
+use crate::scenes;
+use crate::scenes::{Draw, dashboard, labels, light, textured, water, wires};
+use crate::support::{difference, sampled_strips, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;

@@ -1,13 +1,10 @@
 //! Shapes with smooth edges: the covered part of each pixel against exact areas, strips, memory, and all that is
 //! degenerate.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
-use support::area::{Contour, areas, compare};
-use support::outlines::{BOUND, Errors, SCREEN, arc, center, curved, drawn, px, thick, turned};
-use support::{accuracy, difference, strips, whole};
+use crate::reference::rng::Rng;
+use crate::support::area::{Contour, areas, compare};
+use crate::support::outlines::{BOUND, Errors, SCREEN, arc, center, curved, drawn, px, thick, turned};
+use crate::support::{accuracy, difference, strips, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;

@@ -1,12 +1,9 @@
 //! Small triangles with a texture, under light or not, against perspective-correct coordinates and light in double
 //! precision; and the same pixels however they are drawn.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support::accuracy;
 use core::cell::Cell;
-use reference::rng::Rng;
-use support::accuracy;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::frame::FramebufferRenderer;

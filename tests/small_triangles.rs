@@ -3,9 +3,7 @@
 //! large. Gouraud's small triangles have one way only: their pictures are the same with and without records, in any
 //! strips.
 
-mod reference;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888};
 use zstrip::light::Unlit;

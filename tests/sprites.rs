@@ -1,13 +1,10 @@
 //! Gradients and sprites: their colours against those of f64, span loops against single pixels, text, billboards.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support::{difference, strips, whole};
 use embedded_graphics::mono_font::{MonoTextStyle, ascii::FONT_6X10};
 use embedded_graphics::text::{Baseline, Text};
 use embedded_graphics::{Drawable, Pixel};
-use reference::rng::Rng;
-use support::{difference, strips, whole};
 use zstrip::color::Dithered;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray8, Rgb565, Rgb888, RgbColor, WebColors};

@@ -1,13 +1,9 @@
 //! A strip is a framebuffer: whatever the strip height and however many records there are, the bytes are the same.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::scenes;
+use crate::support::{Soup, difference, strips, unrecorded_strips};
 use proptest::prelude::*;
-use reference::rng::Rng;
-use support::{Soup, difference, strips, unrecorded_strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor, WebColors};

@@ -1,10 +1,8 @@
 //! Textures in perspective: coordinates at each pixel and every 2 to 32 of them, against f64; and that a texel is where
 //! it is however its triangle is cut.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
+use crate::support;
 use std::cell::RefCell;
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::Rgb565;

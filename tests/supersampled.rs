@@ -1,11 +1,8 @@
 //! Supersampling: a pixel is the mean of N × N pixels of a finer screen, in any strips.
 
-mod reference;
-#[path = "../examples/scenes/mod.rs"]
-mod scenes;
-mod support;
-
-use support::difference;
+use crate::scenes;
+use crate::support;
+use crate::support::difference;
 use zstrip::color::{Mean, MeanOfCodes, MeanOfLight, PixelFormat};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888};

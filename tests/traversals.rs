@@ -1,12 +1,10 @@
 //! Traversals by edge functions, over the bounding box and by blocks, against the scanline one and the definition:
 //! the same pixels, for all triangles of the conformance files and for random ones.
 
-mod reference;
-
-use reference::conformance::check_file;
-use reference::exact;
-use reference::rng::Rng;
-use reference::traversed::{Traversal, Traversed, WALKS};
+use crate::reference::conformance::check_file;
+use crate::reference::exact;
+use crate::reference::rng::Rng;
+use crate::reference::traversed::{Traversal, Traversed, WALKS};
 use std::path::PathBuf;
 use zstrip::internals::{PixelRect, covered_samples, moves, signed_area, spans};
 use zstrip::vertex::ScreenVertex;

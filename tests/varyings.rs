@@ -1,14 +1,11 @@
 //! Perspective-correct varyings of every primitive against one model in f64, in one strip and in many, with records and
 //! without.
 
-mod reference;
-mod support;
-
-use reference::homogeneous;
-use reference::interpolation::{Corner, Line, on_triangle};
-use reference::rng::Rng;
+use crate::reference::homogeneous;
+use crate::reference::interpolation::{Corner, Line, on_triangle};
+use crate::reference::rng::Rng;
+use crate::support::{apply, matrix, strips, unrecorded_strips, whole};
 use std::cell::RefCell;
-use support::{apply, matrix, strips, unrecorded_strips, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Gray8, GrayColor, Rgb565, Rgb888, RgbColor};
 use zstrip::math::{Angle16, Pixels, Projective, Scalar, Vec3};

@@ -1,8 +1,7 @@
 //! A 3-D view as a rectangle among what other code draws.
 
-mod reference;
-mod support;
-
+use crate::reference::rng::Rng;
+use crate::support::{Soup, strips};
 use core::cell::Cell;
 use core::convert::Infallible;
 use embedded_graphics::framebuffer::{Framebuffer as Full, buffer_size};
@@ -11,8 +10,6 @@ use embedded_graphics::pixelcolor::raw::{LittleEndian, RawU16};
 use embedded_graphics::pixelcolor::{Rgb565, WebColors};
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{Circle, PrimitiveStyle, Rectangle};
-use reference::rng::Rng;
-use support::{Soup, strips};
 use zstrip::color::{PixelFormat, Rgb565Be};
 use zstrip::frame::{FrameError, FrameView};
 use zstrip::math::Projective;

@@ -1,12 +1,10 @@
 //! Lines and points in space: which pixels, which depths, which colours; and that strips do not matter.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
+use crate::support;
+use crate::support::{difference, strips, whole};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
-use support::{difference, strips, whole};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};

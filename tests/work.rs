@@ -1,11 +1,8 @@
 //! A frame's cost is bounded by what it draws: counted in walks, vertices, triangles and cuts, and not in time.
 
-mod reference;
-mod support;
-
-use reference::rng::Rng;
+use crate::reference::rng::Rng;
+use crate::support::{difference, strips, unrecorded_strips};
 use std::cell::Cell;
-use support::{difference, strips, unrecorded_strips};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, RgbColor};
 use zstrip::math::{Angle16, Projective, Scalar, Vec3};

@@ -377,8 +377,8 @@ fn covers_pixels(sides: [i32; 4], x: i32, p: i32, rows: usize) -> bool {
     false
 }
 
-/// Returns whether a triangle that is not tall covers a sample in some rows. Its highest corner is at `a`, with x relative
-/// to the first column; the others are relative to it, with that on the left first. All in 24.8.
+/// Returns whether a triangle that is not tall covers a sample in some rows. Its highest corner is at `a`, with x
+/// relative to the first column; the others are relative to it, with that on the left first. All in 24.8.
 #[inline(never)]
 fn covers_samples(sides: [i32; 4], a: (i32, i32), rows: &Range<i32>, samples: usize) -> bool {
     let [_, by, _, cy] = sides;

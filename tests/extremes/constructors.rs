@@ -1,7 +1,7 @@
 //! Meshes, textures, fog, buffers, packers, budgets: constructors, and what their results return.
 
-use crate::rng::Rng;
-use crate::{ENDS, Extreme, Table};
+use super::{ENDS, Extreme, Table};
+use crate::reference::rng::Rng;
 use zstrip::color::{Dither, Rgb565Be, Rgba8888};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
 use zstrip::embedded_graphics_core::pixelcolor::{BinaryColor, Gray2, Gray4, Gray8, Rgb565, Rgb888};

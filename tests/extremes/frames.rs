@@ -1,8 +1,8 @@
 //! Frames of extreme scenes: any matrices, positions, states, strokes, varyings and areas, under every shader of the
 //! crate.
 
-use crate::rng::Rng;
-use crate::{Extreme, Table};
+use super::{Extreme, Table};
+use crate::reference::rng::Rng;
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be, Rgba8888};
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
 use zstrip::embedded_graphics_core::geometry::{Dimensions, OriginDimensions, Point, Size};

@@ -1,7 +1,7 @@
 //! Numbers, angles, vectors, matrices, colours and lights.
 
-use crate::rng::Rng;
-use crate::{ENDS, Extreme, Table};
+use super::{ENDS, Extreme, Table};
+use crate::reference::rng::Rng;
 use zstrip::color::{Bgr565Be, Dither, Dithered, Levels, PixelFormat, Rgb332, Rgb565Be, Rgba8888};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{

@@ -2,8 +2,8 @@
 
 use super::builder::{Builder, Container, PartLists, material};
 use super::figures::{animated, clustered, many_parts, textured};
-use super::reference::rng::Rng;
-use super::support::strips;
+use crate::reference::rng::Rng;
+use crate::support::strips;
 use zstrip::bytemuck::{Pod, bytes_of, pod_read_unaligned};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};

@@ -2,8 +2,8 @@
 
 use super::builder::Builder;
 use super::figures::clustered;
-use super::reference::rng::Rng;
-use super::support::{difference, strips};
+use crate::reference::rng::Rng;
+use crate::support::{difference, strips};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::light::Sun;

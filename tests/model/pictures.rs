@@ -2,7 +2,7 @@
 
 use super::builder::{Builder, material};
 use super::figures::{SCALE, animated, many_parts, textured};
-use super::support::{difference, strips, unrecorded_strips, whole};
+use crate::support::{difference, strips, unrecorded_strips, whole};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{IntoStorage, Rgb565, Rgb888, RgbColor};
 use zstrip::light::{DirectionalLight, Lighting, Material, Matte, Sun};

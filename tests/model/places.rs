@@ -2,8 +2,8 @@
 
 use super::builder::node;
 use super::figures::{many_parts, textured, tube_part};
-use super::reference::rng::Rng;
-use super::support::{apply, difference, matrix, strips};
+use crate::reference::rng::Rng;
+use crate::support::{apply, difference, matrix, strips};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
 use zstrip::light::Sun;

@@ -3,8 +3,8 @@
 use super::builder::Builder;
 use super::exact::{At, ExactPose, fixed};
 use super::figures::{add_target, animated, textured};
-use super::support::accuracy::check;
-use super::support::position;
+use crate::support::accuracy::check;
+use crate::support::position;
 use zstrip::math::Scalar;
 use zstrip::model::{Model, Motion, Pose};
 

@@ -16,7 +16,7 @@
 //! | [`rng`], [`scenes`], [`meshes`] | seeded random scenes for property tests | integers |
 //!
 //! In all of them: screen y down, pixel centres at .5, front is counter-clockwise seen with y up.
-#![allow(dead_code, unused_imports, reason = "every test binary and example uses only part of the references")]
+#![allow(dead_code, unused_imports, reason = "the example uses only part of the references")]
 
 pub mod camera;
 pub mod conformance;

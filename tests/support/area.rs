@@ -1,6 +1,5 @@
 //! Exact areas of paths in pixels, in f64: the plane is cut at vertices and crossings into slabs, in which no two edges
 //! cross, and the integral of each trapezoid over each pixel is computed as a formula.
-#![allow(dead_code)] // each test binary uses its part
 
 /// A contour, in pixels.
 pub type Contour = Vec<[f64; 2]>;

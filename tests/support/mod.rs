@@ -1,5 +1,4 @@
 //! What the tests share: frames as whole pictures, random scenes, and numbers as f64.
-#![allow(dead_code)] // each test binary uses its part
 
 pub mod accuracy;
 pub mod area;

@@ -1,6 +1,5 @@
 //! Shapes with smooth edges and their exact outlines: pictures of covered parts, contours of arcs and of thick lines in
 //! f64, and the worst and mean errors of pictures.
-#![allow(dead_code)] // each test binary uses its part
 
 use super::area::{Contour, areas, compare};
 use super::whole;

@@ -7,11 +7,8 @@ mod documented;
 mod frames;
 mod implementations;
 mod numbers;
-#[path = "../reference/rng.rs"]
-#[allow(dead_code, reason = "this test uses part of the generator")]
-mod rng;
 
-use rng::Rng;
+use crate::reference::rng::Rng;
 use std::cell::RefCell;
 use std::fmt::Debug;
 use std::hint::black_box;

@@ -8,7 +8,3 @@ mod figures;
 mod pictures;
 mod places;
 mod poses;
-#[path = "../reference/mod.rs"]
-mod reference;
-#[path = "../support/mod.rs"]
-mod support;

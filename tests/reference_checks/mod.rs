@@ -1,15 +1,13 @@
 //! The references against the conformance data, and the checker against rasterizers that are wrong on purpose.
 
-#[path = "../reference/mod.rs"]
-mod reference;
 mod units;
 
-use reference::conformance::records::Table;
-use reference::conformance::{CheckError, Outcome, Rasterizer, check_file};
-use reference::exact;
-use reference::homogeneous::{Vertex, Viewport, for_each_sample};
-use reference::mistakes::Mistake;
-use reference::model::Model;
+use crate::reference::conformance::records::Table;
+use crate::reference::conformance::{CheckError, Outcome, Rasterizer, check_file};
+use crate::reference::exact;
+use crate::reference::homogeneous::{Vertex, Viewport, for_each_sample};
+use crate::reference::mistakes::Mistake;
+use crate::reference::model::Model;
 use std::path::{Path, PathBuf};
 
 const CHECKED: [&str; 13] = [
