@@ -397,3 +397,19 @@ fn ellipses_and_paths_turn() {
     errors.print();
     accuracy::check("coverage of a pixel by a turned path", errors.worst * 255.0);
 }
+
+/// A wide line in tiny dashes has far more edges per row than there is memory for.
+#[test]
+fn tiny_dashes_of_wide_lines_are_the_same_with_little_memory() {
+    let mut rng = Rng::new(23);
+    for case in 0..cases(12) {
+        let [(a, _), (b, _)] = [center(&mut rng), center(&mut rng)];
+        // Level, upright, or at any angle.
+        let b = [ScreenPoint::new(b.x(), a.y()), ScreenPoint::new(a.x(), b.y()), b][case % 3];
+        let pattern = [(); 2].map(|()| px(rng.between(60, 300)));
+        let line = [a, b];
+        let line = Polyline::new(&line, px(rng.between(2000, 40_000))).with_dashes(&pattern, px(rng.between(0, 300)));
+        let most = drawn(&line, 2000, 64).iter().zip(drawn(&line, 32, 64)).map(|(a, b)| a.abs_diff(b)).max();
+        assert!(most <= Some(4), "case {case}: {line:?}: {most:?}");
+    }
+}

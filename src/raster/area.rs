@@ -66,6 +66,7 @@ impl<'m> AreaMemory<'m> {
                 edges,
                 count: 0,
                 overflowed: false,
+                upright: true,
                 top: 0,
                 bottom: 0,
                 left: rect.x.start << 16,
@@ -165,7 +166,7 @@ impl<'a> Area<'a> {
             return false;
         }
         let edges = &mut self.edges;
-        (edges.count, edges.overflowed) = (0, false);
+        (edges.count, edges.overflowed, edges.upright) = (0, false, true);
         if edges.wanted == Wanted::Rows {
             self.rows = self.rows.min(self.end - self.row).max(1);
             (edges.top, edges.bottom) = (self.row << 16, (self.row + self.rows) << 16);
@@ -196,7 +197,7 @@ impl<'a> Area<'a> {
             }
             Wanted::Part if self.edges.overflowed => {
                 let height = self.part.end - self.part.start;
-                if height > LEAST_PART {
+                if height > LEAST_PART && !self.edges.upright {
                     self.part.end = self.part.start + (height >> 1);
                 } else {
                     self.edges.wanted = Wanted::Crossings { after: i32::MIN };

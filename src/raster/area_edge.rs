@@ -12,6 +12,9 @@ use core::ops::Range;
 /// error of its step, 2⁻¹⁷ px, stays below 2⁻¹⁰ px, and an edge is the same in every strip.
 const TALL: i32 = 128 << 16;
 
+/// Width of a part of an edge that is taken for upright, 1/128 px. Its area is off by less than 1/1,000 px then.
+const UPRIGHT: i32 = 1 << 9;
+
 /// Largest coordinate, in 16.16 px.
 const GUARD: i32 = 16_383 << 16;
 
@@ -138,6 +141,8 @@ pub(crate) struct AreaEdges<'m> {
     /// Number of edges that were added, and whether there were more than fit.
     pub(super) count: usize,
     pub(super) overflowed: bool,
+    /// Set while all lines cross all of the part of a row that is wanted, nearly upright.
+    pub(super) upright: bool,
     /// Heights between which edges are wanted, 16.16 px.
     pub(super) top: i32,
     pub(super) bottom: i32,
@@ -191,7 +196,9 @@ impl AreaEdges<'_> {
 
     /// Returns the columns and rows in which edges are wanted, 16.16 px.
     pub(crate) fn area(&self) -> [Range<i64>; 2] {
-        [self.left.into()..self.right.into(), self.top.into()..self.bottom.into()]
+        // What is left of the crossings so far has crossed all of it.
+        let left = if let Wanted::Crossings { after } = self.wanted { self.left.max(after) } else { self.left };
+        [left.into()..self.right.into(), self.top.into()..self.bottom.into()]
     }
 
     /// Adds a line that leaves the guard.
@@ -362,6 +369,7 @@ impl AreaEdges<'_> {
             return;
         }
         let (start, end) = (place(self.top), place(self.bottom));
+        self.upright &= a[1] <= self.top && b[1] >= self.bottom && (start[0] - end[0]).abs() <= UPRIGHT;
         let Some(edge) = self.next_edge(start[1]) else { return };
         let (rise, flat) = rise(start[0], end[0], width, height);
         *edge = AreaEdge {
@@ -379,6 +387,10 @@ impl AreaEdges<'_> {
     /// Adds a crossing to the sorted list of those after a place. The last ones make room.
     fn crossing(&mut self, x: i32, turn: i32, after: i32) {
         if x <= after {
+            return;
+        }
+        if self.edges.last().is_some_and(|last| self.count >= self.edges.len() && x > last.x) {
+            self.overflowed = true;
             return;
         }
         let mut at = 0;
@@ -454,6 +466,7 @@ mod tests {
                 edges: &mut memory,
                 count: 0,
                 overflowed: false,
+                upright: true,
                 top: top << 16,
                 bottom: (top + 300) << 16,
                 left: i32::MIN,

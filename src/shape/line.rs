@@ -83,6 +83,9 @@ impl<'a> Polyline<'a> {
     /// Returns the line in dashes: lengths that are drawn and left out by turns, over and over along the whole line.
     /// The pattern begins `offset` px before the line's first point. A pattern without gaps, or whose sum is below
     /// 1/64 px, draws the whole line; negative lengths are 0.
+    ///
+    /// Only dashes that may be seen are drawn. Rows with more edges of them than the buffer holds take many times as
+    /// long: those of dashes of less than a pixel on a slanted line that is much wider.
     #[must_use]
     pub const fn with_dashes(self, pattern: &'a [Pixels], offset: Pixels) -> Self {
         Self { pattern, offset, ..self }
