@@ -222,6 +222,34 @@ fn thick_lines_have_smooth_edges() {
     assert!(between > 100, "{between} px are neither black nor white");
 }
 
+/// Nothing is drawn outside of a scissor, whose borders lie within strips.
+#[test]
+fn samples_stay_in_the_scissor() {
+    let seed = 5;
+    let area = Rectangle::new(Point::new(30, 40), Size::new(50, 30));
+    for rows in [128, 7] {
+        let (picture, ..) = sampled_strips::<Rgb565, 4>((SIDE, SIDE), rows, AMPLE, Rgb565::BLACK, |scene| {
+            let mut rng = Rng::new(seed);
+            let mut canvas = scene.canvas();
+            canvas.set_scissor(Some(&area));
+            for _ in 0..200 {
+                let middle = [rng.between(35, 75), rng.between(30, 80)];
+                let corners = [(); 3].map(|()| {
+                    let [x, y] = middle.map(|c| (c + rng.between(-10, 10)) as i16);
+                    (ScreenPoint::corner(x, y), Rgb888::WHITE)
+                });
+                canvas.gradient(&corners);
+            }
+        });
+        for (k, color) in (0..).zip(&picture).filter(|(_, color)| **color != 0) {
+            let place = Point::new(k % i32::from(SIDE), k / i32::from(SIDE));
+            assert!(area.contains(place), "strips of {rows} rows, seed {seed}: {color:04x} at {place}");
+        }
+        let inside = picture.iter().filter(|color| **color != 0).count();
+        assert!(inside > 1000, "{inside} px");
+    }
+}
+
 /// Shading reads no texel outside of a triangle: each triangle shows its own column of a texture, to its edges.
 #[test]
 fn texels_come_from_inside_of_the_triangle() {

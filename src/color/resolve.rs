@@ -110,3 +110,50 @@ fn means<P: PixelFormat, const FURTHER: usize>(own: &mut [P::Raw; GROUP], furthe
     means!(a b c);
     means!(a b c d e f g);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::random::Rng;
+    use core::fmt::Debug;
+    use embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888};
+    use std::vec::Vec;
+
+    /// Compares pixels with the means of their samples, one by one.
+    fn compare<P: PixelFormat<Raw: PartialEq + Debug>, const FURTHER: usize>(seed: u64) {
+        let mut rng = Rng::new(seed);
+        let mut differ = 0;
+        for case in 0..600 {
+            let length = case % 61;
+            let mut random = || P::pack([(); 3].map(|()| rng.below(256) as u8));
+            let mut pixels: Vec<P::Raw> = (0..length).map(|_| random()).collect();
+            let colors = [random(), random()];
+            let mut samples: Vec<P::Raw> = (0..FURTHER).flat_map(|_| pixels.clone()).collect();
+            for sample in &mut samples {
+                if rng.one_in([2, 10, 200][case % 3]) {
+                    *sample = rng.pick(&colors);
+                }
+            }
+            let mean = |number: usize| {
+                let mut sum = PixelSum::<P, MeanOfCodes>::new();
+                sum.add(pixels[number]);
+                (0..FURTHER).for_each(|sample| sum.add(samples[sample * length + number]));
+                sum.mean(FURTHER as u32 + 1)
+            };
+            let expected: Vec<P::Raw> = (0..length).map(mean).collect();
+            differ += expected.iter().zip(&pixels).filter(|(a, b)| a != b).count();
+            resolve::<P, FURTHER>(&mut pixels, &samples);
+            assert_eq!(pixels, expected, "seed {seed}, case {case}, {FURTHER} further samples");
+        }
+        assert!(differ > 3000, "{differ} pixels differ from sample 0");
+    }
+
+    #[test]
+    fn pixels_are_the_means_of_their_samples() {
+        compare::<Rgb565, 1>(1);
+        compare::<Rgb565, 3>(2);
+        compare::<Rgb565, 7>(3);
+        compare::<Gray8, 3>(4);
+        compare::<Rgb888, 7>(5);
+    }
+}

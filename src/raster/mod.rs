@@ -38,5 +38,5 @@ pub use perspective::{homogenize, straighten, widen, widen_along};
 pub use point::{square, wide_square};
 pub use samples::moves;
 pub(crate) use samples::{first_centre, sampled};
-pub(crate) use small::{HEIGHT, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, tall_edges};
+pub(crate) use small::{HEIGHT, SUM, ShortEdge, ShortPlanes, ShortSlope, TALL, WIDTH, edge_at, tall_edges};
 pub use triangle::{Outline, PixelRect, Spans, pixel_rect, spans};

@@ -98,24 +98,12 @@ impl ShortEdge {
 
     #[inline(always)]
     fn by_division(start: u32, dx: i32, dy: i32, p: i32) -> Self {
-        let n = dx << 17;
-        let q = n.wrapping_div(dy);
-        let rest = n.wrapping_sub(q.wrapping_mul(dy));
-        let r = (rest << 9).wrapping_div(dy) + (dx >> 31);
-        let step = ((q << 9) as u32).wrapping_add(r as u32);
-        let along = ((p.wrapping_mul(q) << 1) as u32).wrapping_add((p.wrapping_mul(r) >> 8) as u32);
-        Self { x: start.wrapping_add(along).wrapping_sub(1), step }
+        ShortSlope::by_division(dx, dy).by_division_from(start, p)
     }
 
     #[inline(always)]
     fn by_reciprocal(start: u32, dx: i32, dy: i32, p: i32) -> Self {
-        let divisor = ShortDivisor::of_13_bits(dy as u32);
-        let (up, mut h) = (divisor.shift() as i32 - 21, divisor.divide(dx));
-        // Of 4 px and more, no unit is finer than 2⁻²⁶ px. (The masks tell the compiler that shifts are in range.)
-        h >>= (-up).max(0) & 3;
-        let along = (h >> 8).wrapping_mul(p).wrapping_add(((h & 0xFF) * p) >> 8).wrapping_sub(7);
-        let up = up.max(0) & 15;
-        Self { x: start.wrapping_add((along << up) as u32), step: (h << up) as u32 }
+        ShortSlope::by_reciprocal(dx, dy).by_reciprocal_from(start, p)
     }
 
     /// Returns the column of the first pixel whose centre is on the edge or to the right of it.
@@ -142,6 +130,69 @@ impl ShortEdge {
     #[inline(always)]
     pub(crate) const fn step(&mut self) {
         self.x = self.x.wrapping_add(self.step);
+    }
+}
+
+/// The direction of an edge, which parallel edges share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ShortSlope {
+    /// The first digit of the quotient, and the second one; or a quotient, and its shift to the left.
+    parts: (i32, i32),
+}
+
+impl ShortSlope {
+    /// Makes the direction of edges that go `dx` to the right and `dy` down. Without rows, dy ≤ 0, it is anything.
+    #[inline(never)]
+    pub(crate) fn new(dx: i32, dy: i32) -> Self {
+        match (dy > 0, SMALL_CORE) {
+            (false, _) => Self { parts: (0, 0) },
+            (true, true) => Self::by_reciprocal(dx, dy),
+            (true, false) => Self::by_division(dx, dy),
+        }
+    }
+
+    /// Returns the edge that begins at `x`, as [`ShortEdge::new`] does. It may be asked for at rows above its beginning,
+    /// for which `p` is negative; it is exact from its beginning on.
+    ///
+    /// # Format
+    /// p ≥ -2 · 2⁸. The start is cut by less than a unit, as below the beginning, and the error of a step is subtracted
+    /// there as it is added below: at the beginning and from there on, δ is what the table of [`ShortEdge::new`] says.
+    #[inline(always)]
+    pub(crate) fn edge(self, x: i32, p: i32) -> ShortEdge {
+        let start = ((x + 128) as u32) << (FRACTION - 8);
+        if SMALL_CORE { self.by_reciprocal_from(start, p) } else { self.by_division_from(start, p) }
+    }
+
+    #[inline(always)]
+    fn by_division(dx: i32, dy: i32) -> Self {
+        let n = dx << 17;
+        let q = n.wrapping_div(dy);
+        let rest = n.wrapping_sub(q.wrapping_mul(dy));
+        Self { parts: (q, (rest << 9).wrapping_div(dy) + (dx >> 31)) }
+    }
+
+    #[inline(always)]
+    fn by_division_from(self, start: u32, p: i32) -> ShortEdge {
+        let (q, r) = self.parts;
+        let step = ((q << 9) as u32).wrapping_add(r as u32);
+        let along = ((p.wrapping_mul(q) << 1) as u32).wrapping_add((p.wrapping_mul(r) >> 8) as u32);
+        ShortEdge { x: start.wrapping_add(along).wrapping_sub(1), step }
+    }
+
+    #[inline(always)]
+    fn by_reciprocal(dx: i32, dy: i32) -> Self {
+        let divisor = ShortDivisor::of_13_bits(dy as u32);
+        let (up, mut h) = (divisor.shift() as i32 - 21, divisor.divide(dx));
+        // Of 4 px and more, no unit is finer than 2⁻²⁶ px. (The masks tell the compiler that shifts are in range.)
+        h >>= (-up).max(0) & 3;
+        Self { parts: (h, up.max(0) & 15) }
+    }
+
+    #[inline(always)]
+    fn by_reciprocal_from(self, start: u32, p: i32) -> ShortEdge {
+        let (h, up) = self.parts;
+        let along = (h >> 8).wrapping_mul(p).wrapping_add(((h & 0xFF) * p) >> 8).wrapping_sub(7);
+        ShortEdge { x: start.wrapping_add((along << up) as u32), step: (h << up) as u32 }
     }
 }
 
@@ -234,6 +285,21 @@ mod tests {
         }
     }
 
+    /// Checks an edge that is made up to two rows above its beginning, from its first row on.
+    fn check_from_above(x: i32, dx: i32, dy: i32, first: i32) {
+        let start = ((x + 128) as u32) << (FRACTION - 8);
+        for rows in 1..=2 {
+            let above = first - 256 * rows;
+            let divided = ShortSlope::by_division(dx, dy).by_division_from(start, above);
+            let multiplied = ShortSlope::by_reciprocal(dx, dy).by_reciprocal_from(start, above);
+            for edge in [divided, multiplied] {
+                for row in [0, (dy - 1 - first) / 256] {
+                    check_row(edge.below((rows + row) as u32), x, dx, dy, first + 256 * row);
+                }
+            }
+        }
+    }
+
     /// Checks 0 < δ ≤ 2¹⁸ / dy of an edge at a row `p` below its beginning, and its pixel.
     fn check_row(edge: ShortEdge, x: i32, dx: i32, dy: i32, p: i32) {
         let (dy, p, dx) = (i128::from(dy), i128::from(p), i128::from(dx));
@@ -306,6 +372,9 @@ mod tests {
                 let x = rng.between(low, high) & if case % 3 == 0 { !127 } else { !0 };
                 let first = [0, rng.between(0, dy - 1), rng.between(0, (dy - 1).min(255))][case % 3];
                 check(x.max(low), dx, dy, first);
+                if first < 256 {
+                    check_from_above(x.max(low), dx, dy, first);
+                }
             }
         }
     }

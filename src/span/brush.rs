@@ -84,6 +84,17 @@ pub(crate) trait BrushRows<P: PixelFormat, D: DepthTest> {
     /// Set if all pixels get one colour, wherever they are shaded.
     const IS_FLAT: bool = false;
 
+    /// Set if pixels can be shaded by themselves, by [`shade`](Self::shade): none is transparent, and none depends on
+    /// what is there.
+    const SHADES: bool = false;
+
+    /// Colours pixels from `column` pixels to the right of the first pixel on, whatever their depth is. Only asked for
+    /// if the brush [shades](Self::SHADES).
+    #[inline(always)]
+    fn shade(&self, color: &mut [P::Raw], column: i32) {
+        let _ = (color, column);
+    }
+
     /// Puts the state into words, as it is a number of rows further down.
     fn save(&self, down: u32, words: &mut [u32]);
 

@@ -96,6 +96,19 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ChannelBrush<'_, P> {
 
 impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ChannelRows {
     const WORDS: Option<usize> = Some(6);
+    const SHADES: bool = true;
+
+    #[inline(always)]
+    fn shade(&self, color: &mut [P::Raw], column: i32) {
+        let [dx, blue_dx] = self.dx;
+        let mut red_green = self.at[0].wrapping_add(dx.wrapping_mul(column as u32));
+        let mut blue = self.at[1].wrapping_add(blue_dx.wrapping_mul(column as u32));
+        for color in color {
+            *color = P::pack([(red_green >> 24) as u8, (red_green >> 8) as u8, (blue >> 24) as u8]);
+            red_green = red_green.wrapping_add(dx);
+            blue = blue.wrapping_add(blue_dx);
+        }
+    }
 
     #[inline(always)]
     fn save(&self, down: u32, words: &mut [u32]) {

@@ -208,11 +208,11 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
             sides: [bx, by, cx, cy],
             a: (ax, ay),
             place: (column, row),
+            past: (past, end),
             depth,
             dz: (dz_dx, dz_dy),
-            end,
         };
-        return draw_sampled_rows(target, &triangle, &rows, test);
+        return draw_sampled_rows(target, &triangle, &mut rows, test);
     }
     let sides = core::hint::black_box([bx, by, cx, cy]);
     let start = ax - (column << 8);

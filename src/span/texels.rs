@@ -301,6 +301,31 @@ impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<
 
 impl<P: PixelFormat, D: DepthTest, S: TexelSource<P>> BrushRows<P, D> for TexelRows<'_, S, P> {
     const WORDS: Option<usize> = Some(if S::LIT { 12 } else { 6 });
+    const SHADES: bool = S::Texture::IS_OPAQUE;
+
+    #[inline(always)]
+    fn shade(&self, color: &mut [P::Raw], column: i32) {
+        let first = |k: usize| {
+            self.at[k]
+                .wrapping_add(self.dx[k].wrapping_mul(column as u32))
+                .wrapping_add(self.dy[k].wrapping_mul(self.row))
+        };
+        let (mut u, mut v) = (first(0), first(1));
+        let mut light = if S::LIT { [first(2), first(3)] } else { [0; 2] };
+        let mut x = self.place.0 + column;
+        for color in color {
+            let uv = [u as i32 >> 8, v as i32 >> 8];
+            if let Some(pixel) = S::pixel(self.texture, uv, Light(light), (x, self.place.1 + self.row as i32)) {
+                *color = pixel;
+            }
+            u = u.wrapping_add(self.dx[0]);
+            v = v.wrapping_add(self.dx[1]);
+            if S::LIT {
+                light = [light[0].wrapping_add(self.dx[2]), light[1].wrapping_add(self.dx[3])];
+            }
+            x = x.wrapping_add(1);
+        }
+    }
 
     #[inline(always)]
     fn save(&self, down: u32, words: &mut [u32]) {
