@@ -121,6 +121,23 @@ impl Pen<'_, '_> {
 
     /// Draws a Bézier curve of the third degree. It sets out towards the first control point, and arrives from the
     /// second one. Its chords are within 1/64 px of it, for points within ±32,767 px.
+    ///
+    /// ```
+    /// use zstrip::ScreenPoint;
+    /// use zstrip::scene::{Outline, Pen};
+    ///
+    /// /// A leaf between two points of a stem, as wide as two others say.
+    /// struct Leaf([ScreenPoint; 4]);
+    ///
+    /// impl Outline for Leaf {
+    ///     fn trace(&self, pen: &mut Pen<'_, '_>) {
+    ///         let [root, left, tip, right] = self.0;
+    ///         pen.move_to(root);
+    ///         pen.cubic_to(left, left, tip);
+    ///         pen.quad_to(right, root);
+    ///     }
+    /// }
+    /// ```
     pub fn cubic_to(&mut self, first: ScreenPoint, second: ScreenPoint, to: ScreenPoint) {
         self.cubic_to_place(place(first), place(second), place(to));
     }

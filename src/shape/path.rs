@@ -86,14 +86,13 @@ pub enum PathStep {
 /// const fn at(x: i16, y: i16) -> ScreenPoint {
 ///     ScreenPoint::corner(x, y)
 /// }
-/// static DROP: [PathStep; 3] = [
+/// static DROP: [PathStep; 4] = [
 ///     PathStep::Move(at(0, -20)),
-///     PathStep::Cubic(at(2, -8), at(12, -4), at(12, 4)),
-///     PathStep::Cubic(at(12, 20), at(-12, 20), at(-12, 4)),
+///     PathStep::Quad(at(4, -10), at(9, -4)),
+///     PathStep::Cubic(at(24, 18), at(-24, 18), at(-9, -4)),
+///     PathStep::Quad(at(-4, -10), at(0, -20)),
 /// ];
-/// // Without a last curve, a straight line would close it; this one goes up to the tip.
-/// let steps = [DROP[0], DROP[1], DROP[2], PathStep::Cubic(at(-12, -4), at(-2, -8), at(0, -20))];
-/// let drop = CurvePath::new(&steps).at(at(50, 60)).turned(Angle16::from_degrees(30)).scaled(Scalar::from_num(1.5));
+/// let drop = CurvePath::new(&DROP).at(at(50, 60)).turned(Angle16::from_degrees(30)).scaled(Scalar::from_num(1.5));
 /// // canvas.fill(&drop, color, &mut buffer);
 /// # let _ = drop;
 /// ```
