@@ -6,7 +6,7 @@ use crate::support::area::{Contour, areas, compare};
 use crate::support::outlines::{BOUND, Errors, SCREEN, arc, center, curved, drawn, px, thick, turned};
 use crate::support::{accuracy, difference, strips, whole};
 use zstrip::embedded_graphics_core::geometry::{Point, Size};
-use zstrip::embedded_graphics_core::pixelcolor::{Rgb565, Rgb888, RgbColor};
+use zstrip::embedded_graphics_core::pixelcolor::{Gray8, Rgb565, Rgb888, RgbColor};
 use zstrip::embedded_graphics_core::primitives::Rectangle;
 use zstrip::math::{Angle16, Pixels, Scalar};
 use zstrip::scene::ShapeBuffer;
@@ -396,6 +396,29 @@ fn ellipses_and_paths_turn() {
     }
     errors.print();
     accuracy::check("coverage of a pixel by a turned path", errors.worst * 255.0);
+}
+
+/// Dashes of wide lines reach far beyond their ends, by caps and by miters.
+#[test]
+fn dashes_of_wide_lines_are_the_same_in_strips() {
+    let mut rng = Rng::new(24);
+    let mut words = vec![0; ShapeBuffer::words(64, 40)];
+    for case in 0..cases(400) {
+        let points: Vec<_> = (0..rng.between(2, 5)).map(|_| center(&mut rng).0).collect();
+        let pattern: Vec<_> = (0..rng.between(1, 4)).map(|_| px(rng.between(500, 10_000))).collect();
+        let line = Polyline::new(&points, px(rng.between(1000, 8000)))
+            .with_join(rng.pick(&[Join::Miter, Join::Round, Join::Bevel]))
+            .with_cap(rng.pick(&[Cap::Butt, Cap::Round, Cap::Square]))
+            .with_miter_limit(16)
+            .with_dashes(&pattern, px(rng.between(-10_000, 10_000)));
+        let line = if rng.one_in(2) { line.closed() } else { line };
+        let expected = drawn(&line, 40, 64);
+        let (picture, _) = strips::<Gray8>(SCREEN, 3, 0, Gray8::new(0), |scene| {
+            let mut buffer = ShapeBuffer::new(&mut words, 64).expect("enough words");
+            scene.canvas().fill(&line, Rgb888::WHITE, &mut buffer);
+        });
+        assert_eq!(difference(&picture, &expected, SCREEN.0), None, "case {case}: {line:?}");
+    }
 }
 
 /// A wide line in tiny dashes has far more edges per row than there is memory for.

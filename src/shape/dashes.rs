@@ -106,8 +106,8 @@ impl Segment {
                 let [first, last] = if change >= 0 { ways } else { [-ways[1], -ways[0]] };
                 let inverse = Inverse::of(change.unsigned_abs());
                 let (first, last) = (inverse.times(first), inverse.times(last));
-                near.start = near.start.max(first - (first.abs() >> 10) - (1 << 16));
-                near.end = near.end.min(last + (last.abs() >> 10) + (1 << 16));
+                near.start = near.start.max(first - (first.abs() >> 10) - (1 << 16) - beyond);
+                near.end = near.end.min(last + (last.abs() >> 10) + (1 << 16) + beyond);
             }
         }
         near
