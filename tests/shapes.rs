@@ -290,10 +290,11 @@ fn thick_lines_are_their_segments_joins_and_caps() {
     let mut errors = Errors::new("thick lines");
     for case in 0..cases(150) {
         let count = rng.between(2, 6);
-        // On the screen, or on both sides of it.
+        // On the screen, or on both sides of it. Exact areas of hundreds of round caps would take minutes.
+        let wide_apart = case % 4 >= 2;
         let point = |rng: &mut Rng| {
             let (at, place) = center(rng);
-            if case % 4 < 2 {
+            if !wide_apart {
                 return (at, place);
             }
             let wide = |bits: i32| 4 * bits - 96 * 256;
@@ -302,8 +303,9 @@ fn thick_lines_are_their_segments_joins_and_caps() {
         let points: Vec<_> = (0..count).map(|_| point(&mut rng)).collect();
         let (line, exact): (Vec<_>, Vec<_>) = points.into_iter().unzip();
         let width = rng.between(20, [600, 3000][case % 2]);
-        let join = rng.pick(&[Join::Miter, Join::Round, Join::Bevel]);
-        let cap = rng.pick(&[Cap::Butt, Cap::Round, Cap::Square]);
+        let join =
+            rng.pick(if wide_apart { &[Join::Miter, Join::Bevel] } else { &[Join::Miter, Join::Round, Join::Bevel] });
+        let cap = rng.pick(if wide_apart { &[Cap::Butt, Cap::Square] } else { &[Cap::Butt, Cap::Round, Cap::Square] });
         let closed = rng.one_in(3) && count > 2;
         let pattern: Vec<_> = (0..2 * rng.below(3)).map(|_| rng.between(100, 4000)).collect();
         let offset = rng.between(-3000, 3000);
