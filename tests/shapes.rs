@@ -400,6 +400,19 @@ fn ellipses_and_paths_turn() {
     accuracy::check("coverage of a pixel by a turned path", errors.worst * 255.0);
 }
 
+/// A line to the left that ends beyond the screen, in the middle of a dash or not, covers nothing on its right.
+#[test]
+fn dashed_lines_that_end_left_of_the_screen_cover_nothing_else() {
+    let pattern = [px(5 * 256), px(3 * 256)];
+    for case in 0..64 {
+        let line = [ScreenPoint::corner(10, 10), ScreenPoint::new(px(-40 * 256 - 64 * case), px(30 * 256))];
+        let line = Polyline::new(&line, px(512)).with_dashes(&pattern, px(0));
+        let found = drawn(&line, 40, 64);
+        let right = found.chunks(64).flat_map(|row| &row[13..]).max();
+        assert_eq!((found[64 * 10 + 9] > 0, right), (true, Some(&0)), "case {case}: {line:?}");
+    }
+}
+
 /// Dashes of wide lines reach far beyond their ends, by caps and by miters.
 #[test]
 fn dashes_of_wide_lines_are_the_same_in_strips() {
