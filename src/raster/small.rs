@@ -151,8 +151,8 @@ impl ShortSlope {
         }
     }
 
-    /// Returns the edge that begins at `x`, as [`ShortEdge::new`] does. It may be asked for at rows above its beginning,
-    /// for which `p` is negative; it is exact from its beginning on.
+    /// Returns the edge that begins at `x`, as [`ShortEdge::new`] does. It may be asked for at rows above its
+    /// beginning, for which `p` is negative; it is exact from its beginning on.
     ///
     /// # Format
     /// p ≥ -2 · 2⁸. The start is cut by less than a unit, as below the beginning, and the error of a step is subtracted
