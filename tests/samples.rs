@@ -250,6 +250,37 @@ fn samples_stay_in_the_scissor() {
     }
 }
 
+/// No channel leaves the range of the corners' channels, however steep it is.
+#[test]
+fn steep_channels_stay_in_range() {
+    static WHITE: Tile<'static, 1, 1> = Tile::new(&[[0xFFFF]]);
+    let seed = 11;
+    let mut rng = Rng::new(seed);
+    let mut drawn = 0;
+    for size in [60, 150, 300, 900, 3000] {
+        let mut triangles = Triangles::new(&mut rng, 900, size);
+        triangles.colors.iter_mut().flatten().for_each(|channel| *channel |= 128);
+        let corners = triangles.moved([0, 0]);
+        for kind in ["Gouraud", "lit"] {
+            let (_, samples, ..) = sampled_strips::<Rgb565, 4>((SIDE, SIDE), 128, AMPLE, Rgb565::BLACK, |scene| {
+                if kind == "Gouraud" {
+                    triangles.draw(scene, &corners, DepthState::OFF, &Gouraud::vertex_colors());
+                } else {
+                    let shader = Textured::new(&WHITE).lit(Unlit::vertex_colors());
+                    triangles.draw(scene, &corners, DepthState::OFF, &shader);
+                }
+            });
+            for color in samples.iter().filter(|color| **color != 0) {
+                let channels = [color >> 11, color >> 6 & 31, color & 31];
+                let is_bright = channels.iter().all(|channel| *channel >= 15);
+                assert!(is_bright, "{kind}, seed {seed}, {size}/256 px: {color:04x}");
+                drawn += 1;
+            }
+        }
+    }
+    assert!(drawn > 20_000, "{drawn}");
+}
+
 /// Shading reads no texel outside of a triangle: each triangle shows its own column of a texture, to its edges.
 #[test]
 fn texels_come_from_inside_of_the_triangle() {

@@ -81,7 +81,12 @@ impl<P: PixelFormat, D: DepthTest> Brush<P, D> for ChannelBrush<'_, P> {
         let (at, dx, dy) = (pair(r, g), pair(r_dx, g_dx), pair(r_dy, g_dy));
         let [b, b_dx, b_dy] = channel(values(2), planes, down, half);
         let bits = |change: u32| change ^ (change as i32 >> 31) as u32;
-        if (bits(r_dx) | bits(r_dy) | bits(g_dx) | bits(g_dy)) >> 16 != 0 {
+        // Rows beside the centres split words into changes of 16 bits.
+        let most = if D::SAMPLED { 15 } else { 16 };
+        if (bits(r_dx) | bits(r_dy) | bits(g_dx) | bits(g_dy)) >> most != 0 {
+            return None;
+        }
+        if D::SAMPLED && (bits(b_dx) | bits(b_dy)) >> most != 0 {
             return None;
         }
         Some(ChannelRows { at: [at, b << 16], dx: [dx, b_dx << 16], dy: [dy, b_dy << 16] })
@@ -119,7 +124,7 @@ impl<P: PixelFormat, D: DepthTest> BrushRows<P, D> for ChannelRows {
     }
 
     /// # Format
-    /// Changes of 8.8 are below 2¹⁶, and so is half of the sum of two. It is cut, so channels are off by one unit more.
+    /// Changes of 8.8 are below 2¹⁵, and so is half of the sum of two. It is cut, so channels are off by one unit more.
     #[inline(always)]
     fn beside(&self, (right, down): (i32, i32)) -> Self {
         let beside = |dx: i32, dy: i32| ((dx * right + dy * down) >> 8) as u32;

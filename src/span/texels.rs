@@ -278,6 +278,11 @@ impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<
             // White light on a white surface is one channel.
             let grey = |word: u32| (word & 0x3FF).wrapping_mul(0x0010_0401) == word;
             let (g, b) = if grey(a) & grey(b) & grey(c) { (r, r) } else { (plane(10)?, plane(0)?) };
+            // Rows beside the centres split words into changes of 16 bits.
+            let is_steep = |plane: &Plane| (bits_of(plane[1] as i32) | bits_of(plane[2] as i32)) >> 15 != 0;
+            if D::SAMPLED && (is_steep(&r) || is_steep(&g) || is_steep(&b)) {
+                return None;
+            }
             let pair = |k: usize| (r[k] << 16).wrapping_add(g[k]);
             (rows.at[2], rows.dx[2], rows.dy[2]) = (pair(0), pair(1), pair(2));
             (rows.at[3], rows.dx[3], rows.dy[3]) = (b[0] << 16, b[1] << 16, b[2] << 16);
@@ -339,7 +344,7 @@ impl<P: PixelFormat, D: DepthTest, S: TexelSource<P>> BrushRows<P, D> for TexelR
     }
 
     /// # Format
-    /// Changes are below 2²⁸, so 2⁻⁸ of them times 127 fit. Light has changes of at most 2¹⁶ in 9.7. Sums are cut.
+    /// Changes are below 2²⁸, so 2⁻⁸ of them times 127 fit. Light has changes below 2¹⁵ in 9.7. Sums are cut.
     #[inline(always)]
     fn beside(&self, (right, down): (i32, i32)) -> Self {
         let of_long = |k: usize| (self.dx[k] as i32 >> 8) * right + (self.dy[k] as i32 >> 8) * down;
