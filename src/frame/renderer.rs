@@ -115,7 +115,7 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
 impl<'b, P: PixelFormat, R> Renderer<'b, P, WithDepth, R> {
     /// Leaves out draws that are hidden. The renderer keeps coarse depths for each strip: of blocks of 16 × 16 px, the
     /// farthest depth that is stored. A draw whose nearest depth is behind all blocks that it touches draws nothing
-    /// there, and is skipped. The picture is the same, bit by bit. [`Stats::culled`] counts.
+    /// there, and is skipped. The picture is the same, bit by bit. [`Stats::culled`] counts them.
     ///
     /// Coarse depths lie in the depth buffer, after the depths of a strip:
     /// [`occlusion_len`](crate::target::occlusion_len) numbers. If the buffer has no room for them, strips have fewer
@@ -129,8 +129,9 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithDepth, R> {
     ///
     /// **When it pays.** Draw near things first: only what is drawn before can hide what is drawn after. Draw by tests
     /// [`Less`](crate::span::Compare::Less), [`LessEqual`](crate::span::Compare::LessEqual) or
-    /// [`Equal`](crate::span::Compare::Equal). No other test, and no bias that pulls nearer, can be hidden, and a draw
-    /// that may write farther depths lets go of all that is known of the strip. `docs/speed.md` has figures.
+    /// [`Equal`](crate::span::Compare::Equal). Draws by any other test, or with a bias that pulls nearer, are never
+    /// left out. A draw that may write farther depths makes the strip forget its coarse depths. `docs/speed.md` has
+    /// figures.
     ///
     /// A [`Shader::span`](crate::span::Shader::span) of one's own has to write depths by its test alone, as the
     /// ready-made ones do.

@@ -1,5 +1,5 @@
-//! Areas in a row: the edges of a row come in, and the covered part of each of its pixels goes out, exact but for
-//! roundings of 2⁻¹⁰.
+//! Areas in a row: the edges of a row come in, and the pieces of them that are between inside and outside go out, into
+//! [`Cells`] that add up the covered part of each pixel.
 //!
 //! The covered part of a pixel is a sum over edges: an edge with the area on its right adds the part of the pixel that
 //! is right of it, and one with the area on its left takes that part away. This holds where no two of the edges cross
@@ -8,8 +8,8 @@
 //! only the edges between inside and outside count, whatever the fill rule is.
 //!
 //! ```text
-//!    \      /  slab 1: a, b         a cell keeps the difference to its left neighbour, so that what is right of
-//! ----\----/-----------------       an edge, to the end of the row, takes no time
+//!    \      /  slab 1: a, b
+//! ----\----/-----------------       where another edge begins or ends
 //!      \  /    slab 2: a, b
 //! ------\/-------------------       where a and b cross
 //!      / \     slab 3: b, a

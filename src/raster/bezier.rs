@@ -2,7 +2,7 @@
 //!
 //! A curve of the third degree at most is cut into 2ⁿ chords of equal steps of t, which begin and end on it but for a
 //! small shift. With M, the largest second derivative, a chord between two points of the curve is at most M / 8 · 4⁻ⁿ
-//! away from it. So n is the least number of which that is 1/64 px or less.
+//! away from it. So n is the least number for which that distance is 1/64 px or less.
 //!
 //! ```text
 //!        .-"""-.            a chord's ends are moved towards the outside by half of that distance:

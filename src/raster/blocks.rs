@@ -3,11 +3,11 @@
 //!
 //! ```text
 //!   +--------+   An edge function changes by a constant per column and per row. So it is greatest in a block at the
-//!   | .   /  |   corner that is farthest along the edge's normal, and least at the opposite corner.
-//!   |    / A |   If a function is negative at its greatest, no pixel of the block is covered: trivial reject.
+//!   | L   /  |   corner that is farthest along the edge's normal, and least at the opposite corner.
+//!   |    /   |   If a function is negative at its greatest, no pixel of the block is covered: trivial reject.
 //!   |   /    |   If no function is negative at its least, all pixels are: trivial accept.
-//!   | R/     |   Otherwise the block's pixels are looked at, one by one.
-//!   +--------+   Here, A is the corner for the first test of an edge whose inside is on the right, R for the second.
+//!   |  /   G |   Otherwise the block's pixels are looked at, one by one.
+//!   +--------+   Here, an edge has its inside on the right: its function is greatest at G, and least at L.
 //! ```
 //! Blocks begin at columns and rows that are multiples of 8, wherever the rectangle begins.
 

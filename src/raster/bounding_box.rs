@@ -109,7 +109,7 @@ fn walk_samples<T: Number>(
 ) {
     let EdgeFunctions { mut at, right, down, fine: [fine_right, fine_down] } =
         EdgeFunctions::<T>::new(v, area > 0, (rect.x.start, rect.y.start));
-    // From the centre to each sample, the farthest of these, and how much nearer each sample is than that.
+    // Changes of the edge functions from the centre to each sample, and the least and the greatest of each function.
     let moves = moves(samples);
     let mut beside = [Three([T::ZERO; 3]); MOST];
     let mut least = Three([T::ZERO; 3]);

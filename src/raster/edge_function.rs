@@ -22,7 +22,7 @@ pub(super) trait Number: Copy {
     /// Number 0.
     const ZERO: Self;
 
-    /// Returns a factor of an edge function.
+    /// Converts a factor of an edge function.
     fn of(value: i32) -> Self;
 
     /// Returns the sum. It may wrap only where it is not looked at: after the last column or row.

@@ -9,8 +9,8 @@ use crate::span::{Compare, DepthState};
 use crate::target::{Coarse, Framebuffer};
 use crate::vertex::{DepthScale, Extent, STEPS, ScreenMatrix, ScreenVertex};
 
-/// Returns the least number that hides fragments at a depth of `nearest` or farther, if all stored depths are below
-/// it; 0 if none does.
+/// Returns the greatest number for which stored depths below it hide fragments at a depth of `nearest` or farther; 0 if
+/// nothing hides them.
 fn limit(state: &State, nearest: u16) -> u32 {
     // A bias that pushes back, by whatever it comes to, leaves no pixel nearer than its triangle's vertices.
     if state.bias.constant < 0 || state.bias.slope < 0 {

@@ -73,7 +73,7 @@ impl<'a> Polyline<'a> {
     }
 
     /// Returns the line with another miter limit, from 1 to 16: the greatest ratio of a miter's length to the line's
-    /// width. It is 4 unless set.
+    /// width. It is 4 unless set. Larger limits become 16, and at 0 no corner has a miter.
     #[must_use]
     pub const fn with_miter_limit(self, limit: u8) -> Self {
         let limit = if limit > 16 { 16 } else { limit as u32 };

@@ -3,7 +3,7 @@
 //! memory that all of them share, and [`Canvas::fill`](crate::scene::Canvas::fill).
 //!
 //! Round shapes are flattened so finely that a pixel's covered part is within 1/128 of that of the true shape. Curves
-//! of paths, and ellipses that are turned, are within 1/64 px of it.
+//! of paths, and ellipses that are turned, are drawn within 1/64 px of the true ones.
 
 mod arc;
 mod dashes;

@@ -110,7 +110,7 @@ const FARTHEST: i64 = 1 << 39;
 
 impl<'a> CurvePath<'a> {
     /// Makes a path of steps, around the upper left corner of the screen. Contours close by themselves. Steps before
-    /// the first [`PathStep::Move`] go on from that corner.
+    /// the first [`PathStep::Move`] go on from the path's point (0, 0).
     #[must_use]
     pub const fn new(steps: &'a [PathStep]) -> Self {
         Self { steps, rule: FillRule::NonZero, at: ScreenPoint::corner(0, 0), angle: Angle16::ZERO, scale: Scalar::ONE }

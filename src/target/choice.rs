@@ -8,7 +8,7 @@ pub trait DepthChoice: sealed::Sealed {
     /// Number of samples per pixel.
     const SAMPLES: usize = 1;
 
-    /// True if hidden draws are left out, by coarse depths beside the depth buffer.
+    /// True if hidden draws are left out, by coarse depths in the depth buffer.
     const OCCLUDES: bool = false;
 
     /// The colours of samples 1 and up, one sample after the other; nothing with one sample per pixel.

@@ -15,7 +15,10 @@ use core::ops::Range;
 const BLOCK: usize = 16;
 
 /// Returns how many numbers a depth buffer takes beside the depths of a strip, for
-/// [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion): two for each block of 16 × 16 px.
+/// [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion): two of 16 bits for each block of 16 × 16 px.
+/// `width` and `rows` are those of a strip, in px.
+///
+/// A number that does not fit is `usize::MAX`.
 #[must_use]
 pub const fn occlusion_len(width: usize, rows: usize) -> usize {
     width.div_ceil(BLOCK).saturating_mul(rows.div_ceil(BLOCK)).saturating_mul(2)
@@ -24,8 +27,8 @@ pub const fn occlusion_len(width: usize, rows: usize) -> usize {
 /// The coarse depths of a strip, beside its depths.
 pub(crate) struct Coarse<'s> {
     depths: &'s [u16],
-    /// For each block a depth, none of the block is farther; and the place where the last test ended, 16 times the row
-    /// in the block plus the column.
+    /// For each block, a depth that none in the block is farther than; and the place where the last test ended: 16
+    /// times the row in the block plus the column.
     blocks: &'s mut [[u16; 2]],
     width: usize,
     rows: usize,
@@ -92,9 +95,8 @@ impl<'s> Coarse<'s> {
         true
     }
 
-    /// Returns whether all that has this extent lies behind what has been drawn. A fragment at a depth of `limit` or
-    /// farther fails its test where the stored depth is below `limit`. `seen` are the pixels that may be drawn, whose
-    /// rows count from `first`.
+    /// Returns whether all that has this extent lies behind what has been drawn: its fragments fail their test wherever
+    /// the stored depth is below `limit`. `seen` are the pixels that may be drawn; `first` is the strip's first row.
     pub(crate) fn hides(&mut self, limit: u32, extent: &Extent, seen: (&Range<i32>, &Range<i32>), first: i32) -> bool {
         let cut = |part: &Range<i32>, all: &Range<i32>, first: i32| {
             let (start, end) = (part.start.max(all.start), part.end.min(all.end));

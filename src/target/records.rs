@@ -32,6 +32,7 @@ const EXTENT: usize = 2;
 /// calls, `vertices` and `triangles` are those of all draws together, of triangles only the visible ones.
 /// `varying_words` is the number of words of varyings per vertex
 /// ([`VertexShader::WORDS`](crate::vertex::VertexShader::WORDS)).
+/// [`Renderer::with_occlusion`](crate::frame::Renderer::with_occlusion) takes 2 words more for each draw.
 ///
 /// A number that does not fit is `usize::MAX`.
 ///

@@ -49,8 +49,8 @@ pub(crate) const STEPS: u16 = 3;
 
 impl ScreenMatrix {
     /// Returns the extent of all vertices in a box, in perspective depth. `None` if the box is too near to the eye, if
-    /// it reaches too far off the screen, or if `may_hide` says that its centre is not hidden. That takes a fraction of
-    /// the time, and most of what is seen is seen there.
+    /// it reaches too far off the screen, or if `may_hide` says that its centre is not hidden. The test of the centre
+    /// takes a fraction of the time, and most boxes that are seen are seen there.
     ///
     /// # Format
     /// Entries are below 2⁴⁵ and coordinates below 2¹⁶: sums of six products and an entry are below 2⁶³.
