@@ -43,6 +43,7 @@
 //! | know how much RAM that takes, at compile time | [`frame::RamBudget`] |
 //! | draw in strips of a few rows | [`Renderer::with_carried_state`] |
 //! | make edges smooth | [`Renderer::with_samples`], [`frame::Supersampled`] |
+//! | leave out what is hidden | [`Renderer::with_occlusion`], [`Scene::is_visible_with`] |
 //! | bring in a mesh, lines, points | [`mesh`] |
 //! | draw a model with its materials, textures and animation from one file | [`model`] |
 //! | place a camera, move things | [`math`] |

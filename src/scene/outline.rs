@@ -42,9 +42,9 @@ pub trait Outline {
         false
     }
 
-    /// Returns whether no contour crosses itself or another one, and winding numbers are 0 and 1, or 0 and -1: holes go
-    /// round the other way than what they are in, and contours that are not in one another the same way. Then rows are
-    /// filled faster, too, and an outline that says so and is not like that is covered wrongly.
+    /// Returns whether no contour crosses or touches itself or another one, and winding numbers are 0 and 1, or 0 and
+    /// -1: holes go round the other way than what they are in, and contours that are not in one another the same way.
+    /// Then rows are filled faster, too, and an outline that says so and is not like that is covered wrongly.
     fn is_apart(&self) -> bool {
         false
     }
