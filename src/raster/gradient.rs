@@ -221,6 +221,16 @@ impl Gradients {
 /// These are the results of [`Gradients::gentle`], bit for bit.
 #[inline(always)]
 pub(crate) fn gradients(a: i32, b: i32, reciprocal: u32, up: i32) -> Option<(i32, i32)> {
+    let (dx, dy) = gradients_outlined(a, b, reciprocal, up);
+    if dx == STEEP { None } else { Some((dx, dy)) }
+}
+
+/// Returns gradients as [`gradients`] does, inlined where the core has the registers.
+#[inline(always)]
+pub(crate) fn gradients_inlined(a: i32, b: i32, reciprocal: u32, up: i32) -> Option<(i32, i32)> {
+    if SMALL_CORE {
+        return gradients(a, b, reciprocal, up);
+    }
     let (dx, dy) = gradients_or_steep(a, b, reciprocal, up);
     if dx == STEEP { None } else { Some((dx, dy)) }
 }
@@ -229,6 +239,12 @@ pub(crate) fn gradients(a: i32, b: i32, reciprocal: u32, up: i32) -> Option<(i32
 ///
 /// Not inlined, because its registers would push the values that are live around it to the stack.
 #[inline(never)]
+fn gradients_outlined(a: i32, b: i32, reciprocal: u32, up: i32) -> (i32, i32) {
+    gradients_or_steep(a, b, reciprocal, up)
+}
+
+/// Returns gradients as [`gradients`] does, or [`STEEP`] and 0.
+#[inline(always)]
 fn gradients_or_steep(a: i32, b: i32, reciprocal: u32, up: i32) -> (i32, i32) {
     let (dx, dy) = (high(a, reciprocal), high(b, reciprocal));
     let bits = ((dx ^ dx >> 31) | (dy ^ dy >> 31)) as u32;

@@ -31,7 +31,7 @@ pub use blocks::{Block, blocks};
 pub use bounding_box::{bounding_box, covered_samples};
 pub(crate) use direction::unit;
 pub use gradient::{Gradients, PlaneEquation};
-pub(crate) use gradient::{gradients, high};
+pub(crate) use gradient::{gradients, gradients_inlined, high};
 pub use line::{Line, LinePixels};
 pub(crate) use perspective::least_and_most;
 pub use perspective::{homogenize, straighten, widen, widen_along};

@@ -29,7 +29,7 @@
 use super::brush::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::depth::DepthTest;
 use crate::color::PixelFormat;
-use crate::raster::{ShortPlanes, gradients, least_and_most};
+use crate::raster::{ShortPlanes, gradients_inlined, least_and_most};
 use crate::texture::Texture;
 use crate::vertex::PackedCorners;
 use core::marker::PhantomData;
@@ -162,7 +162,7 @@ type Plane = [u32; 3];
 #[inline(always)]
 fn coordinate(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
     let (n, m) = planes.numerators(b, c);
-    let (dx, dy) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 15)?;
+    let (dx, dy) = gradients_inlined(n, m, planes.reciprocal, planes.shift as i32 - 15)?;
     let start = ((a as u32) << 8).wrapping_add(HALF);
     Some([start.wrapping_add_signed(planes.offset(dx, dy)), dx as u32, dy as u32])
 }
@@ -177,10 +177,16 @@ fn coordinate(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
 #[inline(always)]
 fn channel(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
     let (n, m) = planes.numerators(b.wrapping_sub(a), c.wrapping_sub(a));
-    let (dx, dy) = gradients(n, m, planes.reciprocal, planes.shift as i32 - 11)?;
+    let (dx, dy) = gradients_inlined(n, m, planes.reciprocal, planes.shift as i32 - 11)?;
     let (dx, dy) = ((dx + (1 << 11)) >> 12, (dy + (1 << 11)) >> 12);
     let offset = (dx * planes.to.0 + dy * planes.to.1) >> 8;
     Some([a.wrapping_add(offset) as u32, dx as u32, dy as u32])
+}
+
+/// Computes the plane of a channel as [`channel`] does, out of line.
+#[inline(never)]
+fn channel_outlined(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
+    channel(planes, a, b, c)
 }
 
 /// Returns whether perspective surely moves no texel by more than 2⁻`bits` texels, by a short test. Differences of
@@ -273,8 +279,8 @@ impl<'s, P: PixelFormat, D: DepthTest, S: TexelSource<P>, const N: usize> Brush<
                 let ten = (word >> at & 0x3FF) as i32;
                 (ten << 5) + if S::RGB565 { ten >> 1 } else { 0 } + MARGIN
             };
-            let plane = |at: u32| channel(planes, level(a, at), level(b, at), level(c, at));
-            let r = plane(20)?;
+            let plane = |at: u32| channel_outlined(planes, level(a, at), level(b, at), level(c, at));
+            let r = channel(planes, level(a, 20), level(b, 20), level(c, 20))?;
             // White light on a white surface is one channel.
             let grey = |word: u32| (word & 0x3FF).wrapping_mul(0x0010_0401) == word;
             let (g, b) = if grey(a) & grey(b) & grey(c) { (r, r) } else { (plane(10)?, plane(0)?) };
