@@ -2,8 +2,9 @@
 //! vertices on the screen; those that are small and do not show the wrong side are put into the records.
 
 use super::state::Culling;
+use crate::math::SMALL_CORE;
 use crate::mesh::Mesh;
-use crate::target::{Room, positions_at};
+use crate::target::{Room, third};
 use crate::vertex::{PackedVertex, small};
 
 /// Placeholder for a recorded triangle's face word, until `shade_faces` fills it. The upper bits hold the number of the
@@ -22,19 +23,6 @@ impl PendingFace {
     pub(super) const fn parts(self) -> (usize, i64) {
         ((self.0 as usize >> 1).wrapping_sub(1), if self.0 & 1 == 0 { 1 } else { -1 })
     }
-}
-
-/// Returns the edge vectors b − a and c − a, x and y of each in 24.8, from words of
-/// [`PackedVertex`](crate::vertex::PackedVertex)s. `None` unless all components fit 16 bits.
-///
-/// # Format
-/// A vertex off the screen has x = -2²³, and its difference from any other x is not small.
-#[inline(always)]
-fn small_sides(a: &[u32; 2], b: &[u32; 2], c: &[u32; 2]) -> Option<[i32; 4]> {
-    let (ax, ay) = (a[0] as i32 >> 8, a[1] as i32 >> 8);
-    let side = |p: u32, from: i32| (p as i32 >> 8) - from;
-    let [bx, by, cx, cy] = [side(b[0], ax), side(b[1], ay), side(c[0], ax), side(c[1], ay)];
-    if small(bx) & small(by) & small(cx) & small(cy) { Some([bx, by, cx, cy]) } else { None }
 }
 
 /// Reasons why a pass over triangles stops at one.
@@ -63,24 +51,26 @@ impl CullPass<'_, '_> {
     pub(super) fn list(&mut self, list: &mut &[u16], number: &mut usize) -> Option<Stop> {
         let Self { culling, positions, .. } = *self;
         let mut room = self.room.take();
-        let (mut rest, mut next) = (*list, *number);
+        let end = *number + third(list.len());
+        let mut rest = *list;
         let stop = loop {
             let Some((corners, after)) = rest.split_first_chunk() else { break None };
-            if let Some(stop) = cull_one(
-                culling,
-                &mut room,
-                &mut self.degenerate,
-                next + 1,
-                *corners,
-                positions_at(positions, *corners),
-            ) {
-                let [i, j, k] = *corners;
+            let [i, j, k] = *corners;
+            let at = |index: u16| positions.get(usize::from(index));
+            let stop = match (at(i), at(j), at(k)) {
+                (Some(a), Some(b), Some(c)) => {
+                    let next = || end - third(after.len());
+                    cull_one(culling, &mut room, &mut self.degenerate, next, *corners, [a, b, c])
+                }
+                _ => Some(Stop::Large),
+            };
+            if let Some(stop) = stop {
                 self.corners = [i, j, k];
                 break Some(stop);
             }
-            (rest, next) = (after, next + 1);
+            rest = after;
         };
-        (*list, *number, self.room) = (rest, next, room);
+        (*list, *number, self.room) = (rest, end - third(rest.len()), room);
         stop
     }
 
@@ -95,7 +85,7 @@ impl CullPass<'_, '_> {
             let Some(([a, b, c], after)) = rest.split_first_chunk() else { break None };
             let first = (3 * next) as u16;
             let corners = [first, first.wrapping_add(1), first.wrapping_add(2)];
-            if let Some(stop) = cull_one(culling, &mut room, &mut self.degenerate, next + 1, corners, [a, b, c]) {
+            if let Some(stop) = cull_one(culling, &mut room, &mut self.degenerate, || next + 1, corners, [a, b, c]) {
                 self.corners = corners;
                 break Some(stop);
             }
@@ -121,25 +111,48 @@ impl CullPass<'_, '_> {
 }
 
 /// Culls one triangle by its winding, or puts it into the records. `next` is the number of the triangle after it.
+///
+/// # Format
+/// Positions are 24.8. A vertex off the screen has x = -2²³, and its difference from any other x does not fit 16 bits.
+/// Where products have 32 bits, differences in y have to fit 16 bits, too. Where one instruction makes products of 64
+/// bits, any y will do: 2 · 2¹⁵ · 2²⁵ < 2⁶³, and the upper word of the area has its sign.
 #[inline(always)]
 fn cull_one(
     culling: Culling,
     room: &mut Room<'_>,
     degenerate: &mut u32,
-    next: usize,
+    next: impl FnOnce() -> usize,
     corners: [u16; 3],
     [a, b, c]: [&[u32; 2]; 3],
 ) -> Option<Stop> {
-    let Some([bx, by, cx, cy]) = small_sides(a, b, c) else { return Some(Stop::Large) };
-    let area = bx * cy - cx * by;
-    if area == 0 {
+    let (ax, ay) = (a[0] as i32 >> 8, a[1] as i32 >> 8);
+    let side = |p: u32, from: i32| (p as i32 >> 8) - from;
+    let [bx, by, cx, cy] = [side(b[0], ax), side(b[1], ay), side(c[0], ax), side(c[1], ay)];
+    let is_small = small(bx) & small(cx) & (!SMALL_CORE || small(by) & small(cy));
+    if !is_small {
+        return Some(Stop::Large);
+    }
+    let (low, sign) = if SMALL_CORE {
+        let area = bx * cy - cx * by;
+        (area, area)
+    } else {
+        let area = i64::from(bx) * i64::from(cy) - i64::from(cx) * i64::from(by);
+        (area as i32, (area >> 32) as i32)
+    };
+    if low == 0 && (SMALL_CORE || is_zero(sign)) {
         // Or none of the vertices is on the screen.
         if (a[0] as i32) < PackedVertex::LEAST_X {
             return Some(Stop::Large);
         }
         *degenerate += 1;
-    } else if !culling.leaves_out(area) && !room.push(corners, PendingFace::new(next, area).0) {
+    } else if !culling.leaves_out(sign) && !room.push(corners, PendingFace::new(next(), sign).0) {
         return Some(Stop::Full);
     }
     None
+}
+
+/// Returns whether a word is 0. Out of line: both halves of an area would otherwise be compared for each triangle.
+#[inline(never)]
+const fn is_zero(word: i32) -> bool {
+    word == 0
 }

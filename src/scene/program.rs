@@ -73,11 +73,6 @@ impl<F: Framebuffer, S: Shader<F::Format>> MeshProgram<'_, F, S> {
         }
     }
 
-    fn face_of(&self, number: usize, corners: [u16; 3], area: i64) -> u32 {
-        let VertexStage { mesh, shader, .. } = self.stage;
-        shader.face(&Face::new(mesh, number, corners, self.state.side(area)))
-    }
-
     /// Computes the varyings at the corners of a triangle, rounded as the records round them.
     #[inline(never)]
     fn varyings(
@@ -106,8 +101,11 @@ impl<F: Framebuffer, S: Shader<F::Format>> Program<F> for MeshProgram<'_, F, S> 
     }
 
     fn shade_corners(&self, records: &mut Records<'_>, first: u16) {
-        if F::RECORDS && S::WORDS > 0 {
-            self.stage.store_each(records.unshaded(first));
+        if F::RECORDS
+            && S::WORDS > 0
+            && let Some(vertices) = records.unshaded(first)
+        {
+            self.stage.store_each(vertices);
         }
     }
 
@@ -148,18 +146,22 @@ impl<F: Framebuffer, S: Shader<F::Format>> Program<F> for MeshProgram<'_, F, S> 
     }
 
     fn shade_faces(&self, mut records: &mut [u32]) {
-        while F::RECORDS
-            && let Some(([corners, last, word], rest)) = records.split_first_chunk_mut()
-        {
+        while let Some(([corners, last, word], rest)) = records.split_first_chunk_mut() {
             let (number, area) = PendingFace(*word).parts();
             let [k, _] = bytemuck::cast(*last);
-            *word = self.face_of(number, [*corners as u16, (*corners >> 16) as u16, k], area);
+            let corners = [*corners as u16, (*corners >> 16) as u16, k];
+            *word = self.stage.shader.face(&Face::new(self.stage.mesh, number, corners, self.state.side(area)));
             records = rest;
         }
     }
 
     fn face(&self, triangle: &ScreenTriangle) -> u32 {
-        self.face_of(triangle.number.into(), triangle.corners, triangle.area)
+        // As a record, so that faces are compiled once.
+        let ScreenTriangle { number, corners: [i, j, k], area, .. } = triangle;
+        let pending = PendingFace::new(usize::from(*number) + 1, (*area >> 32) as i32);
+        let mut record = [u32::from(*i) | u32::from(*j) << 16, bytemuck::cast([*k, 0]), pending.0];
+        self.shade_faces(&mut record);
+        record[2]
     }
 
     fn draw(

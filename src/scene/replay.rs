@@ -180,36 +180,22 @@ impl<F: Framebuffer> Scene<'_, F> {
             };
         }
         let clip = &self.clip_rect(&self.target.rows);
-        let end = Triangles::end_of(self.target.rows.end, F::SAMPLES);
         let (target, screen) = (&mut self.target, self.screen);
-        let rows = SmallRows::new(screen, clip, state, bias.map(|bias| (bias, state.bias)));
+        let rows = &SmallRows::new(screen, clip, state, bias.map(|bias| (bias, state.bias)));
         let mut triangles = self.records.triangles();
         let mut test = BoxTest::new(clip);
         let mut record = TriangleRecord::default();
-        let mut v = [ScreenVertex::new(0, 0, 0); 3];
         if waiting {
             triangles.begin_waiting();
         }
-        let fits = drawer.fits();
-        // States are carried on if the rows of the next strip follow those that are drawn here.
-        let carries = F::CARRIES && !waiting && clip.y.end == target.rows.end;
-        let mut state = LeftState::NONE;
         loop {
-            let state = if carries { Some(&mut state) } else { None };
-            let mut place = if fits { rows.place(target, None, state) } else { None };
-            let tried = place.is_some();
-            let draw = &mut SmallDrawer { place: &mut place, drawer };
-            let found = if waiting {
-                triangles.waiting_each(&mut record, &mut test.left_out, draw)
-            } else {
-                triangles.replay_each(end, &mut record, draw)
-            };
+            let left_out = if waiting { Some(&mut test.left_out) } else { None };
+            let (found, refused) = small_ones(target, rows, &mut triangles, &mut record, left_out, drawer);
             if !found {
                 break;
             }
             if !waiting || test.first_row::<F>(triangles.positions_of(record.corners)).is_some() {
-                triangles.vertices_of(&record, &mut v);
-                drawer.single((target, screen, clip), &triangles, &record, &v, tried);
+                large_one((target, screen, clip), &triangles, &record, refused, drawer);
             }
         }
         if waiting {
@@ -217,4 +203,47 @@ impl<F: Framebuffer> Scene<'_, F> {
             triangles.clear();
         }
     }
+}
+
+/// Draws small triangles until one is large, which is left in `record`: of the strip, or those that wait if the numbers
+/// of triangles that are empty and outside are counted. Returns whether there is a large one, and whether it was tried
+/// as a small one.
+///
+/// Out of line, so that its stack is free again when the large one is drawn.
+#[inline(never)]
+fn small_ones<F: Framebuffer>(
+    target: &mut Target<'_, F>,
+    rows: &SmallRows<'_>,
+    triangles: &mut Triangles<'_>,
+    record: &mut TriangleRecord,
+    left_out: Option<&mut [u32; 2]>,
+    drawer: &mut dyn RecordDrawer<F>,
+) -> (bool, bool) {
+    let end = Triangles::end_of(target.rows.end, F::SAMPLES);
+    // States are carried on if the rows of the next strip follow those that are drawn here.
+    let carries = F::CARRIES && left_out.is_none() && rows.end() == target.rows.end;
+    let mut state = LeftState::NONE;
+    let state = if carries { Some(&mut state) } else { None };
+    let mut place = if drawer.fits() { rows.place(target, None, state) } else { None };
+    let tried = place.is_some();
+    let draw = &mut SmallDrawer { place: &mut place, drawer };
+    let found = match left_out {
+        Some(left_out) => triangles.waiting_each(record, left_out, draw),
+        None => triangles.replay_each(end, record, draw),
+    };
+    (found, tried)
+}
+
+/// Draws a triangle that is not drawn as a small one. Out of line, so that small ones do not take its stack.
+#[inline(never)]
+fn large_one<F: Framebuffer>(
+    place: Place<'_, '_, F>,
+    triangles: &Triangles<'_>,
+    record: &TriangleRecord,
+    refused: bool,
+    drawer: &mut dyn RecordDrawer<F>,
+) {
+    let mut v = [ScreenVertex::new(0, 0, 0); 3];
+    triangles.vertices_of(record, &mut v);
+    drawer.single(place, triangles, record, &v, refused);
 }

@@ -32,6 +32,11 @@ impl<'p> SmallRows<'p> {
         Self { screen, clip, clockwise_fronts: matches!(state.front, Winding::Clockwise), bias }
     }
 
+    /// Returns the row after the last one that may be drawn.
+    pub(super) const fn end(&self) -> i32 {
+        self.clip.y.end
+    }
+
     /// Returns the rows that a triangle with these vertices may have pixels in. Its highest vertex is the first.
     #[inline(never)]
     pub(super) fn of<F: Framebuffer>(&self, [a, b, c]: &[ScreenVertex; 3]) -> Range<i32> {

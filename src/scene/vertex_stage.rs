@@ -2,6 +2,7 @@
 //! and varyings go out, for one vertex or for all.
 
 use super::scene::Scene;
+use crate::math::SMALL_CORE;
 use crate::mesh::Mesh;
 use crate::target::{Framebuffer, Unshaded};
 use crate::vertex::{
@@ -79,13 +80,16 @@ impl<S: VertexShader> VertexStage<'_, S> {
     /// Packs the varyings of vertices that have none yet.
     #[inline(never)]
     pub(super) fn store_each(&self, vertices: Unshaded<'_>) {
-        vertices.each(S::WORDS, |index, words| self.store(index, words));
+        vertices.each(|index, words| self.store(index, words));
     }
 
-    /// Packs the varyings of a vertex.
+    /// Packs the varyings of a vertex into its words among those of all vertices.
     #[inline(never)]
     fn store(&self, index: usize, words: &mut [u32]) {
-        S::store(&self.varyings(index), words);
+        let Some(words) = words.get_mut(S::WORDS * index..).and_then(|rest| rest.get_mut(..S::WORDS)) else { return };
+        // On a small core, the compiler decides.
+        let varyings = if SMALL_CORE { self.varyings(index) } else { self.varyings_inlined(index) };
+        S::store(&varyings, words);
     }
 
     /// Returns a vertex in clip space.
@@ -123,6 +127,11 @@ impl<S: VertexShader> VertexStage<'_, S> {
     /// Returns the varyings of a vertex, with 1 / w if any of them is perspective-correct.
     #[inline]
     fn varyings(&self, index: usize) -> S::Varyings {
+        self.varyings_inlined(index)
+    }
+
+    #[inline(always)]
+    fn varyings_inlined(&self, index: usize) -> S::Varyings {
         let mut varyings = self.shader.vertex(&VertexRef::new(self.mesh, index));
         if S::Varyings::PERSPECTIVE > 0 {
             varyings.set_inverse_w(if S::DISPLACES {

@@ -246,15 +246,15 @@ impl<'a> Records<'a> {
     }
 
     /// Takes apart what the varyings of recorded triangles are computed from, for the triangles from a number on.
-    pub(crate) fn unshaded(&mut self, first: u16) -> Unshaded<'_> {
+    pub(crate) fn unshaded(&mut self, first: u16) -> Option<Unshaded<'_>> {
         let (start, end) = (self.triangle_at(self.layout.triangles), self.triangle_at(first));
         let Layout { marks, vertices, count, stride, front, .. } = *self.layout;
-        let (used, rest) = self.words.split_at_mut_checked(front).unwrap_or_default();
+        let (used, rest) = self.words.split_at_mut_checked(front)?;
         let range = start.wrapping_add(TRIANGLE).wrapping_sub(front)..end.wrapping_add(TRIANGLE).wrapping_sub(front);
-        let triangles = rest.get(range).unwrap_or_default();
-        let words = used.get_mut(marks..vertices + count * stride).unwrap_or_default();
-        let (marks, words) = words.split_at_mut_checked(vertices - marks).unwrap_or_default();
-        Unshaded { triangles, marks, varyings: words.get_mut(VERTEX_WORDS * count..).unwrap_or_default() }
+        let triangles = rest.get(range)?;
+        let words = used.get_mut(marks..vertices + count * stride)?;
+        let (marks, words) = words.split_at_mut_checked(vertices - marks)?;
+        Some(Unshaded { triangles, marks, varyings: words.get_mut(VERTEX_WORDS * count..)? })
     }
 
     /// Returns whether a vertex of the mesh has its varyings.
@@ -325,20 +325,8 @@ impl<'a> Records<'a> {
     #[inline(never)]
     pub(crate) fn triangles(&mut self) -> Triangles<'_> {
         let Self { words, layout } = self;
-        let (lists, rest) = words.split_at_mut_checked(layout.lists).unwrap_or_default();
-        let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists)).unwrap_or_default();
-        let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..).unwrap_or_default();
-        let positions = vertices.get(..VERTEX_WORDS * layout.count).unwrap_or_default();
-        // Numbers of triangles must stay below `NONE`, so room for more triangles is left out.
-        let beyond = rest.len().saturating_sub(TRIANGLE.saturating_mul(usize::from(NONE)));
-        Triangles {
-            lists,
-            vertices,
-            positions: bytemuck::try_cast_slice(positions).unwrap_or_default(),
-            triangles: rest.get_mut(beyond..).unwrap_or_default(),
-            count: layout.triangles,
-            layout,
-        }
+        let (lists, vertices, positions, triangles) = split(words, layout).unwrap_or_default();
+        Triangles { lists, vertices, positions, triangles, count: layout.triangles, layout }
     }
 
     /// Makes the words that recording has left a pool for the states of triangles.
@@ -391,4 +379,19 @@ impl<'a> Records<'a> {
     fn triangle_at(&self, number: u16) -> usize {
         self.words.len().wrapping_sub(TRIANGLE * usize::from(number) + TRIANGLE)
     }
+}
+
+/// The words of lists, of vertices, of vertices' positions and of triangles.
+type Parts<'w> = (&'w mut [u32], &'w [u32], &'w [[u32; 2]], &'w mut [u32]);
+
+/// Takes the words of records apart.
+#[inline(always)]
+fn split<'w>(words: &'w mut [u32], layout: &Layout) -> Option<Parts<'w>> {
+    let (lists, rest) = words.split_at_mut_checked(layout.lists)?;
+    let (used, rest) = rest.split_at_mut_checked(layout.front.wrapping_sub(layout.lists))?;
+    let vertices: &[u32] = used.get(layout.vertices.wrapping_sub(layout.lists)..)?;
+    let positions = bytemuck::try_cast_slice(vertices.get(..VERTEX_WORDS * layout.count)?).ok()?;
+    // Numbers of triangles must stay below `NONE`, so room for more triangles is left out.
+    let beyond = rest.len().saturating_sub(TRIANGLE.saturating_mul(usize::from(NONE)));
+    Some((lists, vertices, positions, rest.get_mut(beyond..)?))
 }

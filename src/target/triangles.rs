@@ -2,6 +2,7 @@
 //! put in, placed into the lists of strips, and handed out to be drawn.
 
 use super::layout::{Layout, NONE, TRIANGLE};
+use crate::math::SMALL_CORE;
 use crate::span::SmallResult;
 use crate::vertex::{
     MAX_IN_REGISTERS, PackedCorners, PackedVertex, ScreenVertex, VERTEX_WORDS, Varyings, VertexShader,
@@ -27,11 +28,10 @@ fn corners_of(a: u32, b: u32) -> [u16; 3] {
     [a as u16, (a >> 16) as u16, k]
 }
 
-/// Returns the words of three vertices' [`PackedVertex`]s.
+/// Returns a third of a multiple of three: a product modulo 2³², as 3 · 0xAAAA_AAAB = 2³³ + 1.
 #[inline(always)]
-pub(crate) fn positions_at(positions: &[[u32; 2]], [i, j, k]: [u16; 3]) -> [&[u32; 2]; 3] {
-    let at = |index: u16| positions.get(usize::from(index)).unwrap_or(&PackedVertex::NONE_WORDS);
-    [at(i), at(j), at(k)]
+pub(crate) const fn third(length: usize) -> usize {
+    (length as u32).wrapping_mul(0xAAAA_AAAB) as usize
 }
 
 /// Returns the number of corners before the highest one, by the second words of their [`PackedVertex`]s.
@@ -54,21 +54,27 @@ pub(crate) struct Unshaded<'r> {
 }
 
 impl Unshaded<'_> {
-    /// Hands each vertex that has no varyings yet to `store`, with their `words` words.
+    /// Hands each vertex that has no varyings yet to `store`, with the words of all varyings.
     #[inline(always)]
-    pub(crate) fn each(self, words: usize, mut store: impl FnMut(usize, &mut [u32])) {
+    pub(crate) fn each(self, mut store: impl FnMut(usize, &mut [u32])) {
         let Self { mut triangles, marks, varyings } = self;
         while let Some(([a, b, _], rest)) = triangles.split_first_chunk() {
             triangles = rest;
-            for index in corners_of(*a, *b) {
+            let mut visit = |index: u16| {
                 let (index, bit) = (usize::from(index), 1 << (index & 31));
-                let Some(mark) = marks.get_mut(index >> 5) else { continue };
+                let Some(mark) = marks.get_mut(index >> 5) else { return };
                 if *mark & bit == 0 {
                     *mark |= bit;
-                    if let Some(words) = varyings.get_mut(words * index..).and_then(|rest| rest.get_mut(..words)) {
-                        store(index, words);
-                    }
+                    store(index, varyings);
                 }
+            };
+            let [i, j, k] = corners_of(*a, *b);
+            if SMALL_CORE {
+                [i, j, k].into_iter().for_each(visit);
+            } else {
+                visit(i);
+                visit(j);
+                visit(k);
             }
         }
     }
@@ -158,8 +164,7 @@ impl<'r> Triangles<'r> {
     #[inline(always)]
     pub(crate) fn fill(&mut self, left: usize) -> u32 {
         let before = self.count;
-        // A division by three that leaves nothing is a product modulo 2³²: 3 · 0xAAAA_AAAB = 2³³ + 1.
-        self.count = (self.triangles.len().wrapping_sub(left) as u32).wrapping_mul(0xAAAA_AAAB) as u16;
+        self.count = third(self.triangles.len().wrapping_sub(left)) as u16;
         u32::from(self.count.wrapping_sub(before))
     }
 
@@ -245,7 +250,7 @@ impl<'r> Triangles<'r> {
                 }
                 continue;
             }
-            let v = self.positions_of(to.corners);
+            let v = self.positions_inlined(to.corners);
             // The first vertex is not below the others.
             let moves_on = (end - (v[1][1] as i32 >> 8)) | (end - (v[2][1] as i32 >> 8)) < 0;
             if moves_on {
@@ -303,34 +308,43 @@ impl<'r> Triangles<'r> {
         [empty, outside]: &mut [u32; 2],
         draw: &mut impl DrawTriangles,
     ) -> bool {
-        loop {
-            let number = self.layout.next;
-            if number >= self.count {
-                return false;
-            }
-            let Some([a, b, face, ..]) = self.triangles.get(self.triangle_at(number)..) else { return false };
-            let (corners, face) = (corners_of(*a, *b), *face);
-            self.layout.next = number + 1;
-            let (corners, v) = self.highest_first(corners);
-            *to = TriangleRecord { corners, face };
+        let waiting = self.triangle_at(self.count).wrapping_add(TRIANGLE)
+            ..self.triangle_at(self.layout.next).wrapping_add(TRIANGLE);
+        let mut words: &[u32] = self.triangles.get(waiting).unwrap_or_default();
+        while let Some((rest, [a, b, face])) = words.split_last_chunk() {
+            words = rest;
+            let (corners, v) = self.highest_first(corners_of(*a, *b));
+            *to = TriangleRecord { corners, face: *face };
             match draw.draw(self, to, v) {
                 SmallResult::Drawn => {}
                 SmallResult::Empty => *empty += 1,
                 SmallResult::Outside => *outside += 1,
-                SmallResult::Large => return true,
+                SmallResult::Large => {
+                    let left = third(words.len());
+                    self.layout.next = self.count - left as u16;
+                    return true;
+                }
             }
         }
+        false
     }
 
     /// Finds the vertices of a triangle of the mesh, and turns them so that the highest one is the first.
     #[inline(always)]
     fn highest_first(&self, [i, j, k]: [u16; 3]) -> ([u16; 3], [&'r [u32; 2]; 3]) {
-        let [a, b, c] = positions_at(self.positions, [i, j, k]);
-        match turns([a[1] as i32, b[1] as i32, c[1] as i32]) {
-            0 => ([i, j, k], [a, b, c]),
-            1 => ([j, k, i], [b, c, a]),
-            _ => ([k, i, j], [c, a, b]),
+        let at = |index: u16| self.positions.get(usize::from(index));
+        let (Some(a), Some(b), Some(c)) = (at(i), at(j), at(k)) else {
+            return ([i, j, k], [&PackedVertex::NONE_WORDS; 3]);
+        };
+        let [y, y_b, y_c] = [a[1] as i32, b[1] as i32, c[1] as i32];
+        if y_b < y {
+            if y_b <= y_c {
+                return ([j, k, i], [b, c, a]);
+            }
+        } else if y <= y_c {
+            return ([i, j, k], [a, b, c]);
         }
+        ([k, i, j], [c, a, b])
     }
 
     /// Reads the vertices of a triangle.
@@ -341,32 +355,37 @@ impl<'r> Triangles<'r> {
         }
     }
 
-    /// Returns the words of three vertices' [`PackedVertex`]s.
+    /// Returns the words of three vertices' [`PackedVertex`]s, out of line.
+    #[inline(never)]
     pub(crate) fn positions_of(&self, corners: [u16; 3]) -> [&'r [u32; 2]; 3] {
-        let [i, j, k] = corners;
-        [self.position(i), self.position(j), self.position(k)]
+        self.positions_inlined(corners)
     }
 
-    /// Returns the words of a vertex's [`PackedVertex`].
+    /// Returns the words of three vertices' [`PackedVertex`]s.
     #[inline(always)]
-    fn position(&self, index: u16) -> &'r [u32; 2] {
-        match self.positions.get(usize::from(index)) {
-            Some(words) => words,
-            None => self.added(index),
+    fn positions_inlined(&self, corners: [u16; 3]) -> [&'r [u32; 2]; 3] {
+        let [i, j, k] = corners;
+        let at = |index: u16| self.positions.get(usize::from(index));
+        match (at(i), at(j), at(k)) {
+            (Some(a), Some(b), Some(c)) => [a, b, c],
+            _ => [self.position(i), self.position(j), self.position(k)],
         }
+    }
+
+    /// Returns the words of a vertex's [`PackedVertex`], which the clipper may have added.
+    #[inline(never)]
+    fn position(&self, index: u16) -> &'r [u32; 2] {
+        if let Some(words) = self.positions.get(usize::from(index)) {
+            return words;
+        }
+        let words = self.vertices.get(self.layout.stride * usize::from(index)..);
+        words.and_then(|words| words.first_chunk()).unwrap_or(&PackedVertex::NONE.0)
     }
 
     /// Returns the largest y that vertices of a triangle can have if the triangle ends above `row`.
     pub(crate) const fn end_of(row: i32, samples: usize) -> i32 {
         // The largest coordinate at which the range of `sampled` ends there.
         row * 256 + if samples == 1 { 128 } else { 16 }
-    }
-
-    /// Returns the position of a vertex that the clipper added.
-    #[inline(never)]
-    fn added(&self, index: u16) -> &'r [u32; 2] {
-        let words = self.vertices.get(self.layout.stride * usize::from(index)..);
-        words.and_then(|words| words.first_chunk()).unwrap_or(&PackedVertex::NONE.0)
     }
 
     /// Reads the varyings of a vertex of the draw.

@@ -34,7 +34,10 @@ impl<'a> VertexRef<'a> {
     #[inline]
     #[must_use]
     pub fn normal(&self) -> [i16; 3] {
-        self.mesh.data().normals.and_then(|n| n.get(self.index)).copied().unwrap_or_default()
+        match self.mesh.data().normals.and_then(|normals| normals.get(self.index)) {
+            Some([x, y, z]) => [*x, *y, *z],
+            None => [0; 3],
+        }
     }
 
     /// Returns the colour: red, green, blue.
