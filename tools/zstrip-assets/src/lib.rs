@@ -39,6 +39,8 @@
 //! | check | an import | one without numbers that lead nowhere | `write/check.rs` |
 //! | nodes | transforms | translations, rotations, scales | `write/nodes.rs` |
 //! | textures | images | texels of few bits, in levels | `write/textures.rs` |
+//! | cut | triangles that cross a side of a texture that does not repeat | triangles on one side of it | `write/cut.rs` |
+//! | wrap | their coordinates | coordinates within the texture | `write/wraps.rs` |
 //! | parts | meshes | 16-bit positions, packed attributes, cones of clusters | `write/parts.rs` |
 //! | skins | joints | those that move something, with boxes | `write/skins.rs` |
 //! | clips | channels | few keys of 16 bits | `write/clips.rs` |

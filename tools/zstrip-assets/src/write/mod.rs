@@ -2,6 +2,7 @@
 
 mod check;
 mod clips;
+mod cut;
 mod nodes;
 mod options;
 mod parts;
@@ -69,6 +70,7 @@ pub fn write(import: &Import, options: &WriteOptions) -> Result<Written, WriteEr
         return Err(WriteError::TooMany { what: "materials", found: materials, most: NONE.into() });
     }
 
+    let import = &*cut::cut(import, &textures.sizes, &mut report);
     let mut pieces = parts::pieces(import, &mut report)?;
     wraps::unwrap(&mut pieces.list, import, &textures.sizes, &mut report);
     let skins = skins::skins(import, &pieces.list, &mut report)?;

@@ -18,7 +18,7 @@ use crate::model::{Import, Mesh, Vertices};
 const MOST_ITEMS: usize = 65_535;
 
 /// Triangles of a cluster of a mesh that has none.
-const CLUSTER: usize = 124;
+pub(super) const CLUSTER: usize = 124;
 
 /// A part, as it was cut out of a mesh of the import.
 pub(super) struct Piece {

@@ -101,7 +101,19 @@ pub enum WriteNote {
         /// The number of parts.
         parts: usize,
     },
-    /// A texture is to be clamped or mirrored beyond its sides, coordinates go there, and it repeats.
+    /// Triangles were cut at the sides of a texture that is clamped or mirrored beyond them.
+    Cut {
+        /// The number of the material in the import.
+        material: usize,
+        /// Its name.
+        name: String,
+        /// The number of triangles that were cut, with those beside them, and in levels of detail.
+        triangles: usize,
+        /// The number of triangles that they became.
+        into: usize,
+    },
+    /// A texture is to be clamped or mirrored beyond its sides, coordinates go there, and it repeats: cutting its
+    /// triangles at the sides would take too many.
     Wrapped {
         /// The number of the material in the import.
         material: usize,
@@ -197,6 +209,10 @@ impl fmt::Display for WriteNote {
             }
             Self::MissingUvs { parts } => {
                 write!(f, "{} with a texture and no coordinates: one texel shows", count(*parts, "part"))
+            }
+            Self::Cut { material, name, triangles, into } => {
+                let triangles = count(*triangles, "triangle");
+                write!(f, "material {material} {name:?}: {triangles} cut into {into} at the sides of its texture")
             }
             Self::Wrapped { material, name, wrap, range } => {
                 write!(f, "material {material} {name:?}: its texture repeats here")?;

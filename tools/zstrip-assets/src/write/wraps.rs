@@ -2,14 +2,15 @@
 //!
 //! Containers repeat textures, because the way to go on beyond a texture is a type in the library. A triangle that lies
 //! in one tile of the texture, or beyond one of its clamped sides, looks the same with coordinates within 0 to 1. They
-//! stay half a texel away from the sides, so that no rounding shows the texel at the opposite side.
+//! stay half a texel away from the sides, so that no rounding shows the texel at the opposite side. Triangles that cross
+//! a side have been cut there ([`cut`](super::cut)).
 
 use super::parts::Piece;
 use super::report::{WriteNote, WriteReport};
 use crate::model::{Import, Wrap};
 
-/// Brings the coordinates of pieces into their textures. Those of pieces with triangles that cross a side repeat, and
-/// are reported. Levels of detail are handled as the piece that they stand for.
+/// Brings the coordinates of pieces into their textures. Those of pieces with triangles that still cross a side repeat,
+/// and are reported. Levels of detail repeat where the piece that they stand for does.
 pub(super) fn unwrap(pieces: &mut [Piece], import: &Import, sizes: &[Option<[u32; 2]>], report: &mut WriteReport) {
     let mut crosses: Vec<[bool; 2]> = Vec::with_capacity(pieces.len());
     for number in 0..pieces.len() {
@@ -27,14 +28,13 @@ pub(super) fn unwrap(pieces: &mut [Piece], import: &Import, sizes: &[Option<[u32
         for axis in 0..2 {
             let (wrap, half) = (texture.wrap[axis], 0.5 / f64::from(size[axis]));
             let at = |v: &u16| f64::from(piece.vertices.uvs[usize::from(*v)][axis]);
-            crosses[number][axis] = match piece.finest {
-                Some(finest) => crosses[finest][axis],
-                None => piece.triangles.iter().any(|triangle| {
+            let of_finest = piece.finest.is_some_and(|finest| crosses[finest][axis]);
+            crosses[number][axis] = of_finest
+                || piece.triangles.iter().any(|triangle| {
                     let low = triangle.iter().map(at).fold(f64::INFINITY, f64::min);
                     let high = triangle.iter().map(at).fold(f64::NEG_INFINITY, f64::max);
-                    crosses_side(wrap, low, high, half)
-                }),
-            };
+                    crossed(wrap, low, high, half).next().is_some()
+                });
             if !crosses[number][axis] {
                 piece.vertices.uvs.iter_mut().for_each(|uv| uv[axis] = inside(wrap, uv[axis], half));
             }
@@ -47,19 +47,26 @@ pub(super) fn unwrap(pieces: &mut [Piece], import: &Import, sizes: &[Option<[u32
     }
 }
 
-/// Returns whether a triangle is on both sides of a border of the texture, by more than half a texel on each.
-fn crosses_side(wrap: Wrap, low: f64, high: f64, half: f64) -> bool {
-    let is_across = |side: f64| low < side - half && high > side + half;
-    match wrap {
-        Wrap::Repeat => false,
-        Wrap::Clamp => is_across(0.0) || is_across(1.0),
-        // The first side above the least coordinate, and the next one.
-        Wrap::Mirror => is_across((low + half).floor() + 1.0) || is_across((low + half).floor()),
-    }
+/// The most tiles of a mirrored texture that are looked at.
+const MOST_TILES: f64 = 64.0;
+
+/// Returns the sides of the texture that a triangle is on both sides of, by more than half a texel on each.
+///
+/// A texture of one texel looks the same everywhere, so nothing crosses its sides.
+pub(super) fn crossed(wrap: Wrap, low: f64, high: f64, half: f64) -> impl Iterator<Item = f64> {
+    // The first side above the least coordinate, and the number of those that may be crossed.
+    let (first, count) = match wrap {
+        Wrap::Clamp if half < 0.5 => (0.0, 2),
+        // 0 for what is not a number.
+        Wrap::Mirror if half < 0.5 => ((low + half).floor(), (high - low + 2.0).ceil().min(MOST_TILES) as u32),
+        _ => (0.0, 0),
+    };
+    let sides = (0..count).map(move |k| first + f64::from(k));
+    sides.filter(move |side| low < side - half && high > side + half)
 }
 
 /// Returns the coordinate within the texture that shows the same texel.
-fn inside(wrap: Wrap, c: f32, half: f64) -> f32 {
+pub(super) fn inside(wrap: Wrap, c: f32, half: f64) -> f32 {
     let exact = f64::from(c);
     let folded = match wrap {
         Wrap::Repeat => return c,
@@ -109,24 +116,29 @@ mod tests {
     }
 
     #[test]
-    fn triangles_that_show_both_sides_of_a_border_are_found() {
-        for (wrap, low, high, crosses) in [
-            (Wrap::Repeat, -3.0, 3.0, false),
-            (Wrap::Clamp, 0.0, 1.0, false),
-            (Wrap::Clamp, -0.004, 1.004, false),
-            (Wrap::Clamp, -3.0, -0.5, false),
-            (Wrap::Clamp, 1.0, 9.0, false),
-            (Wrap::Clamp, -0.5, 0.5, true),
-            (Wrap::Clamp, 0.9, 1.1, true),
-            (Wrap::Mirror, 0.0, 1.0, false),
-            (Wrap::Mirror, -1.0, 0.0, false),
-            (Wrap::Mirror, 2.0, 3.0, false),
-            (Wrap::Mirror, 1.998, 3.002, false),
-            (Wrap::Mirror, 0.5, 1.5, true),
-            (Wrap::Mirror, -0.5, 0.5, true),
-            (Wrap::Mirror, 0.0, 2.0, true),
+    fn sides_that_a_triangle_shows_both_sides_of_are_found() {
+        for (wrap, low, high, sides) in [
+            (Wrap::Repeat, -3.0, 3.0, &[][..]),
+            (Wrap::Clamp, 0.0, 1.0, &[]),
+            (Wrap::Clamp, -0.004, 1.004, &[]),
+            (Wrap::Clamp, -3.0, -0.5, &[]),
+            (Wrap::Clamp, 1.0, 9.0, &[]),
+            (Wrap::Clamp, -0.5, 0.5, &[0.0]),
+            (Wrap::Clamp, 0.9, 1.1, &[1.0]),
+            (Wrap::Clamp, -9.0, 9.0, &[0.0, 1.0]),
+            (Wrap::Mirror, 0.0, 1.0, &[]),
+            (Wrap::Mirror, -1.0, 0.0, &[]),
+            (Wrap::Mirror, 2.0, 3.0, &[]),
+            (Wrap::Mirror, 1.998, 3.002, &[]),
+            (Wrap::Mirror, 0.5, 1.5, &[1.0]),
+            (Wrap::Mirror, -0.5, 0.5, &[0.0]),
+            (Wrap::Mirror, 0.0, 2.0, &[1.0]),
+            (Wrap::Mirror, -2.5, 1.5, &[-2.0, -1.0, 0.0, 1.0]),
+            (Wrap::Mirror, 0.999, 3.5, &[2.0, 3.0]),
+            (Wrap::Mirror, f64::NAN, 1.0, &[]),
         ] {
-            assert_eq!(crosses_side(wrap, low, high, 0.5 / 64.0), crosses, "{wrap:?} {low} {high}");
+            assert_eq!(crossed(wrap, low, high, 0.5 / 64.0).collect::<Vec<_>>(), sides, "{wrap:?} {low} {high}");
+            assert_eq!(crossed(wrap, low, high, 0.5).next(), None, "{wrap:?} {low} {high}: one texel");
         }
     }
 }

@@ -5,7 +5,7 @@ use zstrip::model::container::{
     Cluster, Header, Material as MaterialItem, Part, SectionKind, Texture as TextureItem, TextureFormat,
 };
 use zstrip_assets::{
-    AlphaMode, Animation, Import, Interpolation, Material, Options, Path, TextureKind, Transform, UvSize, Wrap,
+    AlphaMode, Animation, Errors, Import, Interpolation, Material, Options, Path, TextureKind, Transform, UvSize, Wrap,
     WriteNote, WriteOptions, Written, write, write_rust,
 };
 
@@ -289,13 +289,48 @@ fn coordinates_of_textures_that_do_not_repeat_stay_inside_or_are_reported() {
     // In the tile above, v goes the other way.
     import.meshes[0].vertices.uvs.iter_mut().for_each(|uv| uv[1] -= 1.0);
     assert!(written(&import).report.notes.is_empty());
+    // One vertex beyond a side: the triangles around it are cut there.
     import.meshes[0].vertices.uvs[3][1] = 1.5;
+    let found = written(&import);
+    let [WriteNote::Cut { material: 0, triangles, into, .. }] = found.report.notes[..] else {
+        panic!("{}", found.report);
+    };
+    assert_eq!(found.report.triangles, 128 - triangles + into);
+    // The three around it, which cross v = 0 and 1, and those beside them.
+    assert!((3..=6).contains(&triangles) && into >= 3 * triangles, "{}", found.report);
+    // Too many sides to cut it at.
+    import.meshes[0].vertices.uvs[3][1] = 150.0;
     let report = written(&import).report;
     let wrap = [Wrap::Repeat, Wrap::Mirror];
-    let range = [[0.0, 1.0], [-1.0, 1.5]];
+    let range = [[0.0, 1.0], [-1.0, 150.0]];
     let note = WriteNote::Wrapped { material: 0, name: "label".to_owned(), wrap, range };
     assert!(report.notes.contains(&note), "{report}");
-    assert!(report.to_string().contains("is mirrored along v in the file, where v goes from -1.000 to 1.500"));
+    assert!(report.to_string().contains("is mirrored along v in the file, where v goes from -1.000 to 150.000"));
+}
+
+#[test]
+fn moved_vertices_on_cuts_follow_their_joints_and_targets() {
+    for morphs in [false, true] {
+        let mut import = animated(morphs);
+        let of = textured(sphere(2, 2, 1.0), image(), AlphaMode::Opaque);
+        (import.materials, import.images) = (of.materials, of.images);
+        import.materials[0].texture.as_mut().expect("a texture").wrap = [Wrap::Clamp, Wrap::Mirror];
+        let mesh = &mut import.meshes[0];
+        mesh.material = Some(0);
+        mesh.vertices.uvs.iter_mut().for_each(|uv| *uv = uv.map(|c| 2.1 * c - 0.5));
+        let found = written(&import);
+        assert!(found.report.notes.iter().any(|note| matches!(note, WriteNote::Cut { .. })), "{}", found.report);
+        assert!(found.report.vertices > mesh_vertices(&import), "{}", found.report);
+        // Those of the sphere as it is, in units: it has 1.5 of them.
+        let plain = written(&animated(morphs)).report.errors;
+        let Errors { pose, rest, pose_normal, .. } = found.report.errors;
+        assert!(pose < 1.2 * plain.pose && rest < 1.2 * plain.rest, "{} {}", found.report, plain.pose);
+        assert!(pose_normal < 1.0, "{}", found.report);
+    }
+}
+
+fn mesh_vertices(import: &Import) -> usize {
+    import.meshes.iter().map(|mesh| mesh.vertices.positions.len()).sum()
 }
 
 #[test]
