@@ -26,7 +26,7 @@ struct Rig {
 const NODES: Rig =
     Rig { sheet: [2, 2], nodes: 1, rotates: true, moves: false, scales: false, weights: 0, targets: 0, keys: 9 };
 
-const RIGS: [Rig; 22] = [
+const RIGS: [Rig; 25] = [
     NODES,
     Rig { nodes: 24, ..NODES },
     Rig { nodes: 24, rotates: false, moves: true, ..NODES },
@@ -47,6 +47,9 @@ const RIGS: [Rig; 22] = [
     Rig { sheet: [30, 20], targets: 3, ..NODES },
     Rig { sheet: [20, 20], targets: 6, ..NODES },
     Rig { sheet: [30, 20], nodes: 8, weights: 2, targets: 2, ..NODES },
+    Rig { sheet: [30, 20], nodes: 8, weights: 1, targets: 1, ..NODES },
+    Rig { sheet: [20, 20], nodes: 8, weights: 3, targets: 4, ..NODES },
+    Rig { sheet: [40, 20], nodes: 12, weights: 1, targets: 6, ..NODES },
     Rig { sheet: [4, 4], nodes: 40, weights: 1, moves: true, ..NODES },
     Rig { sheet: [40, 40], nodes: 3, weights: 1, ..NODES },
 ];

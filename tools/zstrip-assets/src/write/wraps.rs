@@ -2,8 +2,8 @@
 //!
 //! Containers repeat textures, because the way to go on beyond a texture is a type in the library. A triangle that lies
 //! in one tile of the texture, or beyond one of its clamped sides, looks the same with coordinates within 0 to 1. They
-//! stay half a texel away from the sides, so that no rounding shows the texel at the opposite side. Triangles that cross
-//! a side have been cut there ([`cut`](super::cut)).
+//! stay half a texel away from the sides, so that no rounding shows the texel at the opposite side. Triangles that
+//! cross a side have been cut there ([`cut`](super::cut)).
 
 use super::parts::Piece;
 use super::report::{WriteNote, WriteReport};

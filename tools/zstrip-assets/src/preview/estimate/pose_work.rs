@@ -22,12 +22,26 @@ const COSTS: &str = include_str!("../../../../../benches/pose_costs.csv");
 /// | `joint` | a joint of a skin |
 /// | `rigid` | a vertex of one joint |
 /// | `blended` | a vertex of several joints |
-/// | `weight` | a joint of such a vertex |
+/// | `third` | such a vertex of three or four joints, beside that: the library sums four matrices then |
 /// | `morphed` | a vertex of a part with morph targets that has no joints |
+/// | `skin_morphed` | a vertex of a part with morph targets and joints, beside that of its joints |
 /// | `delta` | a vertex that a target moves |
-pub const NAMES: [&str; COLUMNS] =
-    ["place", "above", "level", "node", "channel", "moved", "joint", "rigid", "blended", "weight", "morphed", "delta"];
-pub const COLUMNS: usize = 12;
+pub const NAMES: [&str; COLUMNS] = [
+    "place",
+    "above",
+    "level",
+    "node",
+    "channel",
+    "moved",
+    "joint",
+    "rigid",
+    "blended",
+    "third",
+    "morphed",
+    "skin_morphed",
+    "delta",
+];
+pub const COLUMNS: usize = 13;
 const PLACE: usize = 0;
 const ABOVE: usize = 1;
 const LEVEL: usize = 2;
@@ -38,9 +52,10 @@ const MOVED: usize = 5;
 const JOINT: usize = 6;
 const RIGID: usize = 7;
 const BLENDED: usize = 8;
-const WEIGHT: usize = 9;
+const THIRD: usize = 9;
 const MORPHED: usize = 10;
-const DELTA: usize = 11;
+const SKIN_MORPHED: usize = 11;
+const DELTA: usize = 12;
 
 /// Costs, or numbers of things that cost, by column.
 pub type PoseTerms = [f64; COLUMNS];
@@ -87,8 +102,8 @@ pub fn count(stage: &Stage<'_>, step: &Step, clip: u32) -> PoseTerms {
         let (vertices, first) = (part.vertices as usize, part.first_target as usize);
         let moved = targets.iter().skip(first).take(part.targets.into());
         terms[DELTA] += moved.map(|target| f64::from(target.vertices)).sum::<f64>();
-        if part.targets > 0 && part.skin == NONE {
-            terms[MORPHED] += vertices as f64;
+        if part.targets > 0 {
+            terms[if part.skin == NONE { MORPHED } else { SKIN_MORPHED }] += vertices as f64;
         }
         if part.skin == NONE {
             continue;
@@ -105,7 +120,7 @@ pub fn count(stage: &Stage<'_>, step: &Step, clip: u32) -> PoseTerms {
                 terms[RIGID] += 1.0;
             } else {
                 terms[BLENDED] += 1.0;
-                terms[WEIGHT] += 1.0 + others as f64;
+                terms[THIRD] += f64::from(u8::from(others > 1));
             }
         }
     }
