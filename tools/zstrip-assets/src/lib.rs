@@ -41,7 +41,7 @@
 //! | textures | images | texels of few bits, in levels | `write/textures.rs` |
 //! | cut | triangles that cross a side of a texture that does not repeat | triangles on one side of it | `write/cut.rs` |
 //! | wrap | their coordinates | coordinates within the texture | `write/wraps.rs` |
-//! | parts | meshes | 16-bit positions, packed attributes, cones of clusters | `write/parts.rs` |
+//! | parts | meshes | 16-bit positions, packed attributes, cones of clusters | `write/parts.rs`, `write/uvs.rs`, `write/clusters.rs` |
 //! | skins | joints | those that move something, with boxes | `write/skins.rs` |
 //! | clips | channels | few keys of 16 bits | `write/clips.rs` |
 //! | verify | bytes | worst errors | `write/verify.rs` |

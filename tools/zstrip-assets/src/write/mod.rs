@@ -2,6 +2,7 @@
 
 mod check;
 mod clips;
+mod clusters;
 mod cut;
 mod nodes;
 mod options;
@@ -11,6 +12,7 @@ mod report;
 mod sections;
 mod skins;
 mod textures;
+mod uvs;
 mod verify;
 mod wraps;
 

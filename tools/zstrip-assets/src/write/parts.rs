@@ -5,13 +5,15 @@ use std::ops::Range;
 
 use zstrip::math::{Scalar, Vec3};
 use zstrip::mesh::{Mesh as MeshView, MeshData, Positions};
-use zstrip::model::container::{Cluster, Delta, Influence, NONE, NONE_LONG, Part, SectionKind, Target};
+use zstrip::model::container::{Delta, Influence, NONE, NONE_LONG, Part, SectionKind, Target};
 
+use super::clusters::clusters;
 use super::options::UvSize;
-use super::quantize::{Cube, Extent, MOST, fixed, fraction_box, normal_bytes};
+use super::quantize::{Cube, Extent, MOST, normal_bytes};
 use super::report::{WriteError, WriteNote, WriteReport};
 use super::sections::Sections;
-use crate::geometry::{Vector, cross, dot, unit};
+use super::uvs::Uvs;
+use crate::geometry::{Vector, cross, dot};
 use crate::model::{Import, Mesh, Vertices};
 
 /// The most vertices, and the most triangles, of a part.
@@ -352,85 +354,6 @@ fn error_of(piece: &Piece, cube: &Cube, around: &Around<'_>) -> Result<u32, Writ
     Ok((error * 65_536.0).ceil().min(f64::from(u32::MAX)) as u32)
 }
 
-/// Packed texture coordinates.
-struct Uvs {
-    stored: Vec<[u16; 2]>,
-    offset: [i32; 2],
-    shift: u8,
-    bits: u8,
-}
-
-impl Default for Uvs {
-    fn default() -> Self {
-        Self { stored: Vec::new(), offset: [0; 2], shift: 0, bits: 16 }
-    }
-}
-
-impl Uvs {
-    /// Packs coordinates. Their whole part is left out as far as it is common to all, because textures repeat.
-    ///
-    /// A coordinate is off by half a step at most, and the largest one by a whole step at most.
-    fn of(uvs: &[[f32; 2]], size: UvSize, name: &str) -> Result<Self, WriteError> {
-        if uvs.is_empty() {
-            return Ok(Self::default());
-        }
-        let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
-        for uv in uvs {
-            for k in 0..2 {
-                let c = f64::from(uv[k]);
-                if !c.is_finite() {
-                    return Err(WriteError::NotFinite { place: format!("a texture coordinate of {name}") });
-                }
-                (low[k], high[k]) = (low[k].min(c), high[k].max(c));
-            }
-        }
-        let whole = low.map(f64::floor);
-        let mut offset = [0; 2];
-        let mut range: f64 = 0.0;
-        for k in 0..2 {
-            let place = || format!("the range of texture coordinates of {name}");
-            offset[k] = fixed(low[k] - whole[k], place)?;
-            range = range.max(high[k] - whole[k] - f64::from(offset[k]) / 65_536.0);
-            fixed(range, place)?;
-        }
-        let numbers = |shift: u32, most: f64| -> Vec<[u16; 2]> {
-            let step = f64::from(1 << shift);
-            let number = |uv: &[f32; 2], k: usize| {
-                let c = (f64::from(uv[k]) - whole[k]) * 65_536.0 - f64::from(offset[k]);
-                (c / step).round().clamp(0.0, most) as u16
-            };
-            uvs.iter().map(|uv| [number(uv, 0), number(uv, 1)]).collect()
-        };
-        // The smallest step with which the largest coordinate is at most one step beyond the last number.
-        let shift_for =
-            |count: f64| (0..15).find(|shift| range * 65_536.0 <= count * f64::from(1 << shift)).unwrap_or(15);
-        let shift = shift_for(65_536.0);
-        let stored = numbers(shift, 65_535.0);
-        let found = Self { stored, offset, shift: shift as u8, bits: 16 };
-        let small_shift = shift_for(256.0);
-        let small = Self { stored: numbers(small_shift, 255.0), offset, shift: small_shift as u8, bits: 8 };
-        let value = |uvs: &Self, v: usize, k: usize| f64::from(uvs.stored[v][k]) * f64::from(1 << uvs.shift);
-        let exact = || {
-            // Any step may hold all of them, the smallest one that has the range and the larger ones.
-            (small_shift..=15).find_map(|shift| {
-                let small = Self { stored: numbers(shift, 255.0), offset, shift: shift as u8, bits: 8 };
-                let is_exact = (0..uvs.len()).all(|v| {
-                    (0..2).all(|k| {
-                        let c = (f64::from(uvs[v][k]) - whole[k]) * 65_536.0 - f64::from(offset[k]);
-                        (value(&small, v, k) - c).abs() <= 0.5
-                    })
-                });
-                is_exact.then_some(small)
-            })
-        };
-        Ok(match size {
-            UvSize::Bits8 => small,
-            UvSize::Bits16 => found,
-            UvSize::Fitting => exact().unwrap_or(found),
-        })
-    }
-}
-
 /// Returns the joints and weights of vertices. Weights are 256ths, and what rounding leaves goes to the largest.
 fn influences(vertices: &Vertices, joints: &[u16]) -> Vec<Influence> {
     let influence = |(numbers, weights): (&[u16; 4], &[f32; 4])| {
@@ -478,48 +401,6 @@ fn target(morph: &crate::model::Morph, cube: &Cube, to: &mut Sections) {
     let first_delta = to.add(SectionKind::Deltas, &deltas[first..end]);
     let vertices = (end - first) as u16;
     to.add(SectionKind::Targets, &[Target { first_delta, first_vertex: first as u16, vertices }]);
-}
-
-/// Returns the clusters of a part, with boxes and cones around its quantized triangles.
-fn clusters(piece: &Piece, points: &[[i16; 3]]) -> Vec<Cluster> {
-    let mut first = 0;
-    let cluster = |count: &usize| {
-        let triangles = &piece.triangles[first..first + count];
-        let (center, half) = fraction_box(triangles.as_flattened().iter().map(|v| points[usize::from(*v)]));
-        let normals: Vec<_> = triangles.iter().filter_map(|t| face(t.map(|v| points[usize::from(v)]))).collect();
-        let (axis, cutoff) = cone(&normals);
-        let item = Cluster { center, half, first_triangle: first as u16, triangles: *count as u16, axis, cutoff };
-        first += count;
-        item
-    };
-    piece.clusters.iter().map(cluster).collect()
-}
-
-/// Returns the unit normal of a triangle, if it has an area.
-fn face(corners: [[i16; 3]; 3]) -> Option<Vector> {
-    let [a, b, c] = corners.map(|p| p.map(f64::from));
-    let side = |p: Vector| std::array::from_fn(|k| p[k] - a[k]);
-    unit(cross(side(b), side(c)))
-}
-
-/// Returns axis and cutoff of a cone around normals: no triangle of the cluster is seen where the cone says so.
-///
-/// With the axis a of length l ≤ 1, and all normals within an angle α of it, an eye e sees only backs if
-/// (c - e) · a / l ≥ sin α |c - e| + r. The container's rule has l sin α for the cutoff and r for l r, which is more.
-fn cone(normals: &[Vector]) -> ([i8; 3], i8) {
-    const NEVER: ([i8; 3], i8) = ([0, 0, 0], 127);
-    let mut sum = [0.0; 3];
-    normals.iter().for_each(|n| (0..3).for_each(|k| sum[k] += n[k]));
-    let Some(middle) = unit(sum) else { return NEVER };
-    let axis = middle.map(|c| (c * 127.0).trunc() as i8);
-    let exact = axis.map(|c| f64::from(c) / 127.0);
-    let (length, Some(direction)) = (dot(exact, exact).sqrt(), unit(exact)) else { return NEVER };
-    let cosine = normals.iter().map(|n| dot(*n, direction)).fold(1.0, f64::min);
-    if cosine <= 0.05 {
-        return NEVER;
-    }
-    let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-    (axis, (sine * length * 127.0 + 1e-6).ceil().min(127.0) as i8)
 }
 
 /// Returns how many texels of a texture a unit of length takes, by the areas of all triangles; 0 if it is not known.
