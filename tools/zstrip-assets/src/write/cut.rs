@@ -5,12 +5,15 @@
 //! its last texel from the middle of that texel on, so triangles are cut there; a mirrored one is cut at its sides:
 //!
 //! ```text
-//!            u = 0                1
-//!             |    the texture    |            b: cut at 1 - half a texel
-//!             |              a----:--------c   the left part keeps its coordinates,
-//!             |               \   :     /      the right one shows the last column of texels
-//!             |                \  :  /
-//!             |                 \ b
+//!      u = 0        1 - half a texel
+//!        |                :
+//!        |     a----------*-------c     Corners *: new vertices.
+//!        |      \         :     /       On the left, triangles keep their coordinates.
+//!        |       \        :   /         On the right, u becomes 1 - half a texel.
+//!        |        \       : /
+//!        |         \      *
+//!        |          \   / :
+//!        |            b   :
 //! ```
 //!
 //! Triangles of a mesh that have a cut side in common are cut at the same points of it, also where a seam of the
