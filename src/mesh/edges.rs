@@ -172,7 +172,7 @@ const fn sink(heap: &mut [[u16; 2]], mut root: usize, item: [u16; 2]) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::mesh::{MeshData, Positions, Topology};
+    use super::super::data::{MeshData, Positions, Topology};
     use super::*;
     use crate::math::Vec3;
     use crate::math::random::Rng;

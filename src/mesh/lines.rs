@@ -1,7 +1,9 @@
 //! Lines and points: vertices like those of a mesh, and how they are joined, checked once.
 
 use super::bounds::Bounds;
-use super::mesh::{Mesh, MeshData, MeshError, Positions};
+use super::data::{MeshData, Positions};
+use super::error::MeshError;
+use super::mesh::Mesh;
 use crate::math::Scalar;
 
 /// The vertices of lines or points, before they are checked. Fill in the slices that there are:

@@ -3,15 +3,20 @@
 //! [`Vertices`].
 
 mod bounds;
+mod data;
 mod edges;
+mod error;
+mod extent;
 mod lines;
 mod mesh;
 mod order;
 
 pub use bounds::{Bounds, BoundsNode};
-pub use edges::{EdgesError, edges};
-pub use lines::{LineTopology, Lines, Points, Vertices};
 #[cfg(test)]
-pub(crate) use mesh::LOOKED_UP;
-pub use mesh::{Mesh, MeshData, MeshError, Positions, Topology};
+pub(crate) use data::LOOKED_UP;
+pub use data::{MeshData, Positions, Topology};
+pub use edges::{EdgesError, edges};
+pub use error::MeshError;
+pub use lines::{LineTopology, Lines, Points, Vertices};
+pub use mesh::Mesh;
 pub use order::{sort_back_to_front, view_depth};
