@@ -47,15 +47,21 @@
 //! ```
 
 mod aligned;
+mod animation_items;
 mod camera;
+mod check;
+mod clusters;
 pub mod container;
+mod determinant;
 mod draw;
 mod error;
 mod keys;
+mod material_items;
 mod normal;
 mod place;
 mod pose;
 mod posed;
+mod range;
 mod read;
 mod shader;
 mod skin;

@@ -2,14 +2,15 @@
 //! computed once per frame, outside of the closure that draws.
 
 use super::camera::Camera;
-use super::container::{AlphaMode, Cluster, Material as MaterialItem, NONE, NONE_LONG, Part};
+use super::container::{AlphaMode, Material as MaterialItem, NONE, NONE_LONG, Part};
+use super::determinant::is_mirrored;
 use super::error::MemoryError;
 use super::posed::PosedPart;
 use super::read::{MATRIX_WORDS, Model, bounds_of};
 use super::shader::{Light, PartSurface};
 use super::transform::{Local, from_words};
 use crate::light::Material;
-use crate::math::{Affine, Projective, Vec3, isqrt, mul_long, mul_wide};
+use crate::math::{Affine, Projective, Vec3};
 use crate::mesh::{Bounds, BoundsNode, view_depth};
 use core::cmp::Reverse;
 use embedded_graphics_core::pixelcolor::Rgb888;
@@ -26,7 +27,7 @@ pub struct Place<S> {
     /// Set if the transform turns front faces round.
     pub(super) mirrored: bool,
     /// The node whose transform the part has, or [`NONE`].
-    node: u16,
+    pub(super) node: u16,
     /// Depth of a blended part.
     depth: i64,
     /// Nodes of the part's clusters: the first, and their number. 0 if all of the part is drawn.
@@ -43,7 +44,7 @@ pub struct Placed<'p, S> {
     pub(super) places: &'p mut [Option<Place<S>>],
     pub(super) nodes: &'p [BoundsNode],
     /// The transforms to the world and to the eye, if the camera has an eye.
-    to_eye: Option<[Affine; 2]>,
+    pub(super) to_eye: Option<[Affine; 2]>,
 }
 
 impl<'a> Model<'a> {
@@ -116,7 +117,7 @@ impl<'a> Model<'a> {
     }
 
     /// Returns the transform of a node: that of the pose, if there is one.
-    fn transform(&self, pose: &[u32], node: usize) -> Affine {
+    pub(super) fn transform(&self, pose: &[u32], node: usize) -> Affine {
         let words = pose.get(MATRIX_WORDS * node..).and_then(|rest| rest.first_chunk());
         words.map_or_else(|| self.at_rest(node), from_words)
     }
@@ -133,7 +134,7 @@ impl<'a> Model<'a> {
         transform
     }
 
-    fn material_of(&self, part: &Part) -> Option<&'a MaterialItem> {
+    pub(super) fn material_of(&self, part: &Part) -> Option<&'a MaterialItem> {
         self.materials.get(usize::from(part.material))
     }
 }
@@ -263,103 +264,7 @@ fn swap<T>(items: &mut [T], a: usize, b: usize) {
     }
 }
 
-/// Returns the minor a b - c d of a matrix: below 2⁶³.
-fn minor(a: i32, b: i32, c: i32, d: i32) -> i64 {
-    mul_wide(a, b) - mul_wide(c, d)
-}
-
-/// Returns the cofactors of a row of a matrix, of the two other rows in cyclic order.
-fn cofactors([a, b, c]: [i32; 3], [d, e, f]: [i32; 3]) -> [i64; 3] {
-    [minor(b, f, c, e), minor(c, d, a, f), minor(a, e, b, d)]
-}
-
-/// Returns the sum of three products, exactly: below 3 · 2⁹⁴.
-fn dot([a, b, c]: [i64; 3], [x, y, z]: [i32; 3]) -> i128 {
-    mul_long(a, x) + mul_long(b, y) + mul_long(c, z)
-}
-
-/// Returns whether a transform is a mirror: its determinant is negative.
-fn is_mirrored(transform: &Affine) -> bool {
-    let [x, y, z] = transform.to_rows().map(|[x, y, z, _]| [x, y, z]);
-    dot(cofactors(y, z), x) < 0
-}
-
-/// Returns the point, raw 16.16, that a transform brings to the origin. `None` if there is no such point, or if it is
-/// beyond the range of numbers.
-///
-/// # Format
-/// By Cramer's rule, a coordinate is a quotient of a sum of three products and the determinant, both of at most 96
-/// bits. They are cut until the determinant has 32 bits. Coordinates are within 2⁻¹⁵ of the exact ones.
-fn origin_of(transform: &Affine) -> Option<[i32; 3]> {
-    let rows = transform.to_rows();
-    let ([x, y, z], t) = (rows.map(|[x, y, z, _]| [x, y, z]), rows.map(|[.., t]| t));
-    let [a, b, c] = [cofactors(y, z), cofactors(z, x), cofactors(x, y)];
-    let determinant = dot(a, x);
-    let cut = 96_u32.saturating_sub(determinant.unsigned_abs().leading_zeros());
-    let divisor = (determinant.unsigned_abs() >> cut) as u64;
-    let coordinate = |k: usize| {
-        let numerator = dot([a[k], b[k], c[k]], t);
-        let quotient = u64::try_from((numerator.unsigned_abs() << 16) >> cut).ok()?.checked_div(divisor)?;
-        let quotient = i32::try_from(quotient).ok()?;
-        Some(if (numerator < 0) == (determinant < 0) { -quotient } else { quotient })
-    };
-    Some([coordinate(0)?, coordinate(1)?, coordinate(2)?])
-}
-
-impl<'p, S> Placed<'p, S> {
-    /// Culls the clusters of parts, one by one: those that show their back to the camera here, and those out of view in
-    /// each call of the closure that draws. The nodes are lent for that: one for each cluster of a placed part. A part
-    /// for which too few are left is drawn as a whole.
-    ///
-    /// It pays where much of a model is out of view, and in frames without records, where each strip goes over all of
-    /// the model otherwise. A model that is in view as a whole, with records, takes some 2 % more: few clusters show
-    /// nothing but their back. The culling takes some 1,200 instructions per cluster on a Cortex-M0+, and the test of
-    /// its box 750 per frame with records, 380 per strip without. Parts that a pose moves have no clusters.
-    #[must_use]
-    pub fn cull_clusters(mut self, nodes: &'p mut [BoundsNode]) -> Self {
-        let mut used = 0;
-        for to in self.places.iter_mut() {
-            let Some(place) = to else { continue };
-            place.nodes = (0, 0);
-            let Some(part) = self.model.parts.get(usize::from(place.part)) else { continue };
-            let clusters = self.model.clusters_of(part);
-            let Some(room) = nodes.get_mut(used..).and_then(|rest| rest.get_mut(..clusters.len())) else { continue };
-            let two_sided = self.model.material_of(part).is_some_and(|m| m.flags & MaterialItem::DOUBLE_SIDED != 0);
-            let eye = match &self.to_eye {
-                Some([world, view]) if !clusters.is_empty() && !two_sided => {
-                    // As the matrix of the draw was made, so that both round alike.
-                    let to_world = *world * self.model.transform(self.pose, place.node.into());
-                    origin_of(&(*view * to_world))
-                }
-                _ => None,
-            };
-            let mut count = 0;
-            for cluster in clusters {
-                let exact = cluster.exact_box(part);
-                if cluster.cutoff < i8::MAX && eye.is_some_and(|eye| cluster.shows_back(&exact, eye)) {
-                    continue;
-                }
-                if let Some(node) = room.get_mut(count) {
-                    *node = BoundsNode {
-                        bounds: saturated(exact),
-                        skip: count as u16 + 1,
-                        first_triangle: cluster.first_triangle,
-                        triangles: cluster.triangles,
-                    };
-                    count += 1;
-                }
-            }
-            place.nodes = (used as u32, count as u16);
-            if count == 0 && !clusters.is_empty() {
-                // Not a single triangle is drawn.
-                *to = None;
-            }
-            used += count;
-        }
-        self.nodes = nodes;
-        self
-    }
-
+impl<S> Placed<'_, S> {
     /// Returns the matrices of the draws, from object space to clip space, with the numbers of their parts: for draws
     /// of one's own. Opaque draws come first, blended ones follow from back to front.
     pub fn draws(&self) -> impl Iterator<Item = (&Projective, usize)> {
@@ -367,92 +272,10 @@ impl<'p, S> Placed<'p, S> {
     }
 }
 
-impl Cluster {
-    /// Returns the middle of the box and half its size, raw 16.16, rounded outwards.
-    ///
-    /// # Format
-    /// Below 2³³, which is more than [`Bounds`] have.
-    #[inline(never)]
-    fn exact_box(&self, part: &Part) -> ExactBox {
-        let along = |q: i16, offset: i32| ((mul_wide(part.scale, q.into()) + (1 << 14)) >> 15) + i64::from(offset);
-        let half = |q: u16| (mul_wide(part.scale, q.into()) >> 15) + 2;
-        let ([x, y, z], [ox, oy, oz]) = (self.center, part.offset);
-        ([along(x, ox), along(y, oy), along(z, oz)], self.half.map(half))
-    }
-
-    /// Returns whether all triangles show their back to an eye in object space, raw 16.16: the rule of the container,
-    /// with all lengths multiplied by 127.
-    ///
-    /// # Format
-    /// Distances, below 2³⁴, are cut to 14 bits: their products with the axis are below 2²³, and sums of squares are
-    /// below 2³⁰. The distance is off by at most 1 for what is cut, 1 for the middle of the box, and 2 for the eye on
-    /// each axis. That is 7 of length, which counts against culling on both sides of the rule.
-    #[inline(never)]
-    fn shows_back(&self, &([x, y, z], half): &ExactBox, eye: [i32; 3]) -> bool {
-        let [ex, ey, ez] = eye.map(i64::from);
-        let distance = [x - ex, y - ey, z - ez];
-        let all = distance.iter().chain(&half).fold(0, |all, c| all | c.unsigned_abs());
-        let shift = 50_u32.saturating_sub(all.leading_zeros());
-        let distance = distance.map(|c| (c >> shift) as i32);
-        let square = |v: [i32; 3]| v.iter().map(|c| c * c).sum::<i32>();
-        let [dx, dy, dz] = distance;
-        let [ax, ay, az] = self.axis.map(i32::from);
-        let towards = dx * ax + dy * ay + dz * az;
-        if towards < 0 {
-            return false;
-        }
-        let radius = isqrt(square(half.map(|c| (c >> shift) as i32 + 1)).unsigned_abs()) as i32 + 1;
-        let beyond = towards - 127 * radius - 2 * 7 * 127;
-        let cutoff = i32::from(self.cutoff.max(0));
-        beyond >= 0 && mul_wide(beyond, beyond) >= mul_wide(cutoff * cutoff, square(distance) + 1)
-    }
-}
-
-/// The middle of a box and half its size.
-type ExactBox = ([i64; 3], [i64; 3]);
-
-/// Returns a box in numbers of bounds, rounded outwards.
-fn saturated((exact_center, exact_half): ExactBox) -> Bounds {
-    let (mut center, mut half) = ([0; 3], [0; 3]);
-    for ((to, half), (c, h)) in center.iter_mut().zip(&mut half).zip(exact_center.into_iter().zip(exact_half)) {
-        let saturated = c.clamp(i32::MIN.into(), i32::MAX.into());
-        *to = saturated as i32;
-        *half = (h + (c - saturated).abs()).min(i32::MAX.into()) as i32;
-    }
-    bounds_of(center, half)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::math::Scalar;
     use crate::math::random::Rng;
-
-    fn random(rng: &mut Rng, bits: u32, moved: u32) -> Affine {
-        let mut vector = |bits| Vec3::from_bits(core::array::from_fn(|_| rng.signed_bits(bits) as i32));
-        Affine::from_rows(vector(bits), vector(bits), vector(bits), vector(moved))
-    }
-
-    #[test]
-    fn the_origin_of_a_transform_is_that_of_its_inverse() {
-        let mut rng = Rng::new(4);
-        let mut found = 0;
-        for case in 0..20_000 {
-            let transform = random(&mut rng, 4 + case % 28, 1 + case / 7 % 31);
-            let Some(origin) = origin_of(&transform) else { continue };
-            let Some(inverse) = transform.inverse() else { continue };
-            found += 1;
-            let exact = inverse.transform_point(Vec3::ZERO).to_bits();
-            let is_near = origin.iter().zip(exact).all(|(a, b)| a.abs_diff(b) <= 2);
-            assert!(is_near, "{origin:?}, not {exact:?}: {transform:?}");
-        }
-        assert!(found > 5000, "{found}");
-        assert_eq!(origin_of(&Affine::scale(Scalar::ZERO)), None);
-        let far = Affine::translation(Vec3::from_ints(20_000, 0, 0)) * Affine::scale(Scalar::from_num(0.5));
-        assert_eq!(origin_of(&far), None);
-        let ends = Affine::from_rows(Vec3::X, Vec3::Y, Vec3::Z, Vec3::from_bits([i32::MIN, i32::MAX, 1]));
-        assert_eq!(origin_of(&ends), None);
-    }
 
     #[test]
     fn heaps_sort_as_the_standard_library_does() {
@@ -466,19 +289,5 @@ mod tests {
                 assert_eq!(items, expected);
             }
         }
-    }
-
-    #[test]
-    fn mirrors_have_a_negative_determinant() {
-        let mut rng = Rng::new(5);
-        for case in 0..20_000 {
-            let transform = random(&mut rng, 2 + case % 31, 5);
-            let [[a, b, c, _], [d, e, f, _], [g, h, i, _]] = transform.to_rows().map(|row| row.map(i128::from));
-            let determinant = a * (e * i - f * h) + b * (f * g - d * i) + c * (d * h - e * g);
-            assert_eq!(is_mirrored(&transform), determinant < 0, "{transform:?}");
-        }
-        let least = Vec3::from_bits([i32::MIN; 3]);
-        assert!(!is_mirrored(&Affine::from_rows(least, least, least, least)));
-        assert!(is_mirrored(&Affine::scale(Scalar::MIN)));
     }
 }
