@@ -76,8 +76,8 @@ impl Picture {
         for (triangle, corners) in super::TORUS_INDICES.chunks(3).enumerate() {
             self.triangle(&[0, 1, 2].map(|c: usize| {
                 let k = usize::from(corners[c]);
-                let [x, y, z] = super::ROTATION.map(|row| super::dot(row, positions[k]));
-                let lit = super::AMBIENT + super::DIFFUSE * super::dot(normal(triangle, k), light).max(0.0);
+                let [x, y, z] = super::ROTATION.map(|row| super::numbers::dot(row, positions[k]));
+                let lit = super::AMBIENT + super::DIFFUSE * super::numbers::dot(normal(triangle, k), light).max(0.0);
                 Vertex { position: [x, y, z + super::DISTANCE], color: super::TORUS_COLOR.map(|c| f64::from(c) * lit) }
             }));
         }

@@ -4,7 +4,8 @@
 //! The model is by Keenan Crane, who released it into the public domain. `ci/spot.py` made `spot.bin` of it, and
 //! describes it. The space is right-handed: x right, y up, the camera at 0 looks along -z.
 
-use super::{Buffers, dot, frame_on, nearest, normalized, quantities, root, sin_cos, vector};
+use super::numbers::{dot, nearest, normalized, quantities, root, sin_cos, vector};
+use super::{Buffers, frame_on};
 use zstrip::embedded_graphics_core::geometry::Size;
 use zstrip::light::{Matte, Sun, Sunlit};
 use zstrip::math::{Affine, Angle16, Projective, Scalar};
