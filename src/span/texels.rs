@@ -29,9 +29,11 @@
 use super::brush::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::depth::DepthTest;
 use crate::color::PixelFormat;
+use crate::math::SMALL_CORE;
 use crate::raster::{ShortPlanes, gradients_inlined, least_and_most};
 use crate::texture::Texture;
 use crate::vertex::PackedCorners;
+use core::hint::black_box;
 use core::marker::PhantomData;
 use embedded_graphics_core::geometry::Size;
 
@@ -164,7 +166,9 @@ fn coordinate(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
     let (n, m) = planes.numerators(b, c);
     let (dx, dy) = gradients_inlined(n, m, planes.reciprocal, planes.shift as i32 - 15)?;
     let start = ((a as u32) << 8).wrapping_add(HALF);
-    Some([start.wrapping_add_signed(planes.offset(dx, dy)), dx as u32, dy as u32])
+    let start = start.wrapping_add_signed(planes.offset(dx, dy));
+    // The compiler would otherwise put off part of the sum to each span.
+    Some([if SMALL_CORE { start } else { black_box(start) }, dx as u32, dy as u32])
 }
 
 /// Computes the plane of a channel of light, from 9.7 at the corners.
