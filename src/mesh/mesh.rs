@@ -4,8 +4,6 @@
 //! needs no error for a mesh.
 
 use super::bounds::{Bounds, BoundsNode, holds, is_negative};
-#[cfg(test)]
-use super::data::LOOKED_UP;
 use super::data::{MeshData, Positions, Topology};
 use super::error::MeshError;
 use super::extent::{find_bounds, is_outside, outside};
@@ -276,7 +274,7 @@ impl<'a> Mesh<'a> {
     #[must_use]
     pub fn position(&self, vertex: usize) -> Vec3 {
         #[cfg(test)]
-        LOOKED_UP.set(LOOKED_UP.get() + 1);
+        super::data::LOOKED_UP.set(super::data::LOOKED_UP.get() + 1);
         match self.data.positions {
             Positions::Quantized { points, scale, offset } => {
                 let q = points.get(vertex).copied().unwrap_or_default();
