@@ -403,7 +403,8 @@ fn target(morph: &crate::model::Morph, cube: &Cube, to: &mut Sections) {
     to.add(SectionKind::Targets, &[Target { first_delta, first_vertex: first as u16, vertices }]);
 }
 
-/// Returns how many texels of a texture a unit of length takes, by the areas of all triangles; 0 if it is not known.
+/// Returns how many texels of a texture a unit of length takes; 0 if it is not known. It goes by the areas of all
+/// triangles that show more than a line of texels: those beyond a clamped side do not count.
 pub(super) fn texels_per_unit(piece: &Piece, at: impl Fn(usize) -> Vector, size: [u32; 2]) -> f64 {
     if piece.vertices.uvs.is_empty() {
         return 0.0;
@@ -413,9 +414,11 @@ pub(super) fn texels_per_unit(piece: &Piece, at: impl Fn(usize) -> Vector, size:
         let [a, b, c] = corners.map(|v| at(usize::from(v)));
         let side = |p: Vector| std::array::from_fn(|k| p[k] - a[k]);
         let normal = cross(side(b), side(c));
-        area += dot(normal, normal).sqrt();
         let [a, b, c] = corners.map(|v| piece.vertices.uvs[usize::from(v)].map(f64::from));
-        texels += ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+        let shown = ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])).abs();
+        if shown > 0.0 {
+            (texels, area) = (texels + shown, area + dot(normal, normal).sqrt());
+        }
     }
     let per_area = texels * f64::from(size[0]) * f64::from(size[1]) / area;
     if per_area.is_finite() { per_area.sqrt().min(MOST * 512.0) } else { 0.0 }

@@ -309,6 +309,21 @@ fn coordinates_of_textures_that_do_not_repeat_stay_inside_or_are_reported() {
 }
 
 #[test]
+fn texels_per_unit_are_those_within_the_sides_of_a_clamped_texture() {
+    let mut import = textured(sphere(16, 16, 1.0), image(), AlphaMode::Opaque);
+    let texels = |import: &Import| section::<Part>(&written(import), SectionKind::Parts)[0].texels_per_unit;
+    // Three times as many texels on the same sphere, repeated and clamped.
+    import.meshes[0].vertices.uvs.iter_mut().for_each(|uv| *uv = uv.map(|c| 3.0 * c - 1.0));
+    let repeated = texels(&import);
+    import.materials[0].texture.as_mut().expect("a texture").wrap = [Wrap::Clamp; 2];
+    let clamped = texels(&import);
+    // The middle of the sphere is wider than the mean, and triangles that reach half a texel beyond a side are not cut.
+    // With all of the sphere, it would be 0.29.
+    let part = f64::from(clamped) / f64::from(repeated);
+    assert!((0.6..1.1).contains(&part), "{clamped} of {repeated}");
+}
+
+#[test]
 fn moved_vertices_on_cuts_follow_their_joints_and_targets() {
     for morphs in [false, true] {
         let mut import = animated(morphs);
