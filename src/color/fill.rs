@@ -53,6 +53,18 @@ pub fn clear<R: Pod>(pixels: &mut [R], value: R) {
     }
 }
 
+/// Most pixels that [`clear`] clears by fives on small cores: 65,535 words.
+const LONGEST: usize = 131_070;
+
+/// Does as [`clear`], as fast in buffers of any length: those of several samples per pixel may be long. By itself, as
+/// the loop would take code in programs whose buffers are short.
+#[inline(never)]
+pub fn clear_long<R: Pod>(pixels: &mut [R], value: R) {
+    for part in pixels.chunks_mut(LONGEST) {
+        clear(part, value);
+    }
+}
+
 /// Does as [`clear`] on small cores, five words at a time.
 #[inline(always)]
 fn clear_by_fives<R: Pod>(pixels: &mut [R], value: R) {
@@ -60,7 +72,7 @@ fn clear_by_fives<R: Pod>(pixels: &mut [R], value: R) {
     *first = value;
     let (_, words, _) = bytemuck::pod_align_to_mut::<R, u32>(pixels);
     // A fifth of the number of words, rounded down. That is exact up to 65,535 words, 256 KB. In a longer buffer, fewer
-    // words are stored by fives, and the loop over pixels at the end does the rest.
+    // words are stored by fives, and the loop over pixels at the end does the rest: `clear_long` is for these.
     let fives = ((words.len() & 0xFFFF) * 0xCCCD) >> 18;
     let Some(words) = words.get_mut(..5 * fives) else { return };
     let Ok(blocks) = bytemuck::try_cast_slice_mut(words) else { return };
@@ -176,6 +188,18 @@ mod tests {
                 let mut words = [1_u32; 100];
                 clear_words(&mut words[start..end], 0xABCD);
                 assert!(words.iter().enumerate().all(|(k, v)| *v == if inside(k) { 0xABCD_ABCD } else { 1 }));
+            }
+        }
+    }
+
+    #[test]
+    fn long_buffers_are_cleared_to_the_end() {
+        for length in [LONGEST - 1, LONGEST, LONGEST + 1, LONGEST + 2, 2 * LONGEST, 2 * LONGEST + 13] {
+            for start in [0, 1] {
+                let mut halves = std::vec![1_u16; length + 2];
+                clear_long(&mut halves[start..start + length], 0xABCD);
+                let is_right = |(k, v): (usize, &u16)| (*v == 0xABCD) == (start..start + length).contains(&k);
+                assert!(halves.iter().enumerate().all(is_right), "{length} half words from {start} on");
             }
         }
     }

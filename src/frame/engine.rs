@@ -1,7 +1,7 @@
 //! The loop that makes a frame: bands of strips, recorded as large as the records allow, replayed strip by strip.
 
 use super::error::RendererError;
-use crate::color::clear;
+use crate::color::{clear, clear_long};
 use crate::scene::{Phase, Scene, Target};
 use crate::target::{Framebuffer, Layout, Records, Stats, StripRows, occlusion_len, whole_rows};
 use crate::vertex::Viewport;
@@ -229,7 +229,8 @@ impl Engine<'_> {
                 // Coarse depths follow the strip's depths, and begin as far away as these.
                 pixels += occlusion_len(width, rows);
             }
-            clear(self.depth.get_mut(..pixels).unwrap_or_default(), u16::MAX);
+            let depth = self.depth.get_mut(..pixels).unwrap_or_default();
+            if F::SAMPLES > 1 { clear_long(depth, u16::MAX) } else { clear(depth, u16::MAX) }
         }
         loop {
             let phase = if F::RECORDS { self.begin_walk(progress, rows) } else { Phase::Direct };
