@@ -10,7 +10,7 @@
 mod firmware;
 mod scenes;
 
-use scenes::formats::{self, FORMATS, FormatInfo, Memory, SMOOTH};
+use scenes::formats::{self, FORMATS, FormatInfo, LEAVES, Memory, SMOOTH};
 #[cfg(target_os = "none")]
 use semihosting::println;
 
@@ -39,8 +39,8 @@ const SIZES: (usize, usize) = if cfg!(small_ram = "bare") {
 };
 
 /// Those that there is room for.
-const OTHERS: [&[FormatInfo]; 2] =
-    if cfg!(any(small_ram = "bare", small_ram = "records")) { [&[]; 2] } else { [FORMATS, SMOOTH] };
+const OTHERS: [&[FormatInfo]; 3] =
+    if cfg!(any(small_ram = "bare", small_ram = "records")) { [&[]; 3] } else { [FORMATS, SMOOTH, LEAVES] };
 
 struct Buffers {
     color: [u16; WIDTH * SIZES.0],

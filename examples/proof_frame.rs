@@ -68,6 +68,8 @@ mod image {
         scenes::formats::FORMATS.len()
     } else if cfg!(proof = "smooth") {
         scenes::formats::SMOOTH.len()
+    } else if cfg!(proof = "leaves") {
+        scenes::formats::LEAVES.len()
     } else {
         1
     };
@@ -85,9 +87,11 @@ mod image {
             if let Some(draw) = all.get(index) {
                 draw(workloads::Buffers { color, depth, records }, send);
             }
-        } else if cfg!(proof = "smooth") {
+        } else if cfg!(any(proof = "smooth", proof = "leaves")) {
+            use scenes::formats::{LEAVES, SMOOTH};
             let memory = scenes::formats::Memory { color, depth, records };
-            if let Some(scene) = scenes::formats::SMOOTH.get(index) {
+            let all = if cfg!(proof = "leaves") { LEAVES } else { SMOOTH };
+            if let Some(scene) = all.get(index) {
                 (scene.draw)(memory, &mut |bytes| {
                     black_box(bytes);
                 });

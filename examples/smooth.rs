@@ -8,6 +8,7 @@ mod scenes;
 
 use core::convert::Infallible;
 use host::program::{Demo, Drawing, Shot, show};
+use scenes::leaves::Leaves;
 use scenes::{Draw, Room, Torus};
 use zstrip::color::PixelFormat;
 use zstrip::embedded_graphics_core::draw_target::DrawTarget;
@@ -27,13 +28,15 @@ const GAP: u32 = 2;
 enum Subject {
     Torus(Torus<zstrip::shader::Gouraud<zstrip::light::Sunlit>>),
     Room(Box<Room>),
+    Leaves(Leaves),
 }
 
 impl Subject {
     fn new(mode: usize, screen: Size, turn: Angle16) -> Self {
         match mode {
             0 => Self::Torus(Torus::gouraud(screen, turn)),
-            _ => Self::Room(Box::new(Room::new(screen, turn))),
+            1 => Self::Room(Box::new(Room::new(screen, turn))),
+            _ => Self::Leaves(Leaves::new(screen, turn)),
         }
     }
 }
@@ -43,6 +46,7 @@ impl<F: Framebuffer<Format = Rgb565>> Draw<F> for Subject {
         match self {
             Self::Torus(torus) => torus.draw(scene),
             Self::Room(room) => room.draw(scene),
+            Self::Leaves(leaves) => leaves.draw(scene),
         }
     }
 }
@@ -108,7 +112,7 @@ impl Demo<WithoutDepth> for Smooth {
     const NAME: &'static str = "smooth";
     const ABOUT: &'static str = "A scene with one sample per pixel, with four, and with 2 × 2 pixels for one.";
     const BACKGROUND: Rgb565 = Rgb565::new(31, 63, 31);
-    const MODES: &'static [&'static str] = &["torus", "room"];
+    const MODES: &'static [&'static str] = &["torus", "room", "leaves"];
 
     fn frame(&mut self, shot: &Shot) -> Drawing<'_, Rgb565, WithoutDepth> {
         let size = Size::new((shot.screen.width.saturating_sub(2 * GAP) / 3).max(1), shot.screen.height);

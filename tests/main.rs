@@ -1,6 +1,7 @@
 //! The tests of whole frames and of what is public, in one program: what they share is built once.
 
 mod accuracy;
+mod alpha_to_coverage;
 mod beside_tiny_skia;
 mod blend;
 mod buffers;

@@ -20,16 +20,17 @@ use zstrip::vertex::{Perspective, VertexRef, VertexShader};
 use zstrip::{Cull, Scene, ScreenPoint, State, Thick, Thin};
 
 const SCREEN: (u16, u16) = (160, 120);
-const SIDE: u16 = 128;
-const AMPLE: usize = 60_000;
+pub const SIDE: u16 = 128;
+pub const AMPLE: usize = 60_000;
 
 /// Places of the samples, in 1/256 px from the pixel's corner: those of Direct3D's and Vulkan's specifications.
-const TWO: [[i32; 2]; 2] = [[192, 192], [64, 64]];
-const FOUR: [[i32; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
-const EIGHT: [[i32; 2]; 8] = [[144, 80], [112, 176], [208, 144], [80, 48], [48, 208], [16, 112], [176, 240], [240, 16]];
+pub const TWO: [[i32; 2]; 2] = [[192, 192], [64, 64]];
+pub const FOUR: [[i32; 2]; 4] = [[96, 32], [224, 96], [32, 160], [160, 224]];
+pub const EIGHT: [[i32; 2]; 8] =
+    [[144, 80], [112, 176], [208, 144], [80, 48], [48, 208], [16, 112], [176, 240], [240, 16]];
 
 /// Corners of triangles on a screen of 128 × 128 px: x and y in 1/256 px, and a depth.
-struct Triangles {
+pub struct Triangles {
     corners: Vec<[i32; 3]>,
     colors: Vec<[u8; 3]>,
     uvs: Vec<[Scalar; 2]>,
@@ -37,7 +38,7 @@ struct Triangles {
 
 impl Triangles {
     /// Random ones of up to `size` / 256 px.
-    fn new(rng: &mut Rng, count: usize, size: i32) -> Self {
+    pub fn new(rng: &mut Rng, count: usize, size: i32) -> Self {
         let mut corners = vec![];
         for k in 0..count {
             let middle = [(); 2].map(|()| rng.between(-2000, 256 * i32::from(SIDE) + 2000));
@@ -54,14 +55,19 @@ impl Triangles {
     }
 
     /// Vertices that are projected to exactly these places, moved by some 1/256 px.
-    fn moved(&self, [right, down]: [i32; 2]) -> Vec<[Scalar; 4]> {
+    pub fn moved(&self, [right, down]: [i32; 2]) -> Vec<[Scalar; 4]> {
         let on_screen = |[x, y, z]: &[i32; 3]| {
             [4 * (x + right) - 65_536, 65_536 - 4 * (y + down), *z, 65_536].map(Scalar::from_bits)
         };
         self.corners.iter().map(on_screen).collect()
     }
 
-    fn draw<F: zstrip::Framebuffer>(
+    /// Returns the vertices at such places.
+    pub fn vertices<'t>(&'t self, corners: &'t [[Scalar; 4]]) -> Vertices<'t> {
+        Vertices { colors: Some(&self.colors), uvs: Some(&self.uvs), ..Vertices::new(Positions::Homogeneous(corners)) }
+    }
+
+    pub fn draw<F: zstrip::Framebuffer>(
         &self,
         scene: &mut Scene<'_, F>,
         corners: &[[Scalar; 4]],

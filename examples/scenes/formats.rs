@@ -2,6 +2,7 @@
 //! with hidden draws.
 
 use super::kept::kept;
+use super::leaves::Leaves;
 use super::street::Street;
 use super::{Draw, Room, Torus, in_place};
 use zstrip::color::{Dither, Dithered, PixelFormat, Rgb332, Rgb565Be};
@@ -79,6 +80,12 @@ pub const SMOOTH: &[FormatInfo] = &[
         draw: |memory, sink| supersampled(memory, sink, &*kept(|| Torus::flat(Size::new(320, 240), Angle16(0)))),
     },
 ];
+
+/// The scene with textures and several samples per pixel. By itself, since it takes more stack than others with samples.
+pub const LEAVES: &[FormatInfo] = &[FormatInfo {
+    name: "leaves_samples",
+    draw: |memory, sink| sampled(memory, sink, &*kept(|| Leaves::new(Size::new(320, 240), Angle16(0)))),
+}];
 
 /// Draws 320×240 pixels, and leaves out hidden draws.
 fn occluded<S>(Memory { color, depth, records }: Memory<'_>, sink: &mut Sink<'_>, drawing: &S)

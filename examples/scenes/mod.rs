@@ -15,6 +15,7 @@ pub mod horizon;
 pub mod kept;
 pub mod labels;
 pub mod landscape;
+pub mod leaves;
 pub mod light;
 pub mod overlay;
 pub mod polygons;

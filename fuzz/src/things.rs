@@ -321,7 +321,7 @@ impl<P: PixelFormat> Shader<P> for Moving<'_> {
 }
 
 /// Number of shaders in [`with_shader`].
-pub const SHADERS: usize = 24;
+pub const SHADERS: usize = 25;
 
 /// Evaluates `$body` with one of the shaders, by number; the last one stands for all greater numbers. The shaders are of
 /// different types, so the body is compiled for each.
@@ -381,6 +381,7 @@ macro_rules! with_shader {
             &Blend::new(Gouraud::vertex_colors(), Multiply),
             &AlphaTest::new(Textured::new(&leaf).wrap(Clamp), kit.byte),
             &ScreenDoor::new(Gouraud::new(kit.sunlit), kit.byte),
+            &AlphaToCoverage::new(Textured::new(&leaf).filter(Bilinear)),
             &things::Moving(kit),
         )
     }};

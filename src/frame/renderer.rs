@@ -79,6 +79,7 @@ impl<'b, P: PixelFormat, R> Renderer<'b, P, WithoutDepth, R> {
     ///
     /// A triangle covers the samples that lie inside of it, and each sample has a depth of its own. When a strip is
     /// done, each of its pixels becomes the mean of its samples. Lines, points, text and images cover whole pixels.
+    /// [`AlphaToCoverage`](crate::shader::AlphaToCoverage) makes the edges within textures smooth, too.
     ///
     /// Strips get no higher than the whole rows that both buffers hold.
     ///

@@ -6,7 +6,7 @@ use crate::light::{Lighting, LitColor, LitMaterial, Material, Sun, Sunlit};
 use crate::math::{Affine, Vec3};
 use crate::mesh::Bounds;
 use crate::shader::Surface;
-use crate::span::{DepthTest, Fragment, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup};
+use crate::span::{DepthTest, Fragment, Sample, Shader, SmallResult, SmallTriangle, SpanOf, TriangleSetup};
 use crate::vertex::{Face, MAX_DISTANCES, PackedCorners, VertexRef, VertexShader};
 use embedded_graphics_core::pixelcolor::Rgb888;
 
@@ -194,6 +194,16 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Unpacked<'_, S> {
     #[inline(always)]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         self.shader.span(span, test);
+    }
+
+    #[inline(always)]
+    fn paint_at(&self, sample: Sample, fragment: &Fragment<'_, S::Varyings, S::Setup>, pixel: &mut P::Raw) -> bool {
+        self.shader.paint_at(sample, fragment, pixel)
+    }
+
+    #[inline(always)]
+    fn span_at<D: DepthTest>(&self, sample: Sample, span: SpanOf<'_, P, Self, D>, test: D) {
+        self.shader.span_at(sample, span, test);
     }
 
     #[inline(always)]

@@ -8,7 +8,7 @@ use crate::color::{PixelFormat, channels, packed};
 use crate::raster::{AreaEdges, AreaMemory, Contours, Gradients, LEAST_EDGES, PixelRect, Run, area_words};
 use crate::shader::Flat;
 use crate::span::{
-    Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Shader, Span, SpanOf,
+    Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Sample, Shader, Span, SpanOf,
     TriangleSetup, interpolate, set_up_shader,
 };
 use crate::target::Framebuffer;
@@ -243,6 +243,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Spans<'_, '_, F, S> {
     #[inline(always)]
     fn draw_at_sample(&mut self, run: &Run, parts: &[i32]) {
         let Self { screen, target, test, z, shader, primitive } = self;
+        let sample = target.selected();
         let (column, length) = (run.x.start as usize, (run.x.end - run.x.start) as usize);
         let row = usize::from(screen.0).wrapping_mul((run.y - target.rows.start) as usize);
         let color = target.framebuffer.span(run.y as u32, column, length);
@@ -251,14 +252,15 @@ impl<F: Framebuffer, S: Shader<F::Format>> Spans<'_, '_, F, S> {
         let mut nothing = [(); usize::MAX];
         if *test == DepthState::OFF {
             let depth = nothing.get_mut(..color.len()).unwrap_or_default();
-            return span(*shader, Span { color, depth, z: *z, position, primitive }, DepthOff, part, parts);
+            let run = Span { color, depth, z: *z, position, primitive };
+            return span(*shader, (sample, run), DepthOff, part, parts);
         }
         let Some(depth) = target.depth.get_mut(row.wrapping_add(column)..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
         let run = Span { color, depth, z: *z, position, primitive };
         match *test {
-            DepthState::LESS => span(*shader, run, DepthLess, part, parts),
-            other => span(*shader, run, DepthDyn::new(other), part, parts),
+            DepthState::LESS => span(*shader, (sample, run), DepthLess, part, parts),
+            other => span(*shader, (sample, run), DepthDyn::new(other), part, parts),
         }
     }
 }
@@ -267,19 +269,19 @@ impl<F: Framebuffer, S: Shader<F::Format>> Spans<'_, '_, F, S> {
 #[inline(always)]
 fn span<P: PixelFormat, S: Shader<P>, D: DepthTest>(
     shader: &S,
-    run: SpanOf<'_, P, S, D>,
+    (sample, run): (Sample, SpanOf<'_, P, S, D>),
     test: D,
     part: u32,
     parts: &[i32],
 ) {
-    if part == 256 { shader.span(run, test) } else { covered(shader, run, test, part, parts) }
+    if part == 256 { shader.span_at(sample, run, test) } else { covered(shader, (sample, run), test, part, parts) }
 }
 
 /// Draws pixels that are covered in part: all of them alike, or each as `parts` says.
 #[inline(never)]
 fn covered<P: PixelFormat, S: Shader<P>, D: DepthTest>(
     shader: &S,
-    span: SpanOf<'_, P, S, D>,
+    (sample, span): (Sample, SpanOf<'_, P, S, D>),
     test: D,
     part: u32,
     parts: &[i32],
@@ -300,7 +302,7 @@ fn covered<P: PixelFormat, S: Shader<P>, D: DepthTest>(
             let fragment = Fragment { flat, varyings: &varyings, position, depth: near, side, setup };
             // A shader that blends does so with the pixel that is there.
             let mut painted = *color;
-            if shader.paint(&fragment, &mut painted) {
+            if shader.paint_at(sample, &fragment, &mut painted) {
                 test.write(near, stored);
                 *color = if part < 256 { mixed::<P>(painted, *color, part) } else { painted };
             }

@@ -281,7 +281,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
         let (rows, columns) = (&self.clip.y, &self.clip.x);
         let mut spans = Spans::new(set_up.v, set_up.area, rows);
         let mut centres = Spans::new(centre.v, centre.area, rows);
-        let (shader, mut has_centres) = (self.shader, centres.next_in(columns));
+        let (shader, sample) = (self.shader, self.target.selected());
+        let mut has_centres = centres.next_in(columns);
         while spans.next_in(columns) {
             let (y, Range { start, end }) = (spans.y, spans.x.clone());
             while has_centres && centres.y < y {
@@ -295,7 +296,8 @@ impl<F: Framebuffer, S: Shader<F::Format>> Painter<'_, '_, F, S> {
                 [(&set_up.primitive, start..inner), (&centre.primitive, inner..outer), (&set_up.primitive, outer..end)];
             for (primitive, part) in parts {
                 if !part.is_empty() {
-                    shader.span(self.part_at::<D>(&set_up.depth, primitive, (y, part), &mut nothing), test);
+                    let span = self.part_at::<D>(&set_up.depth, primitive, (y, part), &mut nothing);
+                    shader.span_at(sample, span, test);
                 }
             }
         }

@@ -5,6 +5,7 @@ use super::state::State;
 use crate::math::Projective;
 use crate::mesh::{Bounds, BoundsNode, Mesh, MeshData, Positions};
 use crate::raster::PixelRect;
+use crate::span::Sample;
 use crate::target::{Framebuffer, Records, Stats, StripRows};
 use crate::vertex::{
     DepthRange, DepthScale, MAX_DISTANCES, Planes, ScreenMatrix, Transform, VERTEX_WORDS, Varyings, VertexShader,
@@ -40,6 +41,12 @@ pub(crate) struct Target<'a, F> {
 }
 
 impl<F: Framebuffer> Target<'_, F> {
+    /// Returns the sample that is drawn into now.
+    #[inline(always)]
+    pub(super) fn selected(&mut self) -> Sample {
+        Sample::new(self.framebuffer.selected_sample(), F::SAMPLES)
+    }
+
     /// Returns the target of one sample, of rows `width` px wide.
     pub(super) fn sample(&mut self, sample: usize, width: u16) -> Target<'_, F> {
         let Self { framebuffer, depth, rows } = self;

@@ -4,7 +4,7 @@ use super::scene::Target;
 use super::state::{State, Winding};
 use crate::color::PixelFormat;
 use crate::raster::{PixelRect, sampled};
-use crate::span::{BiasSteps, DepthBias, LeftState, SmallTarget};
+use crate::span::{BiasSteps, DepthBias, LeftState, Sample, SmallTarget};
 use crate::target::Framebuffer;
 use crate::vertex::ScreenVertex;
 use core::ops::Range;
@@ -70,7 +70,7 @@ impl<'p> SmallRows<'p> {
             (target.framebuffer.row(y as u32), target.depth.get_mut(at..).unwrap_or_default(), y, y..y + 1)
         };
         let Self { screen, clip, clockwise_fronts, bias } = *self;
-        let (columns, first, count) = (clip.x.clone(), first as u16, F::SAMPLES as u8);
-        Some(SmallTarget { color, samples, count, depth, first, columns, rows, screen, clockwise_fronts, bias, state })
+        let (columns, first, sample) = (clip.x.clone(), first as u16, Sample::new(0, F::SAMPLES));
+        Some(SmallTarget { color, samples, sample, depth, first, columns, rows, screen, clockwise_fronts, bias, state })
     }
 }

@@ -8,7 +8,7 @@ use crate::color::PixelFormat;
 use crate::math::Pixels;
 use crate::raster::{Along, Line, LinePixels, PixelRect, homogenize, unit, widen_along};
 use crate::span::{
-    Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Shader, Span, SpanOf,
+    Corrected, DepthDyn, DepthLess, DepthOff, DepthState, DepthTest, Fragment, Primitive, Sample, Shader, Span, SpanOf,
     TriangleSetup,
 };
 use crate::target::Framebuffer;
@@ -268,6 +268,7 @@ fn draw_line<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     run: &LineRun<'_, S::Varyings, S::Setup>,
 ) {
     let test = painter.test();
+    let sample = painter.target.selected();
     let Painter { target, screen, shader, .. } = painter;
     let (width, first_row) = (usize::from(screen.0), target.rows.start);
     let Some(colors) = target.framebuffer.rows(first_row as u32, width) else {
@@ -276,13 +277,20 @@ fn draw_line<F: Framebuffer, S: Shader<F::Format>, const DASHED: bool>(
     let depths = &mut *target.depth;
     match test {
         DepthState::LESS => {
-            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, DepthLess);
+            run.draw::<F::Format, S, _, DASHED>(colors, depths, (width, first_row), (shader, sample), DepthLess);
         }
         DepthState::OFF => {
-            run.draw::<F::Format, S, _, DASHED>(colors, &mut [(); usize::MAX], width, first_row, shader, DepthOff);
+            let nothing = &mut [(); usize::MAX];
+            run.draw::<F::Format, S, _, DASHED>(colors, nothing, (width, first_row), (shader, sample), DepthOff);
         }
         other => {
-            run.draw::<F::Format, S, _, DASHED>(colors, depths, width, first_row, shader, DepthDyn::new(other));
+            run.draw::<F::Format, S, _, DASHED>(
+                colors,
+                depths,
+                (width, first_row),
+                (shader, sample),
+                DepthDyn::new(other),
+            );
         }
     }
 }
@@ -294,9 +302,8 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
         &self,
         colors: &mut [P::Raw],
         depths: &mut [D::Depth],
-        width: usize,
-        first_row: i32,
-        shader: &S,
+        (width, first_row): (usize, i32),
+        (shader, sample): (&S, Sample),
         test: D,
     ) {
         let index = |(x, y): (i32, i32)| (y.wrapping_mul(width as i32)).wrapping_add(x) as usize;
@@ -309,7 +316,7 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
             if !DASHED || pattern & 1 != 0 {
                 if let (Some(color), Some(depth)) = (colors.get_mut(at), depths.get_mut(at)) {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
-                    shader.span(Span { color, depth, z, position, primitive }, test);
+                    shader.span_at(sample, Span { color, depth, z, position, primitive }, test);
                 }
             }
             let (mut step, mut step_at) = (straight, straight_at);
@@ -334,7 +341,7 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
     ) {
         let (width, first_row) = (usize::from(painter.screen.0), painter.target.rows.start);
         let Self { pixels, mut z, mut pattern, primitive } = *self;
-        let test = DepthDyn::new(painter.test());
+        let (test, sample) = (DepthDyn::new(painter.test()), painter.target.selected());
         for (x, y) in pixels {
             if !DASHED || pattern & 1 != 0 {
                 let color = painter.target.framebuffer.span(y as u32, x as usize, 1);
@@ -344,7 +351,7 @@ impl<V: Varyings, T> LineRun<'_, V, T> {
                 let depth = painter.target.depth.get_mut(at).unwrap_or(&mut nowhere);
                 if let [color] = color {
                     let (color, depth) = (core::slice::from_mut(color), core::slice::from_mut(depth));
-                    painter.shader.span(Span { color, depth, z, position: (x, y), primitive }, test);
+                    painter.shader.span_at(sample, Span { color, depth, z, position: (x, y), primitive }, test);
                 }
             }
             pattern = pattern.rotate_right(1);
@@ -530,6 +537,11 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
 
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
+        self.span_at(Sample::ONLY, span, test);
+    }
+
+    #[inline]
+    fn span_at<D: DepthTest>(&self, sample: Sample, span: SpanOf<'_, P, Self, D>, test: D) {
         let mut varyings = span.varyings();
         let Span { color, depth, mut z, mut position, primitive } = span;
         let Coverage { origin, step: [distance_step, way_step], outer, most, end, longest, .. } = self.coverage;
@@ -555,7 +567,7 @@ impl<P: PixelFormat, S: Shader<P>> Shader<P> for Covered<'_, S> {
                 let fragment = Fragment { flat, varyings: &varyings, position, depth, side, setup };
                 // A shader that blends does so with the pixel that is there.
                 let mut painted = *color;
-                if self.shader.paint(&fragment, &mut painted) {
+                if self.shader.paint_at(sample, &fragment, &mut painted) {
                     test.write(depth, stored);
                     *color = mix::<P>(*color, painted, part);
                 }
@@ -609,22 +621,22 @@ fn block_at_sample<F: Framebuffer, S: Shader<F::Format>>(
     let primitive = &Primitive::constant(*varyings, flat, Side::Front, setup);
     let (column, length) = (rect.x.start as usize, (rect.x.end - rect.x.start) as usize);
     let z = (u32::from(z) << 16).wrapping_add(painter.bias([z, z], 0));
-    let (test, mut nothing) = (painter.test(), [(); usize::MAX]);
+    let (test, mut nothing, sample) = (painter.test(), [(); usize::MAX], painter.target.selected());
     for y in rect.y {
         let row = usize::from(painter.screen.0).wrapping_mul((y - painter.target.rows.start) as usize);
         let color = painter.target.framebuffer.span(y as u32, column, length);
         let position = (rect.x.start, y);
         if test == DepthState::OFF {
             let depth = nothing.get_mut(..color.len()).unwrap_or_default();
-            painter.shader.span(Span { color, depth, z, position, primitive }, DepthOff);
+            painter.shader.span_at(sample, Span { color, depth, z, position, primitive }, DepthOff);
             continue;
         }
         let Some(depth) = painter.target.depth.get_mut(row + column..) else { return };
         let Some(depth) = depth.get_mut(..color.len()) else { return };
         let span = Span { color, depth, z, position, primitive };
         match test {
-            DepthState::LESS => painter.shader.span(span, DepthLess),
-            other => painter.shader.span(span, DepthDyn::new(other)),
+            DepthState::LESS => painter.shader.span_at(sample, span, DepthLess),
+            other => painter.shader.span_at(sample, span, DepthDyn::new(other)),
         }
     }
 }

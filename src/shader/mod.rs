@@ -8,7 +8,7 @@
 //! | [`Matcap`] | the colour of the normal, from a picture |
 //! | [`DepthOnly`] | no colour |
 //! | [`Fogged`] | around any shader: fog |
-//! | [`Blend`], [`AlphaTest`], [`ScreenDoor`] | around any shader: transparency |
+//! | [`Blend`], [`AlphaTest`], [`AlphaToCoverage`], [`ScreenDoor`] | around any shader: transparency |
 //!
 //! [`light`](crate::light) says which light suits which shader.
 //!
@@ -52,6 +52,7 @@
 //! | `Fogged` `Gouraud` | 111 | 74 | 60 |
 
 mod blend;
+mod coverage;
 mod depth_only;
 mod discard;
 mod flat;
@@ -65,6 +66,7 @@ mod textured;
 mod vertex_colors;
 
 pub use blend::{Add, AddAlpha, Alpha, Blend, BlendMode, Multiply, Opacity, Replace};
+pub use coverage::AlphaToCoverage;
 pub use depth_only::DepthOnly;
 pub use discard::{AlphaTest, ScreenDoor};
 pub use flat::Flat;

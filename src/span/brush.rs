@@ -3,6 +3,7 @@
 use super::carried::LeftState;
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
+use super::sample::Sample;
 use crate::color::PixelFormat;
 use crate::raster::ShortPlanes;
 use core::ops::Range;
@@ -14,8 +15,8 @@ pub struct SmallTarget<'a, R> {
     pub(crate) depth: &'a mut [u16],
     /// Colours of samples 1 and up, one sample after the other. Depths of all samples are together.
     pub(crate) samples: &'a mut [R],
-    /// Number of samples.
-    pub(crate) count: u8,
+    /// The first sample, and their number; or the only one that is drawn.
+    pub(crate) sample: Sample,
     /// The first row.
     pub(crate) first: u16,
     /// Columns that all of a triangle has to be in, and rows that may be drawn.
@@ -107,6 +108,21 @@ pub(crate) trait BrushRows<P: PixelFormat, D: DepthTest> {
 
     /// Draws a span that begins `column` pixels to the right of the first pixel.
     fn span(&self, color: &mut [P::Raw], depth: &mut [D::Depth], z: u32, dz_dx: i32, column: i32, test: D);
+
+    /// Draws a span of a sample of each pixel: by [`span`](Self::span), unless the brush tells samples apart.
+    #[inline(always)]
+    fn span_at(
+        &self,
+        sample: Sample,
+        color: &mut [P::Raw],
+        depth: &mut [D::Depth],
+        (z, dz_dx): (u32, i32),
+        column: i32,
+        test: D,
+    ) {
+        let _ = sample;
+        self.span(color, depth, z, dz_dx, column, test);
+    }
 }
 
 /// Returns `length` elements from `start` on, if there are as many. Two steps check this with one comparison each; a

@@ -5,6 +5,7 @@ use super::brush::{Brush, BrushRows, SmallResult, SmallTriangle};
 use super::carried::{load_varyings, save_varyings, words_of};
 use super::depth::DepthTest;
 use super::planar::PlanarBrush;
+use super::sample::Sample;
 use super::shader::{Shader, SpanOf};
 use super::span::{Primitive, Span, TriangleSetup, shift};
 use crate::color::PixelFormat;
@@ -123,6 +124,21 @@ impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for Sh
         let position = (self.place.0 + column, self.place.1);
         let span: SpanOf<'_, P, S, D> = Span { color, depth, z, position, primitive: &self.primitive };
         self.shader.span(span, test);
+    }
+
+    #[inline(always)]
+    fn span_at(
+        &self,
+        sample: Sample,
+        color: &mut [P::Raw],
+        depth: &mut [D::Depth],
+        (z, _): (u32, i32),
+        column: i32,
+        test: D,
+    ) {
+        let position = (self.place.0 + column, self.place.1);
+        let span: SpanOf<'_, P, S, D> = Span { color, depth, z, position, primitive: &self.primitive };
+        self.shader.span_at(sample, span, test);
     }
 }
 

@@ -1,6 +1,7 @@
 //! The seam between triangles and pixels: the depth test, and the trait that colours fragments. A program meets
 //! [`DepthState`] first, in a [`State`](crate::scene::State); [`Shader`] is for shaders of one's own.
 
+mod at_sample;
 mod brush;
 mod carried;
 mod channels;
@@ -15,6 +16,7 @@ mod naive;
 mod packed;
 mod perspective;
 mod planar;
+mod sample;
 mod sampled;
 mod shader;
 mod small;
@@ -24,6 +26,7 @@ mod texels;
 mod textured;
 mod uv_stepper;
 
+pub(crate) use at_sample::AtSample;
 pub(crate) use brush::subslice;
 pub use brush::{SmallResult, SmallTarget, SmallTriangle};
 pub(crate) use carried::{CARRIED, LeftState, MOST_CARRIED, STATE_UNIT, face_of, goes_on};
@@ -37,6 +40,7 @@ pub(crate) use lit_textured::{is_light_in_range, lit_texture_span};
 pub(crate) use luma::luma_span;
 pub(crate) use packed::packed_span;
 pub use perspective::Corrected;
+pub use sample::Sample;
 pub(crate) use shader::draw_fragments;
 pub use shader::{Shader, SpanOf};
 pub(crate) use small::biased;

@@ -16,6 +16,7 @@
 use super::brush::{Brush, BrushRows};
 use super::carried::{load_varyings, save_varyings, words_of};
 use super::depth::DepthTest;
+use super::sample::Sample;
 use super::shader::Shader;
 use super::span::{Fragment, shift};
 use crate::color::PixelFormat;
@@ -174,7 +175,20 @@ impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for Pl
     }
 
     #[inline(always)]
-    fn span(&self, color: &mut [P::Raw], depth: &mut [D::Depth], mut z: u32, dz_dx: i32, column: i32, test: D) {
+    fn span(&self, color: &mut [P::Raw], depth: &mut [D::Depth], z: u32, dz_dx: i32, column: i32, test: D) {
+        self.span_at(Sample::ONLY, color, depth, (z, dz_dx), column, test);
+    }
+
+    #[inline(always)]
+    fn span_at(
+        &self,
+        sample: Sample,
+        color: &mut [P::Raw],
+        depth: &mut [D::Depth],
+        (mut z, dz_dx): (u32, i32),
+        column: i32,
+        test: D,
+    ) {
         let mut at = self.planes.at;
         at.advance(&self.planes.dx, column);
         at.advance(&self.planes.dy, self.row);
@@ -184,7 +198,8 @@ impl<P: PixelFormat, D: DepthTest, S: Shader<P> + ?Sized> BrushRows<P, D> for Pl
             let depth = (z >> 16) as u16;
             if !D::ENABLED || test.passes(depth, *stored) {
                 let (varyings, setup) = (&self.planes.varyings(&at), &S::Setup::default());
-                if self.shader.paint(&Fragment { flat, varyings, position, depth, side, setup }, color) {
+                let fragment = Fragment { flat, varyings, position, depth, side, setup };
+                if self.shader.paint_at(sample, &fragment, color) {
                     test.write(depth, stored);
                 }
             }

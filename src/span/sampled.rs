@@ -23,6 +23,7 @@
 
 use super::brush::{BrushRows, SmallResult, SmallTarget, subslice};
 use super::depth::DepthTest;
+use super::sample::Sample;
 use crate::color::PixelFormat;
 use crate::raster::{ShortEdge, ShortSlope, first_centre, moves};
 use bytemuck::Zeroable;
@@ -176,7 +177,8 @@ struct Band<R, const N: usize> {
 }
 
 /// The pixels of one sample, and its move to the centre.
-struct Sample<'a, R, Z> {
+struct SamplePixels<'a, R, Z> {
+    sample: Sample,
     color: &'a mut [R],
     depth: &'a mut [Z],
     to_centre: (i32, i32),
@@ -247,18 +249,20 @@ fn draw_bands<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>, const N: usize>(
 fn each_sample<P: PixelFormat, D: DepthTest>(
     target: &mut SmallTarget<'_, P::Raw>,
     triangle: &SampledTriangle,
-    mut draw: impl FnMut(&mut Sample<'_, P::Raw, D::Depth>),
+    mut draw: impl FnMut(&mut SamplePixels<'_, P::Raw, D::Depth>),
 ) {
-    let SmallTarget { color, depth, samples, count, first, screen, .. } = target;
+    let SmallTarget { color, depth, samples, sample, first, screen, .. } = target;
+    let count = sample.count();
     let (length, width) = (color.len(), usize::from(screen.0));
     let at = (triangle.place.0 as usize).wrapping_sub(width.wrapping_mul(usize::from(*first)));
     let mut nothing = [(); usize::MAX];
     let (mut color, mut further) = (&mut **color, &mut **samples);
     let mut depth = D::slots(depth, &mut nothing);
-    for to_centre in moves(usize::from(*count)) {
+    for (number, to_centre) in moves(count).iter().enumerate() {
+        let sample = Sample::new(number, count);
         let Some((own, rest)) = core::mem::take(&mut depth).split_at_mut_checked(length) else { return };
         depth = rest;
-        draw(&mut Sample { color, depth: own, to_centre: *to_centre, at, width });
+        draw(&mut SamplePixels { sample, color, depth: own, to_centre: *to_centre, at, width });
         (color, further) = core::mem::take(&mut further).split_at_mut_checked(length).unwrap_or_default();
     }
 }
@@ -365,7 +369,7 @@ impl<Raw: Copy, const N: usize> Band<Raw, N> {
 /// Draws the rows of one sample.
 #[inline(always)]
 fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>, const N: usize>(
-    sample: &mut Sample<'_, P::Raw, D::Depth>,
+    sample: &mut SamplePixels<'_, P::Raw, D::Depth>,
     triangle: &SampledTriangle,
     edges: &Edges,
     rows: &R,
@@ -408,7 +412,8 @@ fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>, const N: usize>
                         }
                     } else {
                         let centre = start..end.saturating_sub(2);
-                        Uncolored { color, depth, z, dz_dx, from, centre }.draw(rows, number, to_centre, test);
+                        Uncolored { sample: sample.sample, color, depth, z, dz_dx, from, centre }
+                            .draw(rows, number, to_centre, test);
                     }
                 }
             }
@@ -422,6 +427,7 @@ fn draw_sample<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>, const N: usize>
 
 /// A span of a sample whose pixels are shaded by themselves.
 struct Uncolored<'a, R, Z> {
+    sample: Sample,
     color: &'a mut [R],
     depth: &'a mut [Z],
     z: u32,
@@ -441,7 +447,7 @@ impl<Raw: Copy, Z: Copy> Uncolored<'_, Raw, Z> {
         (x, y): (i32, i32),
         test: D,
     ) {
-        let Self { mut color, mut depth, mut z, dz_dx, mut from, centre } = self;
+        let Self { sample, mut color, mut depth, mut z, dz_dx, mut from, centre } = self;
         let past = from.wrapping_add(color.len() as u32);
         let (inner, outer) = (centre.start.max(from), centre.end.min(past));
         // Without a centre, all of it is beside.
@@ -457,7 +463,7 @@ impl<Raw: Copy, Z: Copy> Uncolored<'_, Raw, Z> {
             for _ in 0..number {
                 rows.next_row();
             }
-            rows.span(part, depths, z, dz_dx, from as i32, test);
+            rows.span_at(sample, part, depths, (z, dz_dx), from as i32, test);
             (color, depth, from) = (rest, depth_rest, end);
             z = z.wrapping_add_signed(dz_dx.wrapping_mul(pixels as i32));
         }

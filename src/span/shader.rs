@@ -3,6 +3,7 @@
 use super::brush::{SmallResult, SmallTriangle};
 use super::depth::{DepthDyn, DepthState, DepthTest};
 use super::perspective::{correct_at, longest_log_step, straight_log_step};
+use super::sample::Sample;
 use super::span::{Fragment, Primitive, Span, TriangleSetup};
 use crate::color::PixelFormat;
 use crate::vertex::{MAX_IN_REGISTERS, PackedCorners, Varyings, VertexShader};
@@ -136,12 +137,35 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         }
     }
 
+    /// Colours a sample of a pixel, or discards the fragment there: as [`paint`](Self::paint) does, by default. Only
+    /// shaders that tell samples apart, as [alpha to coverage](crate::shader::AlphaToCoverage) does, have to override
+    /// it, together with [`span_at`](Self::span_at). At [`Sample::ONLY`], it has to do as `paint` does.
+    #[inline(always)]
+    fn paint_at(
+        &self,
+        sample: Sample,
+        fragment: &Fragment<'_, Self::Varyings, Self::Setup>,
+        pixel: &mut P::Raw,
+    ) -> bool {
+        let _ = sample;
+        self.paint(fragment, pixel)
+    }
+
     /// Draws a span, by default fragment by fragment. Override it where a whole span can be drawn faster. It has to
     /// leave the pixels and depths that [`paint`](Self::paint) leaves: [`Smooth`](crate::scene::Smooth) strokes call
-    /// `paint` for each pixel, and never this function.
+    /// `paint_at` for each pixel, and never this function.
     #[inline]
     fn span<D: DepthTest>(&self, span: SpanOf<'_, P, Self, D>, test: D) {
         draw_fragments(self, span, test);
+    }
+
+    /// Draws a span of a sample of each pixel: by [`span`](Self::span), unless the shader tells samples apart. It has
+    /// to leave the pixels and depths that [`paint_at`](Self::paint_at) leaves. With one sample per pixel, some ways
+    /// of drawing call `span`, and others this function.
+    #[inline(always)]
+    fn span_at<D: DepthTest>(&self, sample: Sample, span: SpanOf<'_, P, Self, D>, test: D) {
+        let _ = sample;
+        self.span(span, test);
     }
 
     /// Draws a triangle, if it is small: by [`span`](Self::span), unless the shader knows a shorter way. A shader whose

@@ -22,6 +22,7 @@ use super::carried::{
 };
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
+use super::sample::Sample;
 use super::sampled::{SampledTriangle, draw_sampled_rows};
 use crate::color::PixelFormat;
 use crate::raster::{
@@ -77,15 +78,17 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
     brush: &B,
     test: D,
 ) -> SmallResult {
-    let SmallTarget { color, depth, samples, count, first, columns, rows, screen, clockwise_fronts, bias, .. } = target;
+    let SmallTarget { color, depth, samples, sample, first, columns, rows, screen, clockwise_fronts, bias, .. } =
+        target;
+    let count = sample.count();
     let [a, b, c] = v.map(|words| PackedVertex(*words).x());
-    let all = sampled(a.min(b).min(c), a.max(b).max(c), usize::from(*count));
+    let all = sampled(a.min(b).min(c), a.max(b).max(c), count);
     if all.start < columns.start || all.end > columns.end {
         return SmallResult::Large;
     }
     let length = color.len();
     let mut result = SmallResult::Empty;
-    for (sample, (x, y)) in moves(usize::from(*count)).iter().enumerate() {
+    for (sample, (x, y)) in moves(count).iter().enumerate() {
         let color = match sample.checked_sub(1) {
             None => &mut **color,
             Some(further) => subslice(samples, further.wrapping_mul(length), length).unwrap_or_default(),
@@ -97,7 +100,7 @@ fn draw_samples<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
             color,
             depth,
             samples: &mut [],
-            count: 1,
+            sample: Sample::new(sample, count),
             first: *first,
             columns: columns.clone(),
             rows: rows.clone(),
@@ -182,7 +185,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
             // Nearly all of these are seen edge on, and have no pixel.
             let rows = row..end.min(target.rows.end);
             let covers = if SAMPLED {
-                covers_samples([bx, by, cx, cy], (ax - (column << 8), ay), &rows, usize::from(target.count))
+                covers_samples([bx, by, cx, cy], (ax - (column << 8), ay), &rows, target.sample.count())
             } else {
                 IS_TALL || covers_pixels([bx, by, cx, cy], ax - (column << 8), 256 * row + 128 - ay, rows.len())
             };
@@ -276,7 +279,7 @@ fn draw_small<P: PixelFormat, D: DepthTest, B: Brush<P, D>, const IS_TALL: bool,
             }
         }
         let columns = left.column()..right.column();
-        if draw_span(&rows, (colors, depths), at, columns, (depth, dz_dx), test).is_none() {
+        if draw_span(&rows, target.sample, (colors, depths), at, columns, (depth, dz_dx), test).is_none() {
             return SmallResult::Drawn;
         }
         left.step();
@@ -314,7 +317,7 @@ fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
             *if is_right { &mut right } else { &mut left } = edge;
         }
         let columns = left.column()..right.column();
-        if draw_span(&rows, (colors, depths), at, columns, (depth, dz_dx), test).is_none() {
+        if draw_span(&rows, target.sample, (colors, depths), at, columns, (depth, dz_dx), test).is_none() {
             break;
         }
         left.step();
@@ -336,6 +339,7 @@ fn go_on<P: PixelFormat, D: DepthTest, B: Brush<P, D>>(
 #[inline(always)]
 fn draw_span<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
     rows: &R,
+    sample: Sample,
     (colors, depths): (&mut [P::Raw], &mut [D::Depth]),
     at: usize,
     columns: Range<u32>,
@@ -348,7 +352,11 @@ fn draw_span<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(
         let depths = subslice(depths, start, length)?;
         let colors = subslice(colors, start, length)?;
         let z = depth.wrapping_add_signed(dz_dx.wrapping_mul(from as i32));
-        rows.span(colors, depths, z, dz_dx, from as i32, test);
+        if D::SAMPLED {
+            rows.span_at(sample, colors, depths, (z, dz_dx), from as i32, test);
+        } else {
+            rows.span(colors, depths, z, dz_dx, from as i32, test);
+        }
     }
     Some(())
 }

@@ -40,6 +40,12 @@ pub trait Framebuffer {
         let _ = sample;
     }
 
+    /// Returns the number of the sample that is [chosen](Self::select_sample).
+    #[inline]
+    fn selected_sample(&mut self) -> usize {
+        0
+    }
+
     /// Returns all pixels of sample 0, and those of the other samples, one sample after the other, if each sample's
     /// rows of the current strip lie in memory one after the other, and nothing else with them. Small triangles are
     /// drawn faster then.
@@ -130,6 +136,11 @@ impl<P: PixelFormat, D: DepthChoice, R: RecordsChoice> Framebuffer for Strip<'_,
         if D::SAMPLES > 1 {
             self.further.select(sample);
         }
+    }
+
+    #[inline]
+    fn selected_sample(&mut self) -> usize {
+        if D::SAMPLES > 1 { self.further.samples().1 } else { 0 }
     }
 
     #[inline]
