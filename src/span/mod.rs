@@ -18,6 +18,8 @@ mod perspective;
 mod planar;
 mod sample;
 mod sampled;
+mod sampled_colors;
+mod sampled_edges;
 mod shader;
 mod small;
 mod solid;

@@ -24,14 +24,13 @@
 use super::brush::{BrushRows, SmallResult, SmallTarget, subslice};
 use super::depth::DepthTest;
 use super::sample::Sample;
+use super::sampled_colors::{Band, ROWS, shade};
+use super::sampled_edges::{Edges, SampledTriangle};
 use crate::color::PixelFormat;
-use crate::raster::{ShortEdge, ShortSlope, first_centre, moves};
+use crate::raster::moves;
 use bytemuck::Zeroable;
 use core::hint::black_box;
 use core::ops::Range;
-
-/// Most rows in which a triangle has samples: of 25 px, and one more at either end.
-const ROWS: usize = 27;
 
 /// Most pixels of a band that are shaded before they are drawn. They are as wide as the triangle, up to 65 px.
 const COLORS: usize = 192;
@@ -40,141 +39,6 @@ const FEW_COLORS: usize = 48;
 
 /// Least number of pixels for which a call is worth its cost.
 const LONG: usize = 6;
-
-/// A small triangle that is set up.
-pub(super) struct SampledTriangle {
-    /// x and y of the corners on the left and on the right, relative to the highest one, 24.8.
-    pub(super) sides: [i32; 4],
-    /// The highest corner, 24.8.
-    pub(super) a: (i32, i32),
-    /// The first column and row that any sample may be in, and the column and row after the last ones.
-    pub(super) place: (i32, i32),
-    pub(super) past: (i32, i32),
-    /// Depth at the highest corner, and its changes to the right and down.
-    pub(super) depth: u32,
-    pub(super) dz: (i32, i32),
-}
-
-/// The edges of a triangle, for all samples.
-struct Edges {
-    /// Directions from the highest corner to those on the left and on the right, and between these.
-    left: ShortSlope,
-    right: ShortSlope,
-    second: ShortSlope,
-    /// The corner at the bend, relative to the highest one, 24.8, and whether it is on the right.
-    bend: (i32, i32),
-    bends_right: bool,
-    /// The height of the triangle.
-    height: i32,
-    /// The highest corner, with x relative to the first column.
-    a: (i32, i32),
-}
-
-/// The edges of a triangle that is moved for a sample, in some rows.
-struct Moved {
-    left: ShortEdge,
-    right: ShortEdge,
-    /// The first row.
-    row: i32,
-    /// Numbers of rows before the bend, which may be negative, and from there on.
-    count: i32,
-    rest: i32,
-    /// The edge from the bend on begins at this place, and this far above the first row at the bend.
-    second: (i32, i32),
-}
-
-impl Edges {
-    fn new(triangle: &SampledTriangle) -> Self {
-        let [bx, by, cx, cy] = triangle.sides;
-        let bends_right = cy < by;
-        let (bend, (dx, dy)) =
-            if bends_right { ((cx, cy), (bx - cx, by - cy)) } else { ((bx, by), (cx - bx, cy - by)) };
-        Self {
-            left: ShortSlope::new(bx, by),
-            right: ShortSlope::new(cx, cy),
-            second: ShortSlope::new(dx, dy),
-            bend,
-            bends_right,
-            height: by.max(cy),
-            a: (triangle.a.0 - (triangle.place.0 << 8), triangle.a.1),
-        }
-    }
-
-    /// Returns the edges in some rows, moved by so much; `None` if the triangle is in none of them.
-    ///
-    /// # Format
-    /// A move is below 128: relative to the first column, x is in 0..62 · 2⁸.
-    #[inline(always)]
-    fn moved(&self, by: (i32, i32), rows: &Range<i32>) -> Option<Moved> {
-        let (x, y) = (self.a.0 + by.0, self.a.1 + by.1);
-        let row = first_centre(y).max(rows.start);
-        let end = first_centre(y + self.height).min(rows.end);
-        if row >= end {
-            return None;
-        }
-        let p = 256 * row + 128 - y;
-        let count = first_centre(y + self.bend.1).min(end) - row;
-        let second = (x + self.bend.0, p + 256 * count.max(0) - self.bend.1);
-        let (left, right) = (self.left.edge(x, p), self.right.edge(x, p));
-        Some(Moved { left, right, row, count, rest: end - row - count, second })
-    }
-}
-
-impl Moved {
-    /// Goes on to the rows from the bend on. Returns `None` if there are none.
-    #[inline(always)]
-    fn bend(&mut self, edges: &Edges) -> Option<()> {
-        if self.rest <= 0 {
-            return None;
-        }
-        (self.count, self.rest) = (self.count + self.rest, 0);
-        let (x, p) = self.second;
-        let second = edges.second.edge(x, p);
-        if edges.bends_right {
-            self.right = second;
-        } else {
-            self.left = second;
-        }
-        Some(())
-    }
-
-    /// Goes one row down.
-    #[inline(always)]
-    const fn step(&mut self) {
-        self.left.step();
-        self.right.step();
-        self.count -= 1;
-    }
-}
-
-impl SampledTriangle {
-    /// Returns the depth of a sample at the first column and at a row.
-    ///
-    /// # Format
-    /// As that of the moved triangle, bit for bit: from the vertex to the centre of its pixel, and from there on.
-    #[inline(always)]
-    fn depth_at(&self, (x, y): (i32, i32), row: i32) -> u32 {
-        let ((dx, dy), (ax, ay)) = (self.dz, (self.a.0 + x, self.a.1 + y));
-        let to = (128 - (ax & 0xFF), 128 - (ay & 0xFF));
-        let offset = ((dx >> 6) * to.0 + (dy >> 6) * to.1) >> 2;
-        self.depth
-            .wrapping_add(offset as u32)
-            .wrapping_add_signed(dx.wrapping_mul(self.place.0 - (ax >> 8)))
-            .wrapping_add_signed(dy.wrapping_mul(row - (ay >> 8)))
-    }
-}
-
-/// Rows of a triangle, and the colours of their pixels.
-struct Band<R, const N: usize> {
-    rows: Range<i32>,
-    /// Columns of each row that have a colour, one column more than their number. At first, these are the ones in which
-    /// the centre is covered, and one more at either end, with the colour next to it.
-    colored: [[u8; 2]; ROWS],
-    /// Number of columns, one more at either end.
-    width: usize,
-    /// Colours, from the column before the first one of the first row on.
-    colors: [R; N],
-}
 
 /// The pixels of one sample, and its move to the centre.
 struct SamplePixels<'a, R, Z> {
@@ -264,105 +128,6 @@ fn each_sample<P: PixelFormat, D: DepthTest>(
         depth = rest;
         draw(&mut SamplePixels { sample, color, depth: own, to_centre: *to_centre, at, width });
         (color, further) = core::mem::take(&mut further).split_at_mut_checked(length).unwrap_or_default();
-    }
-}
-
-/// Finds the columns of a band in which centres are covered, and colours them.
-#[inline(never)]
-fn shade<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>, const N: usize>(
-    edges: &Edges,
-    rows: &R,
-    band: &mut Band<P::Raw, N>,
-) {
-    let Band { rows: range, width, colored, colors } = band;
-    let Some(mut moved) = edges.moved((0, 0), range) else { return };
-    let mut rows = rows.beside((0, 0));
-    let first = (moved.row - range.start) as usize;
-    for _ in 0..first {
-        rows.next_row();
-    }
-    let mut at = first.wrapping_mul(*width);
-    for colored in colored.iter_mut().skip(first) {
-        if moved.count <= 0 && moved.bend(edges).is_none() {
-            return;
-        }
-        let (from, past) = (moved.left.column(), moved.right.column());
-        if from < past {
-            *colored = [from as u8, past as u8 + 2];
-            if R::SHADES {
-                let part = subslice(colors, at.wrapping_add(from as usize), (past - from) as usize + 2);
-                color_with_ends(&rows, part.unwrap_or_default(), from);
-            }
-        }
-        moved.step();
-        rows.next_row();
-        at = at.wrapping_add(*width);
-    }
-}
-
-/// Colours pixels in a row from a column on. There is one more at either end, which gets the colour next to it.
-#[inline(always)]
-fn color_with_ends<P: PixelFormat, D: DepthTest, R: BrushRows<P, D>>(rows: &R, colors: &mut [P::Raw], from: u32) {
-    let inner = colors.len().wrapping_sub(2);
-    rows.shade(subslice(colors, 1, inner).unwrap_or_default(), from as i32);
-    if let [before, first, ..] = colors {
-        *before = *first;
-    }
-    if let [.., last, after] = colors {
-        *after = *last;
-    }
-}
-
-impl<Raw: Copy, const N: usize> Band<Raw, N> {
-    /// Colours the pixels of a sample's span that have no colour yet, at the sample.
-    #[inline(never)]
-    fn color_beside<P: PixelFormat<Raw = Raw>, D: DepthTest, R: BrushRows<P, D>>(
-        &mut self,
-        rows: &R,
-        number: usize,
-        (x, y): (i32, i32),
-        columns: Range<u32>,
-    ) {
-        let mut rows = rows.beside((-x, -y));
-        for _ in 0..number {
-            rows.next_row();
-        }
-        let (Some(colored), Some(colors)) =
-            (self.colored.get_mut(number), subslice(&mut self.colors, number.wrapping_mul(self.width), self.width))
-        else {
-            return;
-        };
-        // From here on, columns are one more than their number.
-        let Range { start: from, end: past } = columns.start + 1..columns.end + 1;
-        let [start, end] = *colored;
-        let (start, end) = (u32::from(start), u32::from(end));
-        if start >= end {
-            let part = subslice(colors, from as usize - 1, (past - from) as usize + 2).unwrap_or_default();
-            *colored = [from as u8 - 1, past as u8 + 1];
-            return color_with_ends(&rows, part, from - 1);
-        }
-        let mut part = |columns: Range<u32>, color: Option<Raw>| {
-            let length = columns.end.wrapping_sub(columns.start) as usize;
-            let part = subslice(colors, columns.start as usize, length).unwrap_or_default();
-            match color {
-                Some(color) => part.iter_mut().for_each(|pixel| *pixel = color),
-                None => rows.shade(part, columns.start as i32 - 1),
-            }
-            [part.first().copied(), part.last().copied()]
-        };
-        // Pixels between these and those that have a colour get the one next to them.
-        if from < start {
-            let end = past.min(start);
-            let [_, last] = part(from..end, None);
-            part(end..start, last);
-            colored[0] = from as u8;
-        }
-        if past > end {
-            let start = from.max(end);
-            let [first, _] = part(start..past, None);
-            part(end..start, first);
-            colored[1] = past as u8;
-        }
     }
 }
 

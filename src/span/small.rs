@@ -23,7 +23,8 @@ use super::carried::{
 use super::depth::DepthTest;
 use super::depth_bias::{BiasSteps, DepthBias};
 use super::sample::Sample;
-use super::sampled::{SampledTriangle, draw_sampled_rows};
+use super::sampled::draw_sampled_rows;
+use super::sampled_edges::SampledTriangle;
 use crate::color::PixelFormat;
 use crate::raster::{
     HEIGHT, SUM, ShortEdge, ShortPlanes, TALL, WIDTH, edge_at, first_centre, gradients, moves, sampled, tall_edges,
