@@ -14,8 +14,8 @@ use crate::vertex::{VertexShader, Wrapper};
 /// [`Blend`](crate::shader::Blend) mixes them.
 ///
 /// With one sample per pixel, and so under [`Supersampled`](crate::frame::Supersampled), it draws the fragments whose
-/// alpha is at least 128, as [`AlphaTest`](crate::shader::AlphaTest) does. It has to be the outermost of nested shaders,
-/// `AlphaToCoverage<Fogged<..>>`: inside of others, it does the same as with one sample.
+/// alpha is at least 128, as [`AlphaTest`](crate::shader::AlphaTest) does. It has to be the outermost of nested
+/// shaders, `AlphaToCoverage<Fogged<..>>`: inside of others, it does the same as with one sample.
 ///
 /// ```
 /// use zstrip::prelude::*;
