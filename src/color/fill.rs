@@ -53,11 +53,13 @@ pub fn clear<R: Pod>(pixels: &mut [R], value: R) {
     }
 }
 
-/// Most pixels that [`clear`] clears by fives on small cores: 65,535 words.
+/// Most pixels of two bytes that [`clear`] clears by fives on small cores: 65,535 words.
 const LONGEST: usize = 131_070;
 
-/// Does as [`clear`], as fast in buffers of any length: those of several samples per pixel may be long. By itself, as
-/// the loop would take code in programs whose buffers are short.
+/// Sets all pixels of a whole buffer to `value`, as fast per pixel in a long buffer as in a short one. Buffers of
+/// several samples per pixel may be long.
+///
+/// This is a function of its own, because its loop would take code in programs whose buffers are short.
 #[inline(never)]
 pub fn clear_long<R: Pod>(pixels: &mut [R], value: R) {
     for part in pixels.chunks_mut(LONGEST) {

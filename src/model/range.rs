@@ -1,4 +1,4 @@
-//! Checks of one number: whether it is in its range, and what is said where it is not.
+//! Checks single numbers: each is in its range, or the error says which range that is.
 
 use super::container::{NONE, SectionKind};
 use super::error::ModelError;

@@ -110,12 +110,12 @@ impl CullPass<'_, '_> {
     }
 }
 
-/// Culls one triangle by its winding, or puts it into the records. `next` is the number of the triangle after it.
+/// Culls one triangle by its winding, or puts it into the records. `next` returns the number of the triangle after it.
 ///
 /// # Format
 /// Positions are 24.8. A vertex off the screen has x = -2²³, and its difference from any other x does not fit 16 bits.
-/// Where products have 32 bits, differences in y have to fit 16 bits, too. Where one instruction makes products of 64
-/// bits, any y will do: 2 · 2¹⁵ · 2²⁵ < 2⁶³, and the upper word of the area has its sign.
+/// On small cores, products have 32 bits, so differences in y have to fit 16 bits, too. Other cores make a product of
+/// 64 bits by one instruction, and any y will do: 2 · 2¹⁵ · 2²⁵ < 2⁶³. The upper word of the area has the area's sign.
 #[inline(always)]
 fn cull_one(
     culling: Culling,
@@ -151,7 +151,7 @@ fn cull_one(
     None
 }
 
-/// Returns whether a word is 0. Out of line: both halves of an area would otherwise be compared for each triangle.
+/// Returns whether a word is 0. Out of line, because the compiler would otherwise compare both halves of each area.
 #[inline(never)]
 const fn is_zero(word: i32) -> bool {
     word == 0

@@ -156,7 +156,7 @@ impl<F: Framebuffer, S: Shader<F::Format>> Program<F> for MeshProgram<'_, F, S> 
     }
 
     fn face(&self, triangle: &ScreenTriangle) -> u32 {
-        // As a record, so that faces are compiled once.
+        // The triangle is put into a record for `shade_faces`, so that the shader's `face` is compiled once.
         let ScreenTriangle { number, corners: [i, j, k], area, .. } = triangle;
         let pending = PendingFace::new(usize::from(*number) + 1, (*area >> 32) as i32);
         let mut record = [u32::from(*i) | u32::from(*j) << 16, bytemuck::cast([*k, 0]), pending.0];

@@ -205,9 +205,10 @@ impl<F: Framebuffer> Scene<'_, F> {
     }
 }
 
-/// Draws small triangles until one is large, which is left in `record`: of the strip, or those that wait if the numbers
-/// of triangles that are empty and outside are counted. Returns whether there is a large one, and whether it was tried
-/// as a small one.
+/// Draws small triangles until one is large, and leaves that one in `record`. Without `left_out`, these are the
+/// recorded triangles of the strip. With `left_out`, these are the triangles that wait to be drawn at once, and it
+/// counts those that are empty and those that are outside. Returns whether there is a large one, and whether it was
+/// tried as a small one.
 ///
 /// Out of line, so that its stack is free again when the large one is drawn.
 #[inline(never)]
@@ -234,7 +235,8 @@ fn small_ones<F: Framebuffer>(
     (found, tried)
 }
 
-/// Draws a triangle that is not drawn as a small one. Out of line, so that small ones do not take its stack.
+/// Draws a triangle that is not small, or that was `refused` as a small one. Out of line, so that its stack is not
+/// below small ones.
 #[inline(never)]
 fn large_one<F: Framebuffer>(
     place: Place<'_, '_, F>,

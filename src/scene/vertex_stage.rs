@@ -87,7 +87,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
     #[inline(never)]
     fn store(&self, index: usize, words: &mut [u32]) {
         let Some(words) = words.get_mut(S::WORDS * index..).and_then(|rest| rest.get_mut(..S::WORDS)) else { return };
-        // On a small core, the compiler decides.
+        // On a small core, the compiler decides whether to inline them.
         let varyings = if SMALL_CORE { self.varyings(index) } else { self.varyings_inlined(index) };
         S::store(&varyings, words);
     }
@@ -130,6 +130,7 @@ impl<S: VertexShader> VertexStage<'_, S> {
         self.varyings_inlined(index)
     }
 
+    /// Returns the varyings of a vertex as [`varyings`](Self::varyings) does, inlined.
     #[inline(always)]
     fn varyings_inlined(&self, index: usize) -> S::Varyings {
         let mut varyings = self.shader.vertex(&VertexRef::new(self.mesh, index));

@@ -8,14 +8,13 @@ use crate::vertex::{VertexShader, Wrapper};
 /// smooth edges inside of triangles, too, with a renderer [with samples](crate::frame::Renderer::with_samples).
 ///
 /// The pixel that is there is not read, and samples that alpha leaves out keep their colour and their depth. So the
-/// order of draws is free, and depth is written as by opaque draws. Samples that are covered depend on alpha and on the
-/// pixel's place on the screen alone, in steps that 2×2 pixels share; see [`Sample::is_covered`]. Things of one alpha
-/// that lie one behind the other cover the same samples, so the nearer one hides the farther one where it is covered;
-/// [`Blend`](crate::shader::Blend) mixes them.
+/// order of draws is free, and depth is written as by opaque draws. Alpha and the pixel's place on the screen decide
+/// which samples are covered; [`Sample::is_covered`] tells how. Two surfaces of the same alpha cover the same samples,
+/// so the nearer one hides the farther one where both are; [`Blend`](crate::shader::Blend) mixes them.
 ///
-/// With one sample per pixel, and so under [`Supersampled`](crate::frame::Supersampled), it draws the fragments whose
-/// alpha is at least 128, as [`AlphaTest`](crate::shader::AlphaTest) does. It has to be the outermost of nested
-/// shaders, `AlphaToCoverage<Fogged<..>>`: inside of others, it does the same as with one sample.
+/// With one sample per pixel, and so under [`Supersampled`](crate::frame::Supersampled), this shader draws the
+/// fragments whose alpha is at least 128, as [`AlphaTest`](crate::shader::AlphaTest) does. It has to be the outermost
+/// of nested shaders, `AlphaToCoverage<Fogged<..>>`: inside of others, it draws as with one sample.
 ///
 /// ```
 /// use zstrip::prelude::*;

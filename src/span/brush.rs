@@ -15,7 +15,7 @@ pub struct SmallTarget<'a, R> {
     pub(crate) depth: &'a mut [u16],
     /// Colours of samples 1 and up, one sample after the other. Depths of all samples are together.
     pub(crate) samples: &'a mut [R],
-    /// The first sample, and their number; or the only one that is drawn.
+    /// The sample that is drawn, or sample 0 if all are drawn. It tells their number, too.
     pub(crate) sample: Sample,
     /// The first row.
     pub(crate) first: u16,

@@ -7,18 +7,18 @@
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Sample(u8);
 
-/// Order of a pixel's samples by alpha, for four samples: the first two lie opposite to each other. Samples of other
-/// numbers are taken as they come, which spreads them as well.
+/// Order in which alpha covers a pixel's samples, if there are four: the first two lie opposite to each other. Two or
+/// eight samples are covered in the order of their numbers, which spreads them as well.
 const RANKS: [u8; 4] = [0, 2, 3, 1];
 
-/// Steps between one sample and the next one, as 2×2 pixels take them in turn.
+/// Offsets of the threshold at each of 2×2 pixels, in quarters of the step from one sample to the next one.
 const STEPS: [[u8; 2]; 2] = [[0, 2], [3, 1]];
 
 impl Sample {
     /// The only sample of a pixel.
     pub const ONLY: Self = Self::new(0, 1);
 
-    /// Names a sample: its number, and the number of samples, which is 1, 2, 4 or 8.
+    /// Makes a sample of its number and the number of samples, which is 1, 2, 4 or 8.
     #[inline(always)]
     pub(crate) const fn new(number: usize, count: usize) -> Self {
         Self((number << 4 | count) as u8)
@@ -42,8 +42,8 @@ impl Sample {
     /// the screen.
     ///
     /// No sample is covered at alpha 0, all are at 255, and a sample that is covered stays so as alpha grows. Steps
-    /// between one sample and the next one are spread over 2×2 pixels: of their samples together, alpha / 255 is
-    /// covered, to nearest. A pixel with one sample is covered from alpha 128 on.
+    /// between one sample and the next one are spread over 2×2 pixels: of all their samples, the part alpha / 255 is
+    /// covered, rounded to the nearest number. A pixel with one sample is covered from alpha 128 on.
     ///
     /// ```
     /// use zstrip::span::Sample;
@@ -57,7 +57,7 @@ impl Sample {
             return alpha >= 128;
         }
         let rank = if count == 4 { RANKS[number & 3] as u32 } else { number as u32 };
-        // Thresholds are the odd multiples of 255 / 8 count.
+        // Thresholds are the odd multiples of 255 / (8 · count).
         let step = STEPS[(y & 1) as usize][(x & 1) as usize] as u32;
         alpha as u32 * 8 * count > 255 * (8 * rank + 2 * step + 1)
     }

@@ -12,10 +12,11 @@
 //!                 if z of the sample passes:
 //!                     store it and the pixel's colour
 //! ```
+//!
 //! So neither colours nor texels come from outside of the triangle, and a pixel inside of it has equal samples. A pixel
 //! whose centre is not covered gets the colour next to it or, farther from the centres, one of a sample. Moved edges
 //! are parallel, so one division serves all of them. A band is as high as there is room for colours; most triangles
-//! have one band.
+//! have one band. `sampled_colors.rs` has the colours of a band, and `sampled_edges.rs` the edges at samples.
 //!
 //! Brushes of one colour need no colours in between. Brushes whose pixels depend on those that are there, as under
 //! blending, and those with transparent pixels shade each sample: at the centre or, where that is not covered, at the

@@ -11,6 +11,7 @@ use core::ops::Range;
 
 /// Most rows in which a triangle has samples: of 25 px, and one more at either end.
 pub(super) const ROWS: usize = 27;
+
 /// Rows of a triangle, and the colours of their pixels.
 pub(super) struct Band<R, const N: usize> {
     pub(super) rows: Range<i32>,

@@ -1,6 +1,6 @@
 //! Small triangles in pixels of several samples, as they are set up, and their edges at samples.
 //!
-//! Moved edges are parallel to the edges, so directions are divided once for all samples.
+//! The edges at a sample are parallel to those at the centre, so directions are divided once for all samples.
 
 use crate::raster::{ShortEdge, ShortSlope, first_centre};
 use core::ops::Range;
@@ -64,7 +64,7 @@ impl Edges {
         }
     }
 
-    /// Returns the edges in some rows, moved by so much; `None` if the triangle is in none of them.
+    /// Returns the edges in some rows, moved by `by` in 24.8; `None` if the triangle is in none of these rows.
     ///
     /// # Format
     /// A move is below 128: relative to the first column, x is in 0..62 · 2⁸.

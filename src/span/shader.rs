@@ -137,9 +137,10 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         }
     }
 
-    /// Colours a sample of a pixel, or discards the fragment there: as [`paint`](Self::paint) does, by default. Only
-    /// shaders that tell samples apart, as [alpha to coverage](crate::shader::AlphaToCoverage) does, have to override
-    /// it, together with [`span_at`](Self::span_at). At [`Sample::ONLY`], it has to do as `paint` does.
+    /// Colours a sample of a pixel, or discards the fragment there. By default, this function does as
+    /// [`paint`](Self::paint). Only shaders that tell samples apart, as
+    /// [alpha to coverage](crate::shader::AlphaToCoverage) does, have to override it, together with
+    /// [`span_at`](Self::span_at). At [`Sample::ONLY`], both have to do as `paint` and [`span`](Self::span).
     #[inline(always)]
     fn paint_at(
         &self,
@@ -159,9 +160,9 @@ pub trait Shader<P: PixelFormat>: VertexShader {
         draw_fragments(self, span, test);
     }
 
-    /// Draws a span of a sample of each pixel: by [`span`](Self::span), unless the shader tells samples apart. It has
-    /// to leave the pixels and depths that [`paint_at`](Self::paint_at) leaves. With one sample per pixel, some ways
-    /// of drawing call `span`, and others this function.
+    /// Draws a span of one sample of each pixel: by [`span`](Self::span), unless the shader tells samples apart. It has
+    /// to leave the pixels and depths that [`paint_at`](Self::paint_at) leaves. With one sample per pixel, triangles
+    /// are drawn by `span`, and most other things by this function.
     #[inline(always)]
     fn span_at<D: DepthTest>(&self, sample: Sample, span: SpanOf<'_, P, Self, D>, test: D) {
         let _ = sample;

@@ -167,7 +167,7 @@ fn coordinate(planes: &ShortPlanes, a: i32, b: i32, c: i32) -> Option<Plane> {
     let (dx, dy) = gradients_inlined(n, m, planes.reciprocal, planes.shift as i32 - 15)?;
     let start = ((a as u32) << 8).wrapping_add(HALF);
     let start = start.wrapping_add_signed(planes.offset(dx, dy));
-    // The compiler would otherwise put off part of the sum to each span.
+    // Without the black box, the compiler would leave part of the sum to each span.
     Some([if SMALL_CORE { start } else { black_box(start) }, dx as u32, dy as u32])
 }
 
