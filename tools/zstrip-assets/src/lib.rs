@@ -40,7 +40,7 @@
 //! | nodes | transforms | translations, rotations, scales | `write/nodes.rs` |
 //! | textures | images | texels of few bits, in levels | `write/textures.rs` |
 //! | cut | triangles that cross a side of a texture that does not repeat | triangles on one side of it | `write/cut.rs` |
-//! | wrap | their coordinates | coordinates within the texture | `write/wraps.rs` |
+//! | wrap | coordinates of triangles that cross no side | coordinates within the texture | `write/wraps.rs` |
 //! | parts | meshes | 16-bit positions, packed attributes, cones of clusters | `write/parts.rs`, `write/uvs.rs`, `write/clusters.rs` |
 //! | skins | joints | those that move something, with boxes | `write/skins.rs` |
 //! | clips | channels | few keys of 16 bits | `write/clips.rs` |

@@ -1,4 +1,4 @@
-//! Triangles that cross a side of a texture that does not repeat become several, each on one side of it.
+//! Triangles that cross a side of a texture that does not repeat become several triangles that cross none.
 //!
 //! Textures of containers repeat ([`wraps`](super::wraps)). A triangle of the import comes in; triangles that cover the
 //! same points come out, and each of them can be given coordinates within the texture. A clamped texture goes on with
@@ -29,14 +29,16 @@ use super::wraps::crossed;
 use crate::geometry::{dot, sub, unit};
 use crate::model::{Cluster, Import, Mesh, Vertices, Wrap};
 
-/// The most sides that a triangle is cut at, along each axis.
+/// The most sides that a triangle is cut at, along each axis. A mesh with a triangle that crosses more stays as it is.
 const MOST_SIDES: usize = 32;
 
-/// A mesh may become this many times as large, and this many triangles larger. Beyond that it is left as it is.
+/// A mesh may become this many times as large, and get [`MOST_MORE`] triangles beside that. A mesh that would get more
+/// stays as it is.
 const MOST_TIMES: usize = 4;
+/// Triangles that a mesh may get beside [`MOST_TIMES`] as many.
 const MOST_MORE: usize = 10_000;
 
-/// Parts of a side, or of a triangle's range of coordinates, that count as nothing.
+/// The part of a side, or of a triangle's range of coordinates, that counts as nothing.
 const NEAR: f64 = 1e-6;
 
 /// Cuts the triangles of an import whose materials have textures of the sizes given.
@@ -84,16 +86,17 @@ impl Axes {
     }
 }
 
-/// Returns the least and the largest coordinate.
+/// Returns the least and the largest coordinate of three vertices along an axis.
 fn range(axis: usize, uvs: [[f64; 2]; 3]) -> [f64; 2] {
     let all = uvs.map(|uv| uv[axis]);
     [all.into_iter().fold(f64::INFINITY, f64::min), all.into_iter().fold(f64::NEG_INFINITY, f64::max)]
 }
 
-/// A position, to compare: 0 and -0 are one.
+/// The bits of a position, by which positions are compared: 0 and -0 are equal.
 type Place = [u32; 3];
 
-/// Returns a mesh with its triangles cut, how many were, and into how many; `None` if it stays as it is.
+/// Returns a mesh with its triangles cut, the number of those that were cut, and of those that they became. Returns
+/// `None` if the mesh stays as it is.
 fn cut_mesh(mesh: &Mesh, axes: &Axes) -> Option<(Mesh, usize, usize)> {
     let mut work = Work { vertices: mesh.vertices.clone(), known: HashMap::new(), sides: HashMap::new() };
     let mut cuts = Vec::with_capacity(mesh.triangles.len());
@@ -101,7 +104,7 @@ fn cut_mesh(mesh: &Mesh, axes: &Axes) -> Option<(Mesh, usize, usize)> {
     for triangle in &mesh.triangles {
         let uvs = triangle.map(|v| work.uv(v));
         let of = [axes.cuts(0, uvs)?, axes.cuts(1, uvs)?];
-        // Before memory is taken: as many as if each line crossed all others.
+        // Counted before memory is taken, as if each line crossed all others.
         parts += (of[0].len() + 1) * (of[1].len() + 1);
         if parts > most {
             return None;
@@ -193,7 +196,7 @@ impl Work {
             let [a, b] = self.ordered(triangle[k], triangle[(k + 1) % 3]);
             let [from, to] = [a, b].map(|v| self.uv(v)[axis]);
             let part = (at - from) / (to - from);
-            // None where the side is along the line, which is not a number.
+            // Where the side is along the line, the quotient is no number, and nothing is noted.
             if part > NEAR && part < 1.0 - NEAR {
                 self.sides.entry([self.place(a), self.place(b)]).or_default().push(part);
             }
@@ -252,7 +255,7 @@ impl Work {
             }
             if (d > near && e < -near) || (d < -near && e > near) {
                 let other = polygon[next];
-                // From the lower number, so that the polygon on the other side has the same vertex.
+                // From the vertex of the lower number on: the polygon on the other side gets the same new vertex.
                 let vertex = if corner.vertex < other.vertex {
                     self.between(corner.vertex, other.vertex, d / (d - e))
                 } else {
@@ -288,7 +291,7 @@ impl Work {
                 let apart = sub(position(a), position(b));
                 dot(apart, apart)
             };
-            // None where all that is left is a line.
+            // There is no ear where all that is left is a line.
             let Some(ear) = ears.min_by(|a, b| length(a).total_cmp(&length(b))) else { return };
             to.push(around(ear).map(|corner| corner.vertex));
             polygon.remove(ear);
@@ -322,7 +325,7 @@ fn mixed_floats<const N: usize>(a: [f32; N], b: [f32; N], part: f64) -> [f32; N]
 
 impl Vertices {
     /// Adds the vertex at a part of the way from one vertex to another. All attributes are those of the line between
-    /// them; normals are of length 1 again, and of joints the four with the largest weights stay.
+    /// them. Normals get the length 1 again, and of joints, the four with the largest weights stay.
     fn push_between(&mut self, a: usize, b: usize, part: f64) {
         fn push<const N: usize>(list: &mut Vec<[f32; N]>, a: usize, b: usize, part: f64) {
             if !list.is_empty() {
@@ -350,6 +353,8 @@ impl Vertices {
     }
 }
 
+/// Returns the four joints with the largest weights at a part of the way from one vertex to another. The sum of their
+/// weights is 1.
 fn mixed_joints(joints: &[[u16; 4]], weights: &[[f32; 4]], a: usize, b: usize, part: f64) -> ([u16; 4], [f32; 4]) {
     let mut sums: Vec<(u16, f64)> = Vec::with_capacity(8);
     for (v, share) in [(a, 1.0 - part), (b, part)] {

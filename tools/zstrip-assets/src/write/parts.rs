@@ -403,8 +403,8 @@ fn target(morph: &crate::model::Morph, cube: &Cube, to: &mut Sections) {
     to.add(SectionKind::Targets, &[Target { first_delta, first_vertex: first as u16, vertices }]);
 }
 
-/// Returns how many texels of a texture a unit of length takes; 0 if it is not known. It goes by the areas of all
-/// triangles that show more than a line of texels: those beyond a clamped side do not count.
+/// Returns how many texels of a texture a unit of length takes; 0 if that is not known. The number is the mean of all
+/// triangles that show more than a line of texels: triangles beyond a clamped side do not count.
 pub(super) fn texels_per_unit(piece: &Piece, at: impl Fn(usize) -> Vector, size: [u32; 2]) -> f64 {
     if piece.vertices.uvs.is_empty() {
         return 0.0;

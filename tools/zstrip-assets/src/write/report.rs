@@ -107,13 +107,14 @@ pub enum WriteNote {
         material: usize,
         /// Its name.
         name: String,
-        /// The number of triangles that were cut, with those beside them, and in levels of detail.
+        /// The number of triangles that were cut: those that cross a side, and neighbours that got points of the cut.
+        /// Triangles of levels of detail count, too.
         triangles: usize,
         /// The number of triangles that they became.
         into: usize,
     },
-    /// A texture is to be clamped or mirrored beyond its sides, coordinates go there, and it repeats: cutting its
-    /// triangles at the sides would take too many.
+    /// A texture that is to be clamped or mirrored beyond its sides repeats there: to cut its triangles at the sides
+    /// would take too many triangles.
     Wrapped {
         /// The number of the material in the import.
         material: usize,

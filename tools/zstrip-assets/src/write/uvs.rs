@@ -1,4 +1,4 @@
-//! Texture coordinates of a part come in; numbers of 16 or 8 bits go out, with their step and offset.
+//! Packs texture coordinates: those of a part come in; numbers of 16 or 8 bits go out, with their step and offset.
 
 use super::options::UvSize;
 use super::quantize::fixed;

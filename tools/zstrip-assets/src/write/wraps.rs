@@ -47,17 +47,18 @@ pub(super) fn unwrap(pieces: &mut [Piece], import: &Import, sizes: &[Option<[u32
     }
 }
 
-/// The most tiles of a mirrored texture that are looked at.
+/// The most tiles of a mirrored texture that are looked at for a triangle.
 const MOST_TILES: f64 = 64.0;
 
-/// Returns the sides of the texture that a triangle is on both sides of, by more than half a texel on each.
+/// Returns the sides of the texture that a triangle crosses: its coordinates, from `low` to `high`, reach beyond the
+/// side by more than half a texel in both directions.
 ///
 /// A texture of one texel looks the same everywhere, so nothing crosses its sides.
 pub(super) fn crossed(wrap: Wrap, low: f64, high: f64, half: f64) -> impl Iterator<Item = f64> {
     // The first side above the least coordinate, and the number of those that may be crossed.
     let (first, count) = match wrap {
         Wrap::Clamp if half < 0.5 => (0.0, 2),
-        // 0 for what is not a number.
+        // Sides that are not numbers are below no coordinate and above none, so none of them is crossed.
         Wrap::Mirror if half < 0.5 => ((low + half).floor(), (high - low + 2.0).ceil().min(MOST_TILES) as u32),
         _ => (0.0, 0),
     };

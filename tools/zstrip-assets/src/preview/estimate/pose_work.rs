@@ -22,9 +22,9 @@ const COSTS: &str = include_str!("../../../../../benches/pose_costs.csv");
 /// | `joint` | a joint of a skin |
 /// | `rigid` | a vertex of one joint |
 /// | `blended` | a vertex of several joints |
-/// | `third` | such a vertex of three or four joints, beside that: the library sums four matrices then |
+/// | `third` | beside `blended`, a vertex of three or four joints: the library sums four matrices then, and not two |
 /// | `morphed` | a vertex of a part with morph targets that has no joints |
-/// | `skin_morphed` | a vertex of a part with morph targets and joints, beside that of its joints |
+/// | `skin_morphed` | beside the costs of its joints, a vertex of a part with morph targets and joints |
 /// | `delta` | a vertex that a target moves |
 pub const NAMES: [&str; COLUMNS] = [
     "place",
