@@ -81,7 +81,8 @@ pub const SMOOTH: &[FormatInfo] = &[
     },
 ];
 
-/// The scene with textures and several samples per pixel, by itself: it takes more stack than others with samples.
+/// The scene with textures and several samples per pixel. It has a list of its own, because it takes more stack than
+/// the others with samples.
 pub const LEAVES: &[FormatInfo] = &[FormatInfo {
     name: "leaves_samples",
     draw: |memory, sink| sampled(memory, sink, &*kept(|| Leaves::new(Size::new(320, 240), Angle16(0)))),

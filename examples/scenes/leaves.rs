@@ -10,11 +10,11 @@ use zstrip::shader::{AlphaToCoverage, Textured};
 use zstrip::texture::{Bilinear, Clamp, Tile, WithAlpha};
 use zstrip::{Cull, Framebuffer, Scene, State};
 
-/// Sides of the leaf's texture.
+/// Number of texels along each side of the leaf's texture.
 const SIDE: usize = 32;
 
-/// How far a texel is inside of the leaf: below 0 outside, 24 from one border of the blade to the other at most. The
-/// blade lies between two arcs, and the stem runs along the middle.
+/// Returns how far a texel is inside of the leaf, in halves of a texel: below 0 outside, 18 at most. The blade lies
+/// between two arcs, and the stem runs along the middle.
 const fn inside(x: usize, y: usize) -> i32 {
     let (x, y) = (2 * x as i32 - 31, 2 * y as i32 - 31);
     // Half of the width at this height: a parabola, with teeth.
@@ -90,7 +90,7 @@ impl Leaves {
             * Affine::translation(Vec3::from_milli(0, -1500, -3400))
             * Affine::rotation_y(turn);
         let leaf = |k: usize| {
-            // Along a spiral, each turned and inclined in its own way.
+            // Leaves stand along a spiral, each of them turned and inclined in its own way.
             let k = k as i32;
             let around = Angle16::from_degrees(137 * k);
             let place = Affine::rotation_y(around) * Affine::translation(Vec3::from_milli(0, 0, 250 + 45 * k));
@@ -109,7 +109,7 @@ impl<F: Framebuffer> Draw<F> for Leaves {
         }
         let Ok(texture) = WithAlpha::new(Tile::new(&GREENS), &ALPHAS) else { return };
         let shader = AlphaToCoverage::new(Textured::new(&texture).wrap(Clamp).filter(Bilinear));
-        // From any side, in any order.
+        // Leaves are seen from both sides, and drawn in any order.
         let state = State { cull: Cull::None, ..State::DEFAULT };
         for mvp in &*self.leaves {
             draw_apart(scene, state, &SQUARE, mvp, &shader);

@@ -1,9 +1,9 @@
-//! Numbers of geometry: `const` code has arithmetic, but neither roots nor sines.
+//! Computes numbers of geometry: `const` code has arithmetic, but neither roots nor sines.
 
 use zstrip::math::{Scalar, Vec3};
 use zstrip::mesh::Positions;
 
-/// Square root, by Newton's method.
+/// Returns the square root, by Newton's method.
 pub const fn root(x: f64) -> f64 {
     let mut r = if x < 1.0 { 1.0 } else { x };
     let mut k = 0;
@@ -14,7 +14,7 @@ pub const fn root(x: f64) -> f64 {
     r
 }
 
-/// Sine and cosine for |x| ≤ 2π, by their series: errors below 1e-13.
+/// Returns sine and cosine for |x| ≤ 2π, by their series: errors are below 1e-13.
 pub const fn sin_cos(x: f64) -> (f64, f64) {
     let (mut sin, mut cos) = (0.0, 0.0);
     let mut term = 1.0;
@@ -40,7 +40,7 @@ pub const fn vector(v: [f64; 3]) -> Vec3 {
     Vec3::from_bits([nearest(v[0] * 65_536.0) as i32, nearest(v[1] * 65_536.0) as i32, nearest(v[2] * 65_536.0) as i32])
 }
 
-/// A point as fractions of a cube: its middle, and half its side.
+/// Returns a point as fractions of a cube. `half` is half of the cube's side.
 pub const fn quantized(v: [f64; 3], middle: [f64; 3], half: f64) -> [i16; 3] {
     [
         nearest((v[0] - middle[0]) / half * 32_768.0) as i16,

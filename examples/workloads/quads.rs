@@ -14,7 +14,7 @@ pub const QUAD_POSITIONS: [[f64; 3]; 4] =
     [[-QUAD_X, QUAD_Y, 2.0], [QUAD_X, QUAD_Y, 2.0], [-QUAD_X, -QUAD_Y, 2.0], [QUAD_X, -QUAD_Y, 2.0]];
 pub const QUAD_INDICES: [u16; 6] = [0, 2, 1, 1, 2, 3];
 pub const QUAD_COLORS: [[u8; 3]; 4] = [[255, 0, 0], [0, 255, 0], [0, 0, 255], [255, 255, 255]];
-/// Orange, when it has one colour.
+/// Orange, for the quad in one colour.
 pub const QUAD_COLOR: [u8; 3] = [255, 165, 0];
 
 const QUAD_POINTS: [[i16; 3]; 4] = {
@@ -33,7 +33,7 @@ pub static QUAD: Mesh<'static> = Mesh::constant(MeshData {
     ..MeshData::new(quantities(&QUAD_POINTS, [0.0, 0.0, 2.0], 2.0))
 });
 
-// A quad of 2 x 3, its top turned away by 60°: top left, top right, bottom left, bottom right.
+// The tilted quad, of 2 x 3, its top turned away by 60°: top left, top right, bottom left, bottom right.
 
 const TILTED_MIDDLE: [f64; 3] = [0.0, 0.0, 2.615];
 pub const TILTED_POSITIONS: [[f64; 3]; 4] = {
@@ -70,7 +70,7 @@ pub static TILTED: Mesh<'static> = Mesh::constant(MeshData {
     ..MeshData::new(quantities(&TILTED_POINTS, TILTED_MIDDLE, 2.0))
 });
 
-/// Sides of the texture.
+/// Number of texels along each side of the texture.
 pub const TEXELS: usize = 64;
 
 /// A chequered gradient with marks in two corners.

@@ -8,13 +8,13 @@ pub const TINY_TRIANGLES: usize = 10_000;
 /// State of the random numbers before the first triangle.
 pub const TINY_SEED: u32 = 12_345;
 
-/// A random number from 0 to 1, from a linear congruential generator.
+/// Returns a random number from 0 to 1 and the next state, by a linear congruential generator.
 const fn random(state: u32) -> (f64, u32) {
     let state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
     ((state >> 8) as f64 / 16_777_216.0, state)
 }
 
-/// Corners, colour and the generator's next state for triangle `k`.
+/// Returns the corners and the colour of triangle `k`, and the generator's next state.
 pub const fn tiny_triangle(k: usize, state: u32) -> ([[f64; 3]; 3], [u8; 3], u32) {
     let (right, state) = random(state);
     let (down, state) = random(state);
@@ -65,7 +65,7 @@ const fn tiny_corners() -> Tiny {
     (points, colors)
 }
 
-/// Computed for programs that draw it: 30,000 vertices take the compiler a while.
+/// Returns the mesh. The compiler computes it in programs that draw it only, because 30,000 vertices take a while.
 pub fn tiny_mesh() -> &'static Mesh<'static> {
     const {
         let (points, colors) = const { &tiny_corners() };

@@ -20,7 +20,7 @@ pub const ROTATION: [[f64; 3]; 3] = {
     [[cy, sy * sx, sy * cx], [0.0, cx, -sx], [-sy, cy * sx, cy * cx]]
 };
 
-/// Towards the light, in the workloads' view space.
+/// Direction towards the light, in the workloads' view space.
 pub const LIGHT: [f64; 3] = normalized([0.4, 0.7, -0.6]);
 pub const AMBIENT: f64 = 0.15;
 pub const DIFFUSE: f64 = 0.85;
@@ -37,10 +37,10 @@ static TORUS_FACES: ([u16; 3 * TRIANGLES], [[f64; 3]; TRIANGLES]) = torus_faces(
 pub static TORUS_POSITIONS: &[[f64; 3]; VERTICES] = &TORUS_VERTICES[0];
 pub static TORUS_NORMALS: &[[f64; 3]; VERTICES] = &TORUS_VERTICES[1];
 pub static TORUS_INDICES: &[u16; 3 * TRIANGLES] = &TORUS_FACES.0;
-/// Pointing outwards.
+/// Unit normals of the triangles, which point outwards.
 pub static TORUS_FACE_NORMALS: &[[f64; 3]; TRIANGLES] = &TORUS_FACES.1;
 
-/// Sines and cosines of so many steps of a turn.
+/// Returns sine and cosine of each of `N` steps of a whole turn.
 const fn circle<const N: usize>() -> [(f64, f64); N] {
     let mut circle = [(0.0, 0.0); N];
     let turn = 2.0 * core::f64::consts::PI;
@@ -52,7 +52,7 @@ const fn circle<const N: usize>() -> [(f64, f64); N] {
     circle
 }
 
-/// Positions and normals.
+/// Returns positions and normals of the vertices.
 const fn torus() -> [[[f64; 3]; VERTICES]; 2] {
     let mut positions = [[0.0; 3]; VERTICES];
     let mut normals = [[0.0; 3]; VERTICES];
@@ -69,7 +69,7 @@ const fn torus() -> [[[f64; 3]; VERTICES]; 2] {
     [positions, normals]
 }
 
-/// Indices and face normals: the cross product of a front face's edges points inwards, as space is left-handed.
+/// Returns indices and face normals. The cross product of a front face's edges points inwards, as space is left-handed.
 const fn torus_faces() -> ([u16; 3 * TRIANGLES], [[f64; 3]; TRIANGLES]) {
     let mut indices = [0; 3 * TRIANGLES];
     let mut normals = [[0.0; 3]; TRIANGLES];
