@@ -264,7 +264,8 @@ impl Thing for Disc {
 }
 
 /// Draws one sample after the other by shaders that discard fragments, and compares each with that sample under alpha
-/// to coverage. Returns the number of pixels of such pictures that are not those of the picture.
+/// to coverage. Returns the number of pixels whose colour under alpha to coverage is another one than by such a shader,
+/// summed up over the samples.
 fn assert_samples_are_those_that_alpha_covers<const N: usize>(
     name: &str,
     thing: &impl Thing,
@@ -301,8 +302,8 @@ where
     differ
 }
 
-/// Compares one number of samples, or all of them. Returns the number of pixels that some samples cover, and others do
-/// not.
+/// Compares these numbers of samples per pixel. Returns the number of pixels that some samples cover and others do not,
+/// as [`assert_samples_are_those_that_alpha_covers`] counts them.
 fn assert_samples(name: &str, samples: &[usize], thing: &impl Thing, shader: impl Shader<Rgba8888> + Copy) -> usize {
     let by_number = samples.iter().map(|samples| match samples {
         2 => assert_samples_are_those_that_alpha_covers::<2>(name, thing, shader),

@@ -62,7 +62,7 @@ impl Triangles {
         self.corners.iter().map(on_screen).collect()
     }
 
-    /// Returns the vertices at such places.
+    /// Returns the vertices with `corners` as their places.
     pub fn vertices<'t>(&'t self, corners: &'t [[Scalar; 4]]) -> Vertices<'t> {
         Vertices { colors: Some(&self.colors), uvs: Some(&self.uvs), ..Vertices::new(Positions::Homogeneous(corners)) }
     }

@@ -235,8 +235,8 @@ fn small_ones<F: Framebuffer>(
     (found, tried)
 }
 
-/// Draws a triangle that is not small, or that was `refused` as a small one. Out of line, so that its stack is not
-/// below small ones.
+/// Draws a triangle that [`small_ones`] has not drawn; `refused` says whether it was tried there. Out of line, so that
+/// its stack is not below small ones.
 #[inline(never)]
 fn large_one<F: Framebuffer>(
     place: Place<'_, '_, F>,

@@ -43,8 +43,8 @@ fn drawn(bytes: &[u8]) -> (Vec<[f64; 3]>, Camera) {
     (unpacked.collect(), camera)
 }
 
-/// Draws the import itself: texels by its texture coordinates, light by its normals. Nearer to the border of a texel
-/// than `near`, in texels, there is no colour.
+/// Draws the import itself: texels by its texture coordinates, light by its normals. Pixels that are nearer than `near`
+/// texels to the border of a texel get no colour.
 fn reference(import: &Import, camera: &Camera, near: f64) -> Frame {
     let mut frame = Frame::new(SIZE.width, SIZE.height, [0.0; 3]);
     let viewport = Viewport::new(SIZE.width, SIZE.height);
@@ -67,7 +67,7 @@ fn reference(import: &Import, camera: &Camera, near: f64) -> Frame {
             if place.iter().any(|c| (c - c.round()).abs() < near) {
                 return [f64::NAN; 3];
             }
-            // Texels go on as the texture says: this is where all that the container does about it is checked.
+            // Beyond its sides, the texture goes on as the import says. The container has to show that by other means.
             let wrap = import.materials[0].texture.expect("a texture").wrap;
             let [x, y] = [0, 1].map(|k| match wrap[k] {
                 Wrap::Repeat => place[k].floor().rem_euclid(8.0) as usize,

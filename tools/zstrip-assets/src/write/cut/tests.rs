@@ -21,7 +21,8 @@ impl Random {
 const SIZE: [u32; 2] = [64, 32];
 const HALF: [f64; 2] = [0.5 / 64.0, 0.5 / 32.0];
 
-/// A sheet of squares in x and y, whose triangles have coordinates of their own at each seam: quarters, and `shift`.
+/// Returns a sheet of squares in x and y, whose triangles have coordinates of their own at each seam: multiples of a
+/// quarter, plus `shift`.
 fn sheet(random: &mut Random, side: u32, shift: f32) -> Mesh {
     let mut mesh = Mesh::default();
     let mut random_uv = || [0; 2].map(|_| random.next(13) as f32 / 4.0 - 1.0 + shift);
@@ -49,7 +50,7 @@ fn sheet(random: &mut Random, side: u32, shift: f32) -> Mesh {
     mesh
 }
 
-/// The weights of a triangle's corners at a point in x and y.
+/// Returns the weights of a triangle's corners at a point in x and y.
 fn weights(mesh: &Mesh, triangle: [u32; 3], [x, y]: [f64; 2]) -> [f64; 3] {
     let [a, b, c] = triangle.map(|v| mesh.vertices.positions[v as usize].map(f64::from));
     let turn = |p: [f64; 3], q: [f64; 3]| (q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0]);
@@ -58,13 +59,13 @@ fn weights(mesh: &Mesh, triangle: [u32; 3], [x, y]: [f64; 2]) -> [f64; 3] {
     parts.map(|part| part / all)
 }
 
-/// Coordinates in a triangle, of vertices whose coordinates pass through `change`.
+/// Returns coordinates in a triangle, of vertices whose coordinates pass through `change`.
 fn uv_in(mesh: &Mesh, triangle: [u32; 3], weights: [f64; 3], change: impl Fn([f32; 2]) -> [f32; 2]) -> [f64; 2] {
     let uvs = triangle.map(|v| change(mesh.vertices.uvs[v as usize]).map(f64::from));
     [0, 1].map(|k| (0..3).map(|v| uvs[v][k] * weights[v]).sum())
 }
 
-/// The triangles of a mesh that hold a point clearly.
+/// Returns the triangles of a mesh that hold a point clearly.
 fn holding(mesh: &Mesh, point: [f64; 2]) -> Vec<([u32; 3], [f64; 3])> {
     let of = mesh.triangles.iter().map(|triangle| (*triangle, weights(mesh, *triangle, point)));
     of.filter(|(_, weights)| weights.iter().all(|weight| *weight > 1e-5)).collect()
@@ -109,7 +110,7 @@ fn cut_triangles_show_the_texels_of_the_texture_as_it_goes_on() {
     assert!(compared > 79_000, "{compared}");
 }
 
-/// The number of times that a side of triangles goes from one place to another.
+/// Returns the number of times that a side of triangles goes from one place to another.
 fn sides(mesh: &Mesh) -> HashMap<[Place; 2], usize> {
     let place = |v: u32| mesh.vertices.positions[v as usize].map(|x| (x + 0.0).to_bits());
     let mut sides = HashMap::new();
