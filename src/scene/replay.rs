@@ -226,13 +226,13 @@ fn small_ones<F: Framebuffer>(
     let mut state = LeftState::NONE;
     let state = if carries { Some(&mut state) } else { None };
     let mut place = if drawer.fits() { rows.place(target, None, state) } else { None };
-    let tried = place.is_some();
+    let refused = place.is_some();
     let draw = &mut SmallDrawer { place: &mut place, drawer };
     let found = match left_out {
         Some(left_out) => triangles.waiting_each(record, left_out, draw),
         None => triangles.replay_each(end, record, draw),
     };
-    (found, tried)
+    (found, refused)
 }
 
 /// Draws a triangle that [`small_ones`] has not drawn; `refused` says whether it was tried there. Out of line, so that
