@@ -1,6 +1,7 @@
 //! Stages 3 to 7 of [the pipeline](crate#the-pipeline): a mesh's triangles come in, and go out as triangles on the
 //! screen, drawn or recorded. This code is compiled once, for all shaders: a [`Program`] is what it knows of them.
 
+use super::cull::PendingFace;
 use super::painter::{turn, turn_corners, turn_vertices};
 use super::scan::{Scan, ScanEvent, ScanTo, ScreenTriangle, may_reach, place};
 use super::scene::{Draw, Scene};
@@ -8,7 +9,7 @@ use super::state::Culling;
 use crate::math::Projective;
 use crate::mesh::BoundsNode;
 use crate::raster::PixelRect;
-use crate::target::{Framebuffer, Records};
+use crate::target::{Framebuffer, Records, triangle_words};
 use crate::vertex::{
     ClipCorner, ClipVertex, Clipping, DepthSlab, Outcode, PackedVertex, Projected, Transform, inverse_w,
 };
@@ -57,9 +58,6 @@ pub(super) trait Program<F: Framebuffer> {
 
     /// Stage 7, faces: replaces the [`PendingFace`]s in these words of records by the shader's words.
     fn shade_faces(&self, records: &mut [u32]);
-
-    /// Stage 7, faces: returns the shader's word for a triangle.
-    fn face(&self, triangle: &ScreenTriangle) -> u32;
 
     /// Draws a triangle of the mesh, or a triangle of the fan that it was clipped to: stages 8 to 11. Its highest
     /// corner is the first.
@@ -222,11 +220,20 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
         }
     }
 
+    /// Stage 7, faces: returns the shader's word for a triangle, which is put into a record for that.
+    fn face(&self, triangle: &ScreenTriangle) -> u32 {
+        let ScreenTriangle { number, corners, area, .. } = triangle;
+        let pending = PendingFace::new(usize::from(*number) + 1, (*area >> 32) as i32);
+        let mut record = triangle_words(*corners, pending.0);
+        self.program.shade_faces(&mut record);
+        record[2]
+    }
+
     /// Shades the face of a triangle, stage 7, and draws the triangle with its highest corner first. Turns its
     /// vertices, and its corners or those of the fan.
     #[inline(never)]
     fn draw_triangle(&mut self, triangle: &mut ScreenTriangle, mut fan: Option<[&FanCorner; 3]>) {
-        let face = self.program.face(triangle);
+        let face = self.face(triangle);
         let turns = turn_vertices(&mut triangle.v);
         match &mut fan {
             Some(fan) => turn(fan, turns),
@@ -238,7 +245,7 @@ impl<F: Framebuffer> Assembly<'_, '_, F> {
     /// Stage 6, recording: puts a triangle into the list of the strip that it begins in, with its face's word.
     fn record(&mut self, triangle: &ScreenTriangle, mut corners: [u16; 3]) {
         turn_corners(&triangle.v, &mut corners);
-        let face = self.program.face(triangle);
+        let face = self.face(triangle);
         let strip = self.scene.strips.of((triangle.row - self.scene.band.start) as u32);
         let number = self.scene.records.triangle_count();
         self.scene.records.push_triangle(corners, face, strip);

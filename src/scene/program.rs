@@ -10,7 +10,7 @@ use super::state::State;
 use super::vertex_stage::VertexStage;
 use crate::raster::PixelRect;
 use crate::span::Shader;
-use crate::target::{Framebuffer, Records};
+use crate::target::{Framebuffer, Records, corners_of};
 use crate::vertex::{
     CLIPPED_CORNERS, ClipVertex, Clipping, DISTANCE_CORNERS, DepthRange, DepthScale, DepthSlab, Face, Outcode,
     PackedVertex, Transform, Varyings,
@@ -148,20 +148,10 @@ impl<F: Framebuffer, S: Shader<F::Format>> Program<F> for MeshProgram<'_, F, S> 
     fn shade_faces(&self, mut records: &mut [u32]) {
         while let Some(([corners, last, word], rest)) = records.split_first_chunk_mut() {
             let (number, area) = PendingFace(*word).parts();
-            let [k, _] = bytemuck::cast(*last);
-            let corners = [*corners as u16, (*corners >> 16) as u16, k];
+            let corners = corners_of(*corners, *last);
             *word = self.stage.shader.face(&Face::new(self.stage.mesh, number, corners, self.state.side(area)));
             records = rest;
         }
-    }
-
-    fn face(&self, triangle: &ScreenTriangle) -> u32 {
-        // The triangle is put into a record for `shade_faces`, so that the shader's `face` is compiled once.
-        let ScreenTriangle { number, corners: [i, j, k], area, .. } = triangle;
-        let pending = PendingFace::new(usize::from(*number) + 1, (*area >> 32) as i32);
-        let mut record = [u32::from(*i) | u32::from(*j) << 16, bytemuck::cast([*k, 0]), pending.0];
-        self.shade_faces(&mut record);
-        record[2]
     }
 
     fn draw(

@@ -344,8 +344,18 @@ mod tests {
         }
 
         /// Returns three vertices of a tiny, small, large or huge triangle. Some of them are not shaded, or off the
-        /// screen.
+        /// screen. The area of some triangles is 2³², whose lower word is 0.
         fn positions(&mut self) -> [[u32; 2]; 3] {
+            if self.below(20) == 0 {
+                let (x, y, bits) = (self.below(1 << 16), self.below(1 << 14), 10 + self.below(6));
+                let places = [(x, y), (x + (1 << bits), y), (x, y + (1 << (32 - bits)))];
+                let first = self.below(3) as usize;
+                let order = if self.below(2) == 0 { [0, 1, 2] } else { [0, 2, 1] };
+                return order.map(|k| {
+                    let (x, y) = places[(first + k) % 3];
+                    PackedVertex::new(&Projected::OnScreen(ScreenVertex::new(x, y, 7))).words()
+                });
+            }
             let size = [300, 3000, 1 << 15, 1 << 17, 1 << 22][self.below(5) as usize];
             let at = [[self.below(1 << 17), self.below(1 << 16)], [(1 << 23) - 1 - size, -(1 << 23) + 1]];
             let [x, y] = at[usize::from(self.below(20) == 0)];

@@ -31,4 +31,6 @@ pub use records::records_len;
 pub use sink::{OnDisplay, StripPixels, StripSink};
 pub use stats::Stats;
 pub(crate) use strip_rows::{StripRows, whole_rows};
-pub(crate) use triangles::{DrawTriangles, Room, TriangleRecord, Triangles, Unshaded, third, turns};
+pub(crate) use triangles::{
+    DrawTriangles, Room, TriangleRecord, Triangles, Unshaded, corners_of, third, triangle_words, turns,
+};

@@ -21,9 +21,15 @@ fn pair(halves: [u16; 2]) -> u32 {
     bytemuck::cast(halves)
 }
 
+/// Returns the words of a triangle that is in no strip's list.
+#[inline(always)]
+pub(crate) fn triangle_words([i, j, k]: [u16; 3], face: u32) -> [u32; TRIANGLE] {
+    [u32::from(i) | u32::from(j) << 16, pair([k, NONE]), face]
+}
+
 /// Returns the numbers of a triangle's vertices, from the first two words of its record.
 #[inline(always)]
-fn corners_of(a: u32, b: u32) -> [u16; 3] {
+pub(crate) fn corners_of(a: u32, b: u32) -> [u16; 3] {
     let [k, _]: [u16; 2] = bytemuck::cast(b);
     [a as u16, (a >> 16) as u16, k]
 }
@@ -89,13 +95,13 @@ pub(crate) struct Room<'r> {
 impl Room<'_> {
     /// Puts in a triangle. Returns `false` if there is no room for it.
     #[inline(always)]
-    pub(crate) fn push(&mut self, [i, j, k]: [u16; 3], face: u32) -> bool {
+    pub(crate) fn push(&mut self, corners: [u16; 3], face: u32) -> bool {
         // Fewer words than a triangle takes stay where they are.
         if self.words.len() < TRIANGLE {
             return false;
         }
         let Some((rest, triangle)) = core::mem::take(&mut self.words).split_last_chunk_mut() else { return false };
-        *triangle = [u32::from(i) | u32::from(j) << 16, pair([k, NONE]), face];
+        *triangle = triangle_words(corners, face);
         self.words = rest;
         true
     }
@@ -203,10 +209,10 @@ impl<'r> Triangles<'r> {
             else {
                 break;
             };
-            let ([i, j, k], v) = self.highest_first(corners_of(a, b));
+            let (corners, v) = self.highest_first(corners_of(a, b));
             let Some(strip) = strip(v) else { continue };
             if let Some(words) = self.triangles.get_mut(self.triangle_at(kept)..).and_then(<[u32]>::first_chunk_mut) {
-                *words = [u32::from(i) | u32::from(j) << 16, pair([k, NONE]), face];
+                *words = triangle_words(corners, face);
             }
             self.append(strip, kept);
             kept += 1;
