@@ -47,25 +47,16 @@ pub fn fill<R: Pod>(pixels: &mut [R], value: R) {
 #[inline(never)]
 pub fn clear<R: Pod>(pixels: &mut [R], value: R) {
     if SMALL_CORE && size_of::<R>() == 2 {
-        clear_by_fives(pixels, value);
+        for part in pixels.chunks_mut(LONGEST) {
+            clear_by_fives(part, value);
+        }
     } else {
         fill(pixels, value);
     }
 }
 
-/// Most pixels of two bytes that [`clear`] clears by fives on small cores: 65,535 words.
+/// Most pixels of two bytes that are cleared by fives at once: 65,535 words.
 const LONGEST: usize = 131_070;
-
-/// Sets all pixels of a whole buffer to `value`, as fast per pixel in a long buffer as in a short one. Buffers of
-/// several samples per pixel may be long.
-///
-/// This is a function of its own, because its loop would take code in programs whose buffers are short.
-#[inline(never)]
-pub fn clear_long<R: Pod>(pixels: &mut [R], value: R) {
-    for part in pixels.chunks_mut(LONGEST) {
-        clear(part, value);
-    }
-}
 
 /// Does as [`clear`] on small cores, five words at a time.
 #[inline(always)]
@@ -73,8 +64,7 @@ fn clear_by_fives<R: Pod>(pixels: &mut [R], value: R) {
     let [first, ..] = &mut *pixels else { return };
     *first = value;
     let (_, words, _) = bytemuck::pod_align_to_mut::<R, u32>(pixels);
-    // A fifth of the number of words, rounded down. That is exact up to 65,535 words, 256 KB. In a longer buffer, fewer
-    // words are stored by fives, and the loop over pixels at the end does the rest: `clear_long` is for these.
+    // A fifth of the number of words, rounded down. That is exact up to 65,535 words, 256 KB.
     let fives = ((words.len() & 0xFFFF) * 0xCCCD) >> 18;
     let Some(words) = words.get_mut(..5 * fives) else { return };
     let Ok(blocks) = bytemuck::try_cast_slice_mut(words) else { return };
@@ -199,7 +189,7 @@ mod tests {
         for length in [LONGEST - 1, LONGEST, LONGEST + 1, LONGEST + 2, 2 * LONGEST, 2 * LONGEST + 13] {
             for start in [0, 1] {
                 let mut halves = std::vec![1_u16; length + 2];
-                clear_long(&mut halves[start..start + length], 0xABCD);
+                clear(&mut halves[start..start + length], 0xABCD);
                 let is_right = |(k, v): (usize, &u16)| (*v == 0xABCD) == (start..start + length).contains(&k);
                 assert!(halves.iter().enumerate().all(is_right), "{length} half words from {start} on");
             }

@@ -17,7 +17,7 @@ mod rgba;
 pub(crate) use channels::{channels, packed, round, unpacked};
 pub use dither::{Dither, Levels, Tones};
 pub use dithered::{DitherWords, Ditherable, Dithered};
-pub(crate) use fill::{clear, clear_long, clear_words, fill};
+pub(crate) use fill::{clear, clear_words, fill};
 pub use format::PixelFormat;
 pub use formats::{Bgr565Be, Rgb332, Rgb565Be};
 pub(crate) use mean::PixelSum;

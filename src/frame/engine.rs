@@ -1,7 +1,7 @@
 //! The loop that makes a frame: bands of strips, recorded as large as the records allow, replayed strip by strip.
 
 use super::error::RendererError;
-use crate::color::{clear, clear_long};
+use crate::color::clear;
 use crate::scene::{Phase, Scene, Target};
 use crate::target::{Framebuffer, Layout, Records, Stats, StripRows, occlusion_len, whole_rows};
 use crate::vertex::Viewport;
@@ -230,7 +230,7 @@ impl Engine<'_> {
                 pixels += occlusion_len(width, rows);
             }
             let depth = self.depth.get_mut(..pixels).unwrap_or_default();
-            if F::SAMPLES > 1 { clear_long(depth, u16::MAX) } else { clear(depth, u16::MAX) }
+            clear(depth, u16::MAX);
         }
         loop {
             let phase = if F::RECORDS { self.begin_walk(progress, rows) } else { Phase::Direct };

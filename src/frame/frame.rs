@@ -2,7 +2,7 @@
 
 use super::engine::{Engine, Progress};
 use super::error::FrameError;
-use crate::color::{PixelFormat, clear, clear_long, resolve};
+use crate::color::{PixelFormat, clear, resolve};
 use crate::scene::Scene;
 use crate::target::{DepthChoice, Further, RecordsChoice, Stats, Strip, StripPixels, WithoutDepth, WithoutRecords};
 use core::marker::PhantomData;
@@ -203,7 +203,7 @@ impl<'r, 'b, P: PixelFormat, D: DepthChoice, R: RecordsChoice> Frame<'r, 'b, P, 
         // The renderer has seen to it that the samples are long enough.
         let mut samples = D::first(further, needed * (D::SAMPLES - 1));
         if D::SAMPLES > 1 {
-            clear_long(samples.samples().0, *background);
+            clear(samples.samples().0, *background);
         }
         {
             let further = D::first(&mut samples, usize::MAX);
