@@ -96,6 +96,11 @@ count() {
     emulate "${machine[$core]}" "$image" -icount "shift=${icount[$core]},sleep=off,align=off" "${options[@]}" "$@" \
         >"$image.txt"
     if [ -n "${options[*]}" ]; then
+        # A run without a count would get that of the next one.
+        if [ "$(grep -c '^REGION ' "$image.count")" != "$(grep -c . "$image.txt")" ]; then
+            say "$image: the plugin has missed a run: $(grep -c '^REGION ' "$image.count") of $(grep -c . "$image.txt")"
+            return 1
+        fi
         awk 'NR == FNR { split($3, n, "="); split($4, c, "="); if ($1 == "REGION") count[$2] = n[2] " " c[2]; next }
             { $3 = count[FNR - 1]; print }' "$image.count" "$image.txt"
     else

@@ -4,12 +4,12 @@ use super::ticks;
 use core::arch::asm;
 use core::hint::black_box;
 
-/// The instructions that a counting plugin looks for. The first instruction after a timer was read may be one that QEMU
-/// does not show to plugins, so that one does nothing.
+/// The instructions that a counting plugin looks for. QEMU may not show the first two instructions after a timer was
+/// read to plugins, so these do nothing.
 #[cfg(target_arch = "arm")]
 macro_rules! marker {
     (begin) => {
-        "nop\nmov r10, r10"
+        "nop\nnop\nmov r10, r10"
     };
     (end) => {
         "mov r11, r11"
